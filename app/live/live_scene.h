@@ -17,7 +17,6 @@
 
 #include "app/live/background.h"
 #include "app/live/command_text.h"
-#include "app/live/explosions.h"
 #include "app/live/group_video.h"
 #include "app/live/live_picture.h"
 #include "app/live/physics.h"

@@ -63,7 +63,7 @@ class Population {
 };
 
 // The state of a robot whose body was edited.
-
+//
 // Masses of `after` that were in `before`, at the same place at rest, go on as they are in `state`. New masses are as
 // far from their place at rest as the nearest mass that was there, and move with its velocity. None if the robot had
 // exploded or no mass stayed.

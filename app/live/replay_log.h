@@ -22,8 +22,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/live/scene_events.h"
 #include "app/live/snapshot.h"
+#include "app/live/timeline.h"
 #include "app/recording/repro.h"
 
 namespace mercury {

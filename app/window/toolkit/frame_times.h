@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the window draws: how long it waits between two frames, and which pictures it leaves out.
+// When the window draws: how long it waits between two frames, which pictures it leaves out, and how long the last
+// frames took.
 #pragma once
 
 #include <chrono>
+#include <deque>
 
 namespace mercury::window {
 
@@ -29,6 +31,28 @@ class Pacing {
   bool paced_;
   Clock::time_point shown_at_, drawn_at_;
   double frame_seconds_ = 0;  // of the last frame that was shown
+};
+
+// The parts of one frame [s].
+struct FrameTimes {
+  double whole = 0;      // from one frame to the next
+  double scene = 0;      // taking over the newest state from the physics
+  double positions = 0;  // part of the picture: bringing positions to the renderer
+  double picture = 0;    // drawing the robots
+  double panels = 0;     // drawing the panels
+  double thumbnails = 0;
+  double present = 0;  // bringing picture and panels to the display
+};
+
+class FrameHistory {
+ public:
+  // Keeps the last 240 frames.
+  void add(const FrameTimes& times);
+  const std::deque<FrameTimes>& frames() const { return frames_; }
+  FrameTimes mean() const;
+
+ private:
+  std::deque<FrameTimes> frames_;
 };
 
 }  // namespace mercury::window
