@@ -11,7 +11,7 @@
 #include "app/live/snapshot.h"
 #include "app/scene/view_settings.h"
 #include "app/video/frame_writer.h"
-#include "render/context.h"
+#include "render/context/context.h"
 #include "render/readback.h"
 #include "render/renderer.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "render/context.h"
+#include "render/context/context.h"
 
 struct GLFWwindow;
 

@@ -13,9 +13,9 @@
 
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
-#include "render/label_layout.h"
-#include "render/overlay.h"
-#include "render/scale.h"
+#include "render/text/label_layout.h"
+#include "render/text/overlay.h"
+#include "render/text/scale.h"
 
 namespace mercury::window {
 namespace {
@@ -34,7 +34,7 @@ void line(ImVec2 at, const std::string& text) {
   ImGui::GetBackgroundDrawList()->AddText(at, text_color(), text.c_str());
 }
 
-// The labels that there is room for (render/label_layout.h). `hovered`: the body under the mouse.
+// The labels that there is room for (render/text/label_layout.h). `hovered`: the body under the mouse.
 void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
                  const render::Camera& camera, std::optional<std::size_t> hovered, EventLog& log) {
   const float margin = 0.4f * ImGui::GetFontSize();
