@@ -198,8 +198,7 @@ void LiveRun::grow(std::uint64_t id, std::function<void(Robot robot)> use) {
                            });
 }
 
-void LiveRun::evolve(const EvolveRequest& request, std::vector<LiveRobot> founders,
-                     const Configuration& configuration) {
+void LiveRun::evolve(const EvolveRequest& request, std::vector<LiveRobot> founders) {
   Parts& parts = *parts_;
   if (parts.activity != Activity::none || founders.empty()) return;
   parts.activity = Activity::starting;
@@ -212,7 +211,7 @@ void LiveRun::evolve(const EvolveRequest& request, std::vector<LiveRobot> founde
     parts.messages.add(Severity::error, error.what());
     return;
   }
-  const std::vector<std::string> arguments = evolve_arguments(request, configuration, parts.founders->path());
+  const std::vector<std::string> arguments = evolve_arguments(request, parts.founders->path());
   const auto task = [&parts, arguments, founders = std::move(founders)](WorkControl&) -> Background::Finish {
     std::string problem;
     try {
@@ -283,21 +282,11 @@ void LiveRun::Parts::watch_process() {
   read_at = 0;
 }
 
-std::vector<std::string> evolve_arguments(const EvolveRequest& request, const Configuration& configuration,
-                                          const fs::path& founders) {
-  std::vector<std::string> words{"evolve", request.folder.string()};
-  const auto add = [&](const std::string& option, const std::string& value) {
+std::vector<std::string> evolve_arguments(const EvolveRequest& request, const fs::path& founders) {
+  std::vector<std::string> words{"evolve", request.folder.string(), "--from=" + founders.string(),
+                                 "--genes=" + request.genes, "--quiet"};
+  for (const auto& [option, value] : options_of(request.settings))
     words.push_back(value.empty() ? option : fmt::format("{}={}", option, value));
-  };
-  add("--from", founders.string());
-  add("--algorithm", request.algorithm);
-  add("--genes", request.genes);
-  add("--objective", request.objective);
-  add("--population", std::to_string(request.population));
-  add("--generations", std::to_string(request.generations));
-  add("--seconds", fmt::format("{}", request.seconds));
-  add("--quiet", "");
-  for (const auto& [option, value] : options_of(configuration)) add(option, value);
   return words;
 }
 

@@ -19,25 +19,19 @@
 #include "app/live/messages.h"
 #include "app/live/run_view.h"
 #include "app/live/snapshot.h"
-#include "mercury/configuration.h"
+#include "mercury/evolution.h"
 
 namespace mercury {
 
-// A new run that starts from robots of the window. What is not named here has the default of `mercury evolve`.
+// A new run that starts from robots of the window.
 struct EvolveRequest {
   std::filesystem::path folder;  // of the run; new or empty
-  std::string algorithm = "afpo";
-  std::string genes = "body";  // what changes: "body", "muscles" or "both"
-  std::string objective = "distance";
-  int population = 64;
-  int generations = 50;
-  double seconds = 10;  // of each trial [s]
-  friend bool operator==(const EvolveRequest&, const EvolveRequest&) = default;
+  std::string genes = "body";    // what changes: "body", "muscles" or "both"
+  EvolutionSettings settings{.algorithm = {.population = 64}, .generations = 50};
 };
 
 // The words after `mercury`. `founders`: a folder of robot files.
-std::vector<std::string> evolve_arguments(const EvolveRequest& request, const Configuration& configuration,
-                                          const std::filesystem::path& founders);
+std::vector<std::string> evolve_arguments(const EvolveRequest& request, const std::filesystem::path& founders);
 
 // The file of the running program.
 std::filesystem::path this_program();
@@ -114,7 +108,7 @@ class LiveRun {
   Activity activity() const;
   const std::filesystem::path& evolving() const;  // the folder of its run, which may be another than folder()
   // Starts a run from these robots and opens its folder.
-  void evolve(const EvolveRequest& request, std::vector<LiveRobot> founders, const Configuration& configuration);
+  void evolve(const EvolveRequest& request, std::vector<LiveRobot> founders);
   // Continues the open run, to this number of generations if it is given.
   void resume(const Device& device, std::optional<int> generations = {});
   void stop();           // in an orderly way

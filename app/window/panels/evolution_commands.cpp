@@ -29,6 +29,25 @@ int index_in(const std::vector<const char*>& words, const std::string& word) {
   return found == words.end() ? 0 : static_cast<int>(found - words.begin());
 }
 
+// A row for one parameter of a table.
+template <class Struct>
+void parameter_row(const char* name, Struct& values, EventLog& log) {
+  for_each_parameter(values, [&]<class Value>(const auto& parameter, Value& value) {
+    if (parameter.name != name) return;
+    ImGui::PushID(name);
+    row(name, std::string(parameter.help).c_str());
+    if constexpr (std::is_same_v<Value, double>) {
+      ImGui::InputDouble("##value", &value, 1, 10, fmt::format("%.3g {}", parameter.unit).c_str());
+    } else if constexpr (!std::is_same_v<Value, bool>) {
+      int shown = static_cast<int>(value);
+      ImGui::InputInt("##value", &shown, 1, 10);
+      value = static_cast<Value>(std::clamp(shown, 1, 1'000'000));
+    }
+    log.item(std::string("evolve.") + name);
+    ImGui::PopID();
+  });
+}
+
 class EvolveForm {
  public:
   EvolveForm(PanelContext& context, std::vector<LiveRobot> founders);
@@ -41,13 +60,12 @@ class EvolveForm {
   EvolveRequest request() const;
   std::string problem_of(const EvolveRequest& request) const;
   std::string problem_of_founders(const std::string& genes) const;
-  void whole_number(const char* name, const char* help, int& value, int low, int high, EventLog& log);
 
   PanelContext& context_;
   std::vector<LiveRobot> founders_;
   EvolveRequest values_;  // but the folder
   std::string name_, folder_;
-  EvolveRequest checked_;  // problem_ is about it
+  std::vector<std::string> checked_;  // the request that problem_ is about, as words
   std::string problem_ = "?";
 };
 
@@ -62,6 +80,7 @@ EvolveForm::EvolveForm(PanelContext& context, std::vector<LiveRobot> founders)
 
 EvolveRequest EvolveForm::request() const {
   EvolveRequest request = values_;
+  request.settings.configuration = context_.scene.configuration();
   request.folder = name_.empty() ? fs::path() : (fs::path(folder_) / name_).lexically_normal();
   return request;
 }
@@ -84,28 +103,15 @@ std::string EvolveForm::problem_of(const EvolveRequest& request) const {
       !(fs::is_directory(request.folder, unknown) && fs::is_empty(request.folder, unknown)))
     return request.folder.filename().string() + " exists already; give another name";
   if (std::string problem = problem_of_founders(request.genes); !problem.empty()) return problem;
-  EvolutionSettings settings{.objectives = {request.objective}, .generations = request.generations};
-  settings.algorithm.name = request.algorithm;
-  settings.algorithm.population = static_cast<std::size_t>(std::max(0, request.population));
-  if (request.algorithm == "map-elites")
+  EvolutionSettings settings = request.settings;
+  if (settings.algorithm.name == "map-elites")
     settings.algorithm.axes = {{.quantity = std::string(quantities().front().name)}};
-  settings.trials.seconds = request.seconds;
-  settings.configuration = context_.scene.configuration();
   try {
     validate(settings);
   } catch (const InputError& error) {
     return error.what();
   }
   return {};
-}
-
-void EvolveForm::whole_number(const char* name, const char* help, int& value, int low, int high, EventLog& log) {
-  ImGui::PushID(name);
-  row(name, help);
-  ImGui::InputInt("##value", &value, 1, 10);
-  log.item(std::string("evolve.") + name);
-  ImGui::PopID();
-  value = std::clamp(value, low, high);
 }
 
 bool EvolveForm::draw(EventLog& log) {
@@ -121,26 +127,29 @@ bool EvolveForm::draw(EventLog& log) {
     names.push_back(algorithm.name.data());
     help += fmt::format("{}{}: {}", help.empty() ? "" : "\n", algorithm.name, algorithm.help);
   }
-  int algorithm = index_in(names, values_.algorithm), genes = index_in(all_genes, values_.genes);
+  int algorithm = index_in(names, values_.settings.algorithm.name), genes = index_in(all_genes, values_.genes);
   combo("algorithm", help.c_str(), algorithm, names);
   log.item("evolve.algorithm");
-  values_.algorithm = names[static_cast<std::size_t>(algorithm)];
+  values_.settings.algorithm.name = names[static_cast<std::size_t>(algorithm)];
   combo("what changes", "the bodies, how the muscles move (amplitude, frequency, phase), or both", genes, all_genes);
   log.item("evolve.genes");
   values_.genes = all_genes[static_cast<std::size_t>(genes)];
   row("objective", "a formula; more is better, as in \"distance - 0.1 * strain\"");
-  text_field("##objective", values_.objective);
+  text_field("##objective", values_.settings.objectives.front());
   log.item("evolve.objective");
-  whole_number("population", "robots that live on after each generation", values_.population, 1, 1'000'000, log);
-  whole_number("generations", "after the first one", values_.generations, 1, 1'000'000, log);
-  row("seconds", "simulated time of each trial");
-  ImGui::InputDouble("##seconds", &values_.seconds, 1, 10, "%.3g s");
-  log.item("evolve.seconds");
+  parameter_row("population", values_.settings.algorithm, log);
+  parameter_row("generations", values_.settings, log);
+  parameter_row("seconds", values_.settings.trials, log);
   const EvolveRequest now = request();
-  if (problem_ == "?" || !(now == checked_)) problem_ = problem_of(checked_ = now);
-  const auto trials = static_cast<double>(now.population) * (now.generations + 1.0);
+  if (std::vector<std::string> words = evolve_arguments(now, {}); problem_ == "?" || words != checked_) {
+    problem_ = problem_of(now);
+    checked_ = std::move(words);
+  }
+  const auto trials = static_cast<double>(now.settings.algorithm.population) * (now.settings.generations + 1.0);
   if (problem_.empty()) {
-    note(fmt::format("{:.0f} trials of {:.3g} s, with the parameters of this scene", trials, now.seconds).c_str());
+    note(
+        fmt::format("{:.0f} trials of {:.3g} s, with the parameters of this scene", trials, now.settings.trials.seconds)
+            .c_str());
   } else {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
     ImGui::TextWrapped("%s", problem_.c_str());
@@ -156,10 +165,8 @@ void EvolveForm::accept() {
   context_.preferences.panels = true;
   context_.preferences.left_panel = "Evolution";
   context_.log.write("evolving", {{"folder", chosen.folder.string()}, {"robots", founders_.size()}});
-  context_.run.evolve(chosen, founders_, context_.scene.configuration());
+  context_.run.evolve(chosen, founders_);
 }
-
-namespace fs = std::filesystem;
 
 std::optional<fs::path> run_of(const fs::path& path) {
   if (is_run_folder(path)) return path;
