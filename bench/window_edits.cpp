@@ -14,7 +14,7 @@
 
 #include "app/live/live_scene.h"
 #include "mercury/random_voxel.h"
-#include "render/context.h"
+#include "render/context/context.h"
 #include "render/renderer.h"
 
 namespace {

@@ -10,7 +10,7 @@ endforeach()
 file(WRITE ${OUTPUT} "// Made from libepoxy's header at build time.
 #include <epoxy/gl.h>
 
-#include \"render/gl_pointers.h\"
+#include \"render/context/context_headless.h\"
 
 namespace mercury::render {
 namespace {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/gl_objects.h"
-#include "render/host_buffer.h"
+#include "render/context/buffers.h"
+#include "render/context/gl_objects.h"
 #include "render/renderer.h"
 
 namespace mercury::render {

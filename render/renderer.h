@@ -11,7 +11,7 @@
 
 #include "render/body_data.h"
 #include "render/camera.h"
-#include "render/context.h"
+#include "render/context/context.h"
 #include "render/scene.h"
 
 namespace mercury::render {

@@ -13,7 +13,7 @@
 
 #include "render/colormap.h"
 #include "render/cut.h"
-#include "render/scale.h"
+#include "render/text/scale.h"
 #include "render/vector.h"
 
 namespace mercury::render {
@@ -68,7 +68,7 @@ struct Path {
   bool fades = true;  // older points are fainter
 };
 
-// Text beside a body; '\n' starts a new, smaller line. Of many, only some are shown (label_layout.h).
+// Text beside a body; '\n' starts a new, smaller line. Of many, only some are shown (text/label_layout.h).
 struct Label {
   std::uint32_t body = 0;
   std::string text;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bodies' buffers (render/bodies.h), the scene's placements and materials (render/scene_buffers.h), and the records
-// that compute passes write for each picture.
+// The bodies' buffers, the scene's placements and materials (render/passes/scene_buffers.h), and the records that compute
+// passes write for each picture.
 #define NO_FACE 0xffffffffu
 
 struct Placement {
@@ -13,7 +13,7 @@ struct Placement {
 #define PLACEMENT_FAULTY 4u
 #define PLACEMENT_SMOOTH 8u
 
-// See render/skin_topology.h.
+// See render/body_data.h.
 struct FaceRecord {
   uvec4 neighbors;
   uint material;

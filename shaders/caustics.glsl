@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pattern of light below a moving water surface, mean 1. Needs frame.glsl.
-// OCTAVES: how many sizes of the pattern are visible, 1 or 2 (see Octave in render/frame_block.h).
+// OCTAVES: how many sizes of the pattern are visible, 1 or 2 (see Octave in render/passes/scene_buffers.h).
 layout(binding = 4) uniform sampler2D caustics_tile;
 
 // Where the key light that arrives at a point has passed the surface.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data that all shaders of one picture share: FrameBlock of render/frame_block.h.
+// The data that all shaders of one picture share: FrameBlock of render/passes/scene_buffers.h.
 // FITS_FRAME: writable, for fit.comp, which fills in a part of it.
 #ifdef FITS_FRAME
 layout(std140, binding = 0) buffer Frame {

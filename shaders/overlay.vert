@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A quad of render/overlay.h as 6 vertices.
+// A quad of render/text/overlay.h as 6 vertices.
 struct Quad {
   vec4 rectangle;   // x, y, width, height; pixels from the upper left corner
   vec4 source;

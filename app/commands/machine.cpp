@@ -13,7 +13,7 @@
 #include "app/video/position_bridge.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/simulation.h"
-#include "render/context.h"
+#include "render/context/context.h"
 
 namespace mercury {
 namespace {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <type_traits>
@@ -157,6 +158,18 @@ OptionValues options_of(const Configuration& configuration) {
   add_parameters(options, configuration);
   add_parameters(options, configuration.environment);
   return options.take();
+}
+
+OptionValues options_of(const EvolutionSettings& settings) {
+  Options options;
+  options.text("--algorithm", settings.algorithm.name, "");
+  for (const std::string& objective : settings.objectives) options.text("--objective", objective, "");
+  add_parameters(options, settings.algorithm);
+  add_parameters(options, settings);
+  add_parameters(options, settings.trials);
+  OptionValues values = options.take();
+  std::ranges::move(options_of(settings.configuration), std::back_inserter(values));
+  return values;
 }
 
 OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usual) {

@@ -8,6 +8,7 @@
 
 #include "app/live/scene_document.h"
 #include "app/scene/view_settings.h"
+#include "mercury/evolution.h"
 
 namespace mercury {
 
@@ -20,6 +21,8 @@ using OptionValues = std::vector<std::pair<std::string, std::string>>;  // "--dt
 
 // The options that differ from the defaults.
 OptionValues options_of(const Configuration& configuration);
+// The same, but the algorithm and the objectives are always given.
+OptionValues options_of(const EvolutionSettings& settings);
 // `usual`: the layout that is left out; absent = none.
 OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usual = {});
 

@@ -2,15 +2,22 @@
 #include "app/live/live_run.h"
 
 #include <fmt/format.h>
+#include <signal.h>
+#include <stdlib.h>
 
+#include <cerrno>
+#include <chrono>
 #include <exception>
 #include <optional>
+#include <system_error>
+#include <thread>
 #include <utility>
 
 #include "app/live/background.h"
-#include "app/live/pace.h"
+#include "app/live/command_text.h"
 #include "app/live/robot_saving.h"
 #include "app/live/scene_document.h"
+#include "app/live/stepping.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -39,6 +46,19 @@ void write_founders(const std::vector<LiveRobot>& founders, const fs::path& fold
     files.push_back({folder / fmt::format("{:04}-{}.json", i, file_name_of(founders[i].name)),
                      serialize_robot(whole_robot(founders[i]), RobotFormat::json)});
   if (const SaveResult result = save_files(files, false); !result.ok()) throw std::runtime_error(result.message);
+}
+
+namespace fs = std::filesystem;
+
+constexpr auto most_patience = std::chrono::seconds(10);  // with a process that was asked to stop
+
+// The last line that has text. Lines of progress end with a carriage return.
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of("\r\n ");
+  if (end == std::string::npos) return {};
+  const std::size_t before = text.find_last_of("\r\n", end);
+  return text.substr(before == std::string::npos ? 0 : before + 1,
+                     end - (before == std::string::npos ? 0 : before + 1) + 1);
 }
 
 }  // namespace
@@ -178,8 +198,7 @@ void LiveRun::grow(std::uint64_t id, std::function<void(Robot robot)> use) {
                            });
 }
 
-void LiveRun::evolve(const EvolveRequest& request, std::vector<LiveRobot> founders,
-                     const Configuration& configuration) {
+void LiveRun::evolve(const EvolveRequest& request, std::vector<LiveRobot> founders) {
   Parts& parts = *parts_;
   if (parts.activity != Activity::none || founders.empty()) return;
   parts.activity = Activity::starting;
@@ -192,7 +211,7 @@ void LiveRun::evolve(const EvolveRequest& request, std::vector<LiveRobot> founde
     parts.messages.add(Severity::error, error.what());
     return;
   }
-  const std::vector<std::string> arguments = evolve_arguments(request, configuration, parts.founders->path());
+  const std::vector<std::string> arguments = evolve_arguments(request, parts.founders->path());
   const auto task = [&parts, arguments, founders = std::move(founders)](WorkControl&) -> Background::Finish {
     std::string problem;
     try {
@@ -261,6 +280,51 @@ void LiveRun::Parts::watch_process() {
   founders.reset();
   activity = Activity::none;
   read_at = 0;
+}
+
+std::vector<std::string> evolve_arguments(const EvolveRequest& request, const fs::path& founders) {
+  std::vector<std::string> words{"evolve", request.folder.string(), "--from=" + founders.string(),
+                                 "--genes=" + request.genes, "--quiet"};
+  for (const auto& [option, value] : options_of(request.settings))
+    words.push_back(value.empty() ? option : fmt::format("{}={}", option, value));
+  return words;
+}
+
+fs::path this_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path("mercury") : program;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "mercury-XXXXXX").string();
+  if (!mkdtemp(name.data())) throw std::system_error(errno, std::generic_category(), name);
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+EvolutionProcess::~EvolutionProcess() {
+  stop();
+  const auto begin = std::chrono::steady_clock::now();
+  while (running() && std::chrono::steady_clock::now() - begin < most_patience)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+}
+
+// SIGTERM does what SIGINT does (app/base/interrupt.h), and is not ignored in jobs of shell scripts.
+void EvolutionProcess::stop() {
+  if (!std::exchange(stopped_, true)) process_.signal(SIGTERM);
+}
+
+std::string EvolutionProcess::failure() {
+  const int status = process_.finish();
+  if (status == 0 || stopped_) return {};
+  std::string line = last_line(process_.messages());
+  if (line.starts_with("mercury: ")) line.erase(0, 9);
+  return line.empty() ? "mercury evolve " + describe_exit(status) : line;
 }
 
 }  // namespace mercury

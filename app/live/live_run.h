@@ -15,12 +15,60 @@
 #include <string>
 #include <vector>
 
-#include "app/live/evolution_process.h"
+#include "app/base/child_process.h"
 #include "app/live/messages.h"
 #include "app/live/run_view.h"
 #include "app/live/snapshot.h"
+#include "mercury/evolution.h"
 
 namespace mercury {
+
+// A new run that starts from robots of the window.
+struct EvolveRequest {
+  std::filesystem::path folder;  // of the run; new or empty
+  std::string genes = "body";    // what changes: "body", "muscles" or "both"
+  EvolutionSettings settings{.algorithm = {.population = 64}, .generations = 50};
+};
+
+// The words after `mercury`. `founders`: a folder of robot files.
+std::vector<std::string> evolve_arguments(const EvolveRequest& request, const std::filesystem::path& founders);
+
+// The file of the running program.
+std::filesystem::path this_program();
+
+// A folder of files that are needed for a while; the destructor removes it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();  // throws std::system_error
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+class EvolutionProcess {
+ public:
+  // Throws CannotStart.
+  EvolutionProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments)
+      : process_(program.string(), arguments) {}
+  ~EvolutionProcess();  // stops it and waits some seconds until it has; kills it after that
+
+  bool running() { return process_.running(); }
+  // Asks it to stop in an orderly way, as Ctrl-C does: the run can be resumed.
+  void stop();
+  bool stopped() const { return stopped_; }
+  // It runs on when this object is destroyed.
+  void leave_running() { process_.release(); }
+  // Why it ended, in one line, if not by itself: its last message, or its exit status. Empty = it ended well.
+  std::string failure();
+
+ private:
+  ChildProcess process_;
+  bool stopped_ = false;
+};
 
 // All members are called from one thread. None waits, except wait() and the destructor, which stops the window's own
 // process. Errors are reported by take_messages().
@@ -60,7 +108,7 @@ class LiveRun {
   Activity activity() const;
   const std::filesystem::path& evolving() const;  // the folder of its run, which may be another than folder()
   // Starts a run from these robots and opens its folder.
-  void evolve(const EvolveRequest& request, std::vector<LiveRobot> founders, const Configuration& configuration);
+  void evolve(const EvolveRequest& request, std::vector<LiveRobot> founders);
   // Continues the open run, to this number of generations if it is given.
   void resume(const Device& device, std::optional<int> generations = {});
   void stop();           // in an orderly way

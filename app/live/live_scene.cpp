@@ -8,7 +8,7 @@
 #include <unordered_set>
 
 #include "app/live/live_scene_parts.h"
-#include "app/live/pace.h"
+#include "app/live/stepping.h"
 
 namespace mercury {
 namespace {
@@ -49,13 +49,11 @@ void LiveScene::frame(float aspect) {
     parts.failed_ghosts = parts.snapshot->failed_ghosts;
     hide_ghosts();
   }
-  if (!parts.selected.empty()) {
-    std::unordered_set<RobotId> there;
-    for (const DocumentRobot& robot : parts.document.robots) there.insert(robot.body.id);
-    std::erase_if(parts.selected, [&](RobotId id) { return !there.contains(id); });
-  }
-  if (parts.perturbation && !parts.document.find(parts.perturbation->robot)) end_perturbation();
-  parts.update_attachments();
+  parts.selection.keep(parts.document);
+  const std::optional<LivePerturbation>& pull = parts.pulls.by_mouse();
+  if (pull && !parts.document.find(pull->robot)) end_perturbation();
+  parts.pulls.attach_opened(parts.background.work().empty(), parts.messages);
+  parts.pulls.update(*parts.snapshot);
   parts.update_ghosts();
   ViewSettings shown = parts.view;
   if (parts.from_above) shown.camera.mode = *parts.from_above ? CameraMode::top : CameraMode::group;
@@ -65,10 +63,9 @@ void LiveScene::frame(float aspect) {
     shown.camera.azimuth = parts.facing->azimuth;
     shown.camera.elevation = land ? std::max(flattest, parts.facing->elevation) : parts.facing->elevation;
   }
-  parts.picture.update(parts.snapshot, shown, parts.aspect, {parts.selected.begin(), parts.selected.end()},
-                       parts.hidden, parts.perturbation ? std::optional(parts.perturbation->robot) : std::nullopt,
-                       wall_now());
-  parts.update_second_picture(shown, parts.perturbation ? std::optional(parts.perturbation->robot) : std::nullopt);
+  const std::optional<RobotId> held = pull ? std::optional(pull->robot) : std::nullopt;
+  parts.picture.update(parts.snapshot, shown, parts.aspect, parts.selection.set(), parts.hidden, held, wall_now());
+  parts.update_second_picture(shown, held);
 }
 
 void LiveScene::face(bool from_above, const std::optional<render::Orbit>& direction) {
@@ -101,14 +98,7 @@ void LiveScene::step(std::int64_t count) {
   parts_->physics.step(count);
 }
 void LiveScene::reset() {
-  const bool pins = std::ranges::any_of(parts_->document.attachments, [](const Attachment& one) {
-    return one.spring.kind == LivePerturbation::Kind::pin;
-  });
-  ++parts_->resets;
-  if (pins) {
-    parts_->pins_wait = parts_->snapshot->resets;
-    parts_->send_perturbation();
-  }
+  parts_->pulls.before_reset(*parts_->snapshot);
   parts_->physics.reset();
 }
 
@@ -130,9 +120,16 @@ void LiveScene::change_speed(int notches) {
   }
 }
 
+void SceneSelection::keep(const SceneDocument& document) {
+  if (ids_.empty()) return;
+  std::unordered_set<RobotId> there;
+  for (const DocumentRobot& robot : document.robots) there.insert(robot.body.id);
+  std::erase_if(ids_, [&](RobotId id) { return !there.contains(id); });
+}
+
 std::vector<RobotEntry> LiveScene::entries() const {
   const Parts& parts = *parts_;
-  const std::unordered_set<RobotId> selected(parts.selected.begin(), parts.selected.end());
+  const std::set<RobotId> selected = parts.selection.set();
   std::vector<RobotEntry> entries;
   entries.reserve(parts.document.robots.size());
   for (const DocumentRobot& robot : parts.document.robots) {
@@ -142,8 +139,8 @@ std::vector<RobotEntry> LiveScene::entries() const {
                      .masses = body.masses.size(),
                      .springs = body.springs.size(),
                      .faces = body.faces.size(),
-                     .file = parts.file_of(robot.body.id),
-                     .unsaved = !parts.is_saved(robot),
+                     .file = parts.saved.file_of(robot.body.id).value_or(""),
+                     .unsaved = !parts.saved.holds(robot.body),
                      .selected = selected.contains(robot.body.id),
                      .hidden = parts.hidden.contains(robot.body.id),
                      .tuned = robot.body.materials != nullptr};
@@ -164,44 +161,44 @@ const SceneDocument& LiveScene::document() const { return parts_->document; }
 
 void LiveScene::select(RobotId robot, bool alone) {
   if (!parts_->document.find(robot)) return;
-  if (alone) parts_->selected.clear();
-  std::erase(parts_->selected, robot);
-  parts_->selected.push_back(robot);
+  if (alone) parts_->selection.set({});
+  parts_->selection.add(robot);
 }
 void LiveScene::toggle_selected(RobotId robot) {
   if (is_selected(robot))
-    std::erase(parts_->selected, robot);
+    parts_->selection.remove(robot);
   else
     select(robot, false);
 }
 void LiveScene::select_all() {
-  const std::unordered_set<RobotId> before(parts_->selected.begin(), parts_->selected.end());
+  std::vector<RobotId> all = parts_->selection.ids();
+  const std::set<RobotId> before = parts_->selection.set();
   for (const DocumentRobot& robot : parts_->document.robots)
-    if (!before.contains(robot.body.id)) parts_->selected.push_back(robot.body.id);
+    if (!before.contains(robot.body.id)) all.push_back(robot.body.id);
+  parts_->selection.set(std::move(all));
 }
-void LiveScene::clear_selection() { parts_->selected.clear(); }
+void LiveScene::clear_selection() { parts_->selection.set({}); }
 void LiveScene::set_selection(const std::vector<RobotId>& robots) {
   std::unordered_set<RobotId> free;
   for (const DocumentRobot& robot : parts_->document.robots) free.insert(robot.body.id);
-  parts_->selected.clear();
+  std::vector<RobotId> known;
   for (const RobotId id : robots)
-    if (free.erase(id) > 0) parts_->selected.push_back(id);
+    if (free.erase(id) > 0) known.push_back(id);
+  parts_->selection.set(std::move(known));
 }
-bool LiveScene::is_selected(RobotId robot) const {
-  return std::ranges::find(parts_->selected, robot) != parts_->selected.end();
-}
+bool LiveScene::is_selected(RobotId robot) const { return parts_->selection.contains(robot); }
 
 std::vector<RobotId> LiveScene::selection() const {
   std::vector<RobotId> ordered;
-  const std::set<RobotId> selected(parts_->selected.begin(), parts_->selected.end());
+  const std::set<RobotId> selected = parts_->selection.set();
   for (const DocumentRobot& robot : parts_->document.robots)
     if (selected.contains(robot.body.id)) ordered.push_back(robot.body.id);
   return ordered;
 }
 std::optional<RobotId> LiveScene::current() const {
-  for (auto id = parts_->selected.rbegin(); id != parts_->selected.rend(); ++id)
-    if (parts_->document.find(*id)) return *id;
-  return std::nullopt;
+  const std::vector<RobotId>& ids = parts_->selection.ids();
+  const auto last = std::find_if(ids.rbegin(), ids.rend(), [&](RobotId id) { return parts_->document.find(id); });
+  return last == ids.rend() ? std::nullopt : std::optional(*last);
 }
 void LiveScene::set_hidden(RobotId robot, bool hidden) {
   if (hidden)

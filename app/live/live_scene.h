@@ -17,7 +17,6 @@
 
 #include "app/live/background.h"
 #include "app/live/command_text.h"
-#include "app/live/explosions.h"
 #include "app/live/group_video.h"
 #include "app/live/live_picture.h"
 #include "app/live/physics.h"
@@ -223,8 +222,8 @@ class LiveScene {
   // Attaches these as soon as the robots that are being opened or made are there; no edit of its own.
   void attach_opened(std::vector<AttachedMass> attached);
 
-  // Comparison (companion.h). The second side shows the same robots under other settings, from the moment shown on; all
-  // that changes robots or time acts on both. nullopt ends it.
+  // Comparison (comparison.h). The second side shows the same robots under other settings, from the moment shown on;
+  // all that changes robots or time acts on both. nullopt ends it.
   void set_second(const std::optional<SideDifference>& difference);
   const std::optional<SideDifference>& second() const;
   // The second side's picture; null if there is none, as while a recording is played.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of the window's scene: robots, parameters, materials, undo and redo.
+// Edits of the window's scene: robots, their voxels, parameters, materials, undo and redo.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ RobotId LiveScene::Parts::append(Robot robot, RobotProvenance source) {
   const RobotId id = ++last_id;
   LiveRobot body{.id = id, .name = robot.name.empty() ? "robot" : robot.name};
   body.robot = std::make_shared<const Robot>(std::move(robot));
-  if (!source.file.empty()) saved[id] = {source.file, body};
+  if (!source.file.empty()) saved.note(body, source.file);
   auto made = std::make_shared<const LiveRobot>(body);
   document.robots.push_back({std::move(body), std::move(source), std::move(made)});
   return id;
@@ -60,7 +60,7 @@ std::vector<RobotId> LiveScene::Parts::append_valid(std::vector<Robot> robots, b
   std::vector<RobotId> ids;
   for (Robot& robot : robots) {
     ids.push_back(append(std::move(robot), {}));
-    if (!unsaved) saved[ids.back()] = {"", document.robots.back().body};
+    if (!unsaved) saved.note(document.robots.back().body, "");
   }
   apply_document();
   return ids;
@@ -134,14 +134,14 @@ void LiveScene::undo() {
   const std::vector<Attachment> before = parts_->document.attachments;
   parts_->history.undo(parts_->document);
   parts_->apply_document();
-  parts_->aim_pins(before);
+  parts_->pulls.aim_pins(before, *parts_->snapshot);
 }
 void LiveScene::redo() {
   if (!can_redo()) return;
   const std::vector<Attachment> before = parts_->document.attachments;
   parts_->history.redo(parts_->document);
   parts_->apply_document();
-  parts_->aim_pins(before);
+  parts_->pulls.aim_pins(before, *parts_->snapshot);
 }
 
 const Configuration& LiveScene::configuration() const { return parts_->document.configuration; }
@@ -164,7 +164,7 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
   }
   parts_->document.configuration = wanted;
   parts_->apply_document();
-  if (!parts_->document.attachments.empty()) parts_->send_perturbation();
+  if (!parts_->document.attachments.empty()) parts_->pulls.send();
   return true;
 }
 
@@ -239,6 +239,50 @@ void LiveScene::set_view(const ViewSettings& settings) {
   parts_->view = settings;
   if (details_changed) parts_->physics.set_view(settings);
   if (compares) parts_->physics.set_second(settings.compare);
+}
+
+bool LiveScene::has_voxels(RobotId robot) const {
+  const DocumentRobot* found = parts_->document.find(robot);
+  try {
+    return found && voxel_grid_of(*found->body.robot);
+  } catch (const InputError&) {
+    return false;  // an origin that holds no valid grid
+  }
+}
+
+std::optional<VoxelSide> LiveScene::voxel_side(const Hit& hit) const {
+  const DocumentRobot* robot = parts_->document.find(hit.robot);
+  if (!robot || !hit.face) return std::nullopt;
+  try {
+    return voxel_side_of(*robot->body.robot, *hit.face);
+  } catch (const InputError&) {
+    return std::nullopt;  // an origin that holds no valid grid
+  }
+}
+
+bool LiveScene::edit_voxel(RobotId id, const VoxelSide& side, const VoxelEdit& edit) {
+  const DocumentRobot* found = parts_->document.find(id);
+  if (!found) return false;
+  std::shared_ptr<const Robot> changed;
+  try {
+    Robot robot = with_voxel(*found->body.robot, side, edit);
+    validate(robot);
+    if (robot.springs == found->body.robot->springs && robot.masses == found->body.robot->masses) return false;
+    changed = std::make_shared<const Robot>(std::move(robot));
+  } catch (const InputError& error) {
+    parts_->report(Severity::warning, error.what());
+    return false;
+  }
+  static constexpr const char* names[] = {"add a voxel", "remove a voxel", "paint a voxel"};
+  parts_->edit(names[static_cast<std::size_t>(edit.tool)]);
+  DocumentRobot* robot = parts_->find(id);
+  robot->body.robot = std::move(changed);
+  robot->source = {.file = robot->source.file};  // the seed no longer makes this robot
+  // Masses have other numbers now.
+  std::erase_if(parts_->document.attachments, [&](const Attachment& one) { return one.spring.robot == id; });
+  parts_->apply_document();
+  parts_->pulls.send();
+  return true;
 }
 
 }  // namespace mercury

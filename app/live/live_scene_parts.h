@@ -2,10 +2,12 @@
 // The private state of LiveScene, and small functions that its source files share.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/live/live_scene.h"
@@ -13,10 +15,83 @@
 
 namespace mercury {
 
-// A robot as its file holds it. The robot in the scene is saved if both are equal.
-struct SavedRobot {
-  std::string file;
-  LiveRobot body;
+// The robots as their files hold them. A robot of the scene is saved if both are equal.
+class SavedRobots {
+ public:
+  // `file` may be empty: the robot needs no saving.
+  void note(const LiveRobot& body, std::string file) { saved_[body.id] = {std::move(file), body}; }
+  bool holds(const LiveRobot& body) const { return has_body(body) && saved_.at(body.id).body.name == body.name; }
+  bool has_body(const LiveRobot& body) const {  // its name may differ
+    const auto found = saved_.find(body.id);
+    return found != saved_.end() && found->second.body.robot == body.robot &&
+           found->second.body.materials == body.materials;
+  }
+  std::optional<std::string> file_of(RobotId id) const {
+    const auto found = saved_.find(id);
+    return found == saved_.end() ? std::nullopt : std::optional(found->second.file);
+  }
+
+ private:
+  struct Saved {
+    std::string file;
+    LiveRobot body;
+  };
+  std::map<RobotId, Saved> saved_;
+};
+
+// What pulls at the robots: the mouse, and the pins and springs of the document, which stay. A change is sent to the
+// physics thread at once.
+class ScenePulls {
+ public:
+  ScenePulls(SceneDocument& document, Physics& physics) : document_(document), physics_(physics) {}
+
+  // The mouse.
+  const std::optional<LivePerturbation>& by_mouse() const { return by_mouse_; }
+  void set_by_mouse(std::optional<LivePerturbation> pull);
+
+  // What stays.
+  void attach(LivePerturbation spring);
+  bool attached_to(const std::vector<RobotId>& robots) const;
+  void detach(const std::vector<RobotId>& robots);
+  void send();
+  // To be called in each frame: forgets attachments of robots that are gone, and moves pins after a reset.
+  void update(const Snapshot& now);
+  void before_reset(const Snapshot& now);
+  // Attaches these as soon as their robots are there.
+  void attach_later(std::vector<AttachedMass> masses) { to_attach_ = std::move(masses); }
+  // Does so. `complete`: no more robots will come, report what is missing.
+  void attach_opened(bool complete, Messages& messages);
+  // Undo or redo has replaced the document: pins that were there before stay where they are, and pins that come back
+  // from before a reset hold their masses where these are now.
+  void aim_pins(const std::vector<Attachment>& before, const Snapshot& now);
+  // What was attached at the moment shown.
+  std::vector<Attachment> attached_at(const Snapshot& moment) const;
+
+ private:
+  SceneDocument& document_;
+  Physics& physics_;
+  std::optional<LivePerturbation> by_mouse_;
+  std::vector<AttachedMass> to_attach_;     // of a scene whose robots are not all there yet
+  std::uint64_t resets_ = 0;                // of the scene
+  std::optional<std::uint64_t> pins_wait_;  // pins are off until a snapshot of the present has more resets than this
+};
+
+// The robots that are selected, in the order of selection.
+class SceneSelection {
+ public:
+  const std::vector<RobotId>& ids() const { return ids_; }
+  bool contains(RobotId id) const { return std::ranges::find(ids_, id) != ids_.end(); }
+  void set(std::vector<RobotId> ids) { ids_ = std::move(ids); }
+  void remove(RobotId id) { std::erase(ids_, id); }
+  void add(RobotId id) {  // or makes it the last one
+    remove(id);
+    ids_.push_back(id);
+  }
+  void keep(const SceneDocument& document);  // those that are there
+  std::set<RobotId> set() const { return {ids_.begin(), ids_.end()}; }
+
+ private:
+  std::vector<RobotId> ids_;
 };
 
 struct LiveScene::Parts {
@@ -28,7 +103,7 @@ struct LiveScene::Parts {
   SceneDocument document;
   EditHistory history;
   ViewSettings view;
-  std::map<RobotId, SavedRobot> saved;
+  SavedRobots saved;
   RobotId last_id = 0;
 
   std::shared_ptr<const Snapshot> snapshot;
@@ -39,19 +114,16 @@ struct LiveScene::Parts {
   float aspect = 16.0f / 9;
   std::optional<bool> from_above;  // see LiveScene::face
   std::optional<render::Orbit> facing;
-  std::vector<RobotId> selected;  // in the order of selection
+  SceneSelection selection;
   std::set<RobotId> hidden;
   bool playing = false;
   std::uint64_t stops = 0, failed_seconds = 0, failed_ghosts = 0;  // of the last snapshot
   double speed = 1;
   std::optional<CameraPlan> camera;  // of a scene that was opened
-  std::optional<LivePerturbation> perturbation;
-  std::vector<double> bookmarks;           // ascending [s]
-  std::optional<double> loop_begin;        // of a loop that is not closed yet [s]
-  bool goes_on = false;                    // the moment shown becomes the present; physics has not done so yet
-  std::vector<AttachedMass> to_attach;     // of a scene whose robots are not all there yet
-  std::uint64_t resets = 0;                // calls of reset()
-  std::optional<std::uint64_t> pins_wait;  // pins are off until a snapshot of the present has more resets than this
+  ScenePulls pulls{document, physics};
+  std::vector<double> bookmarks;     // ascending [s]
+  std::optional<double> loop_begin;  // of a loop that is not closed yet [s]
+  bool goes_on = false;              // the moment shown becomes the present; physics has not done so yet
   std::uint64_t last_surroundings = 0;
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 
@@ -59,7 +131,7 @@ struct LiveScene::Parts {
 
   // Sends the document to the physics thread.
   void apply_document() {
-    attach_opened(false);  // first, so that no step is made without it
+    pulls.attach_opened(false, messages);  // first, so that no step is made without it
     std::vector<LiveRobot> bodies;
     for (const DocumentRobot& robot : document.robots) bodies.push_back(robot.body);
     physics.set_scene(std::move(bodies), document.configuration, document.surroundings);
@@ -74,15 +146,6 @@ struct LiveScene::Parts {
     for (DocumentRobot& robot : document.robots)
       if (robot.body.id == id) return &robot;
     return nullptr;
-  }
-  bool is_saved(const DocumentRobot& robot) const {
-    const auto found = saved.find(robot.body.id);
-    return found != saved.end() && found->second.body.robot == robot.body.robot &&
-           found->second.body.materials == robot.body.materials && found->second.body.name == robot.body.name;
-  }
-  std::string file_of(RobotId id) const {
-    const auto found = saved.find(id);
-    return found == saved.end() ? "" : found->second.file;
   }
   void adopt_moment();
   void forget_later_bookmarks();
@@ -106,17 +169,6 @@ struct LiveScene::Parts {
   void place_child(const LiveRobot& parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;
   std::optional<PerturbationDetails> details_of(const LivePerturbation& pull);
-  // Sends the perturbation of the mouse and what is attached.
-  void send_perturbation();
-  // Forgets attachments of robots that are gone, and moves pins after a reset.
-  void update_attachments();
-  // Attaches what an opened scene names and is there. `complete`: no more robots will come, report what is missing.
-  void attach_opened(bool complete);
-  // Undo or redo has replaced the document: pins that were there before stay where they are, and pins that come back
-  // from before a reset hold their masses where these are now.
-  void aim_pins(const std::vector<Attachment>& before);
-  // What was attached at the moment shown.
-  std::vector<Attachment> attachments_then() const;
 };
 
 // "1 robot", "2 robots".

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the window's scene writes: robot files, commands, tables, videos and repros of explosions.
+// What the window's scene writes: robot files, commands, tables, videos, repros of explosions, and present poses and
+// motions for other programs.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +11,13 @@
 #include <utility>
 
 #include "app/base/csv.h"
+#include "app/export/export.h"
 #include "app/live/live_scene_parts.h"
 #include "app/live/scene_text.h"
+#include "app/recording/recorder.h"
+#include "mercury/error.h"
 #include "mercury/robot_file.h"
+#include "mercury/simulation.h"
 
 namespace mercury {
 namespace {
@@ -19,6 +25,76 @@ namespace {
 namespace fs = std::filesystem;
 
 SaveResult failed(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
+
+constexpr double frame_rate = 30;  // of motions, per second of simulated time
+
+// As pictures show it: with its colors, its name and its materials as they are in the window.
+struct Exported {
+  Robot robot;
+  std::vector<Material> materials;
+  Exported(const LiveRobot& live)
+      : robot(*live.robot), materials(mercury::materials_of(live).begin(), mercury::materials_of(live).end()) {
+    robot.name = live.name;
+  }
+  ExportedRobot in(const Environment& environment) const {
+    return {.robot = robot, .materials = materials, .environment = environment};
+  }
+};
+
+std::vector<fs::path> existing_outputs(const ExportFormat& format, const fs::path& path) {
+  std::vector<fs::path> outputs{path}, found;
+  if (format.files_beside) std::ranges::copy(format.files_beside(path), std::back_inserter(outputs));
+  if (format.folder_beside) outputs.push_back(format.folder_beside(path));
+  std::ranges::copy_if(outputs, std::back_inserter(found),
+                       [](const fs::path& output) { return fs::exists(fs::symlink_status(output)); });
+  return found;
+}
+
+void make_folder_of(const fs::path& path) {
+  if (path.has_parent_path()) fs::create_directories(path.parent_path());
+}
+
+// A recording that lives as long as the export from it.
+class TemporaryRecording {
+ public:
+  explicit TemporaryRecording(const fs::path& beside)
+      : path_(beside.parent_path() / fmt::format(".{}.{}.h5", beside.filename().string(), getpid())) {}
+  ~TemporaryRecording() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  TemporaryRecording(const TemporaryRecording&) = delete;
+  TemporaryRecording& operator=(const TemporaryRecording&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+struct Canceled {};
+
+void require_going(const WorkControl& control) {
+  if (control.canceled()) throw Canceled();
+}
+
+// Simulates the robot from time 0. Returns the number of frames.
+std::int64_t record(const Exported& exported, const Configuration& configuration, const fs::path& path, double seconds,
+                    WorkControl& control) {
+  Simulation simulation(configuration, std::vector{exported.robot});
+  for (std::size_t id = 1; id < exported.materials.size(); ++id)
+    simulation.set_material(0, static_cast<MaterialId>(id), exported.materials[id]);
+  const std::int64_t last = std::llround(seconds / configuration.dt);
+  const std::int64_t every = std::max<std::int64_t>(1, std::llround(1 / (frame_rate * configuration.dt)));
+  Recorder recorder(simulation, path, {.every = every, .last_step = last});
+  while (simulation.steps() < last) {
+    require_going(control);
+    simulation.step(std::min(last, recorder.next_step()) - simulation.steps());
+    recorder.observe();
+    control.progress(recorder.frames());
+  }
+  recorder.finish();
+  return recorder.frames();
+}
 
 }  // namespace
 
@@ -28,7 +104,7 @@ SaveResult LiveScene::save(RobotId robot, const fs::path& path, bool overwrite) 
   try {
     const SaveResult result =
         save_files({{path, serialize_robot(whole_robot(*found), robot_format_of(path))}}, overwrite);
-    if (result.ok()) parts_->saved[robot] = {path.string(), found->body};
+    if (result.ok()) parts_->saved.note(found->body, path.string());
     return result;
   } catch (const std::exception& error) {
     return failed(error.what());
@@ -57,7 +133,7 @@ SaveResult LiveScene::save_all(const std::vector<RobotId>& robots, const fs::pat
   if (files.empty()) return failed("there is no robot to save");
   const SaveResult result = save_files(files, overwrite);
   for (std::size_t i = 0; i < saved_robots.size() && result.ok(); ++i)
-    parts_->saved[saved_robots[i]->body.id] = {files[i].path.string(), saved_robots[i]->body};
+    parts_->saved.note(saved_robots[i]->body, files[i].path.string());
   return result;
 }
 
@@ -65,15 +141,14 @@ SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
   Parts& parts = *parts_;
   std::vector<SceneRobot> robots;
   for (const DocumentRobot& robot : parts.document.robots)
-    robots.push_back({&robot, parts.is_saved(robot) ? parts.file_of(robot.body.id) : ""});
+    robots.push_back({&robot, parts.saved.holds(robot.body) ? *parts.saved.file_of(robot.body.id) : ""});
   if (robots.empty()) return failed("there is no robot to save in a scene");
   try {
     const SceneFiles wanted =
         scene_files(path, robots, parts.document.configuration, parts.view, attached_in(parts.document));
     const SaveResult result = save_files(wanted.files, overwrite);
     for (std::size_t i = 0; i < wanted.beside.size() && result.ok(); ++i) {
-      const LiveRobot& body = robots[wanted.beside[i]].robot->body;
-      parts.saved[body.id] = {wanted.files[i].path.string(), body};
+      parts.saved.note(robots[wanted.beside[i]].robot->body, wanted.files[i].path.string());
     }
     return result;
   } catch (const std::exception& error) {
@@ -86,12 +161,9 @@ std::optional<CameraPlan> LiveScene::take_camera() { return std::exchange(parts_
 CommandText LiveScene::command(const std::string& subcommand) const {
   SceneDocument document = parts_->document;
   for (DocumentRobot& robot : document.robots) {
-    const auto saved = parts_->saved.find(robot.body.id);
-    if (saved == parts_->saved.end()) continue;
-    robot.source.file = saved->second.file;
+    if (const auto file = parts_->saved.file_of(robot.body.id)) robot.source.file = *file;
     // Materials that are equal to those of the file need no note.
-    if (saved->second.body.robot == robot.body.robot && saved->second.body.materials == robot.body.materials)
-      robot.body.materials.reset();
+    if (parts_->saved.has_body(robot.body)) robot.body.materials.reset();
   }
   return command_text(document, parts_->view, subcommand);
 }
@@ -167,6 +239,66 @@ SaveResult LiveScene::save_repro(RobotId robot, const fs::path& folder, bool ove
     const std::optional<Repro> repro = parts_->physics.repro(robot);
     if (!repro) return failed(found->body.name + " has not exploded since the last reset");
     return save_files({{folder / (file_name_of(found->body.name) + ".repro"), serialize_repro(*repro)}}, overwrite);
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+}
+
+SaveResult LiveScene::export_pose(RobotId robot, const fs::path& path, bool overwrite) {
+  const DocumentRobot* found = parts_->document.find(robot);
+  const auto index = parts_->snapshot->robots->index_of(robot);
+  if (!found || !index) return failed("the robot is no longer there");
+  const Snapshot& snapshot = *parts_->snapshot;
+  try {
+    const ExportFormat& format = format_for(path, "");
+    const Exported exported(found->body);
+    require_pose(format, exported.robot, false);
+    const Pose pose{.time = snapshot.time,
+                    .positions = snapshot.positions_of(*index),
+                    .velocities = snapshot.velocities_of(*index)};
+    if (!is_finite(pose.positions)) return failed(found->body.name + " has exploded: its positions are no numbers");
+    if (const auto files = existing_outputs(format, path); !overwrite && !files.empty())
+      return {SaveResult::Outcome::exists, files, ""};
+    make_folder_of(path);
+    format.pose(exported.in(snapshot.configuration.environment), pose, path, {});
+    return {SaveResult::Outcome::saved, {path}, ""};
+  } catch (const std::exception& error) {
+    return failed(error.what());
+  }
+}
+
+SaveResult LiveScene::export_motion(RobotId robot, const fs::path& path, double seconds, bool overwrite) {
+  const DocumentRobot* found = parts_->document.find(robot);
+  if (!found) return failed("the robot is no longer there");
+  const Configuration configuration = parts_->document.configuration;
+  if (!(seconds > 0 && seconds / configuration.dt < 1e9)) return failed("give a number of seconds above 0");
+  try {
+    const ExportFormat& format = format_for(path, "");
+    const auto exported = std::make_shared<const Exported>(found->body);
+    require_motion(format, exported->robot, false);
+    if (const auto files = existing_outputs(format, path); !overwrite && !files.empty())
+      return {SaveResult::Outcome::exists, files, ""};
+    make_folder_of(path);
+    const auto frames = static_cast<std::int64_t>(seconds * frame_rate) + 1;
+    parts_->background.begin(
+        "exporting " + path.filename().string(), 2 * frames,
+        [&messages = parts_->messages, &format, exported, configuration, path, seconds](WorkControl& control) {
+          try {
+            const TemporaryRecording recording(path);
+            const std::int64_t recorded = record(*exported, configuration, recording.path(), seconds, control);
+            RecordedMotion motion(std::make_shared<TrajectoryReader>(recording.path()), 0);
+            if (!motion.problem().empty()) messages.add(Severity::warning, motion.problem());
+            const auto watch = [&](std::size_t done, std::size_t) {
+              require_going(control);
+              control.progress(recorded + static_cast<std::int64_t>(done));
+            };
+            format.motion(exported->in(configuration.environment), motion, path, {.watch = watch});
+            messages.add(Severity::note, "exported " + path.string());
+          } catch (const Canceled&) {
+          }
+          return Background::Finish([] {});
+        });
+    return {SaveResult::Outcome::saved, {path}, ""};
   } catch (const std::exception& error) {
     return failed(error.what());
   }

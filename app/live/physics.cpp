@@ -2,11 +2,184 @@
 #include "app/live/physics.h"
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
 #include <utility>
 
-#include "app/live/physics_parts.h"
+#include "app/live/recording_player.h"
+#include "app/live/timeline_player.h"
 
 namespace mercury {
+namespace {
+
+// Commands that the physics thread has not taken yet, the latest of each kind.
+struct PendingCommands {
+  struct Scene {
+    std::vector<LiveRobot> robots;
+    Configuration configuration;
+    std::shared_ptr<const Repro> repro;           // to replay, or nothing
+    std::shared_ptr<TrajectoryReader> recording;  // to play, or nothing
+    std::uint64_t surroundings = 0;
+  };
+  std::optional<Scene> scene;
+  std::optional<ViewSettings> view;
+  std::optional<std::vector<LivePerturbation>> perturbations;
+  std::optional<std::shared_ptr<PositionBridge>> bridge;
+  std::optional<bool> playing, pause_on_explosion;
+  std::optional<double> speed, seek, seek_first;  // seek_first: before go_on
+  std::optional<TimelinePlayer::Loop> loop;
+  std::optional<std::optional<SideDifference>> difference;
+  std::optional<std::vector<LiveRobot>> ghosts;
+  std::optional<std::size_t> timeline_budget;
+  std::int64_t steps = 0, steps_back = 0;
+  bool drop_steps = false, reset = false, go_on = false, quit = false;
+  std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
+
+  bool any() const {
+    return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || seek || seek_first ||
+           loop || difference || ghosts || timeline_budget || steps > 0 || steps_back > 0 || reset || go_on || quit ||
+           ticket > 0;
+  }
+  // Forgets the moments that were asked for.
+  void drop_timeline() {
+    seek.reset();
+    seek_first.reset();
+    steps_back = 0;
+    go_on = false;
+  }
+};
+
+// What both threads share, under one mutex.
+class Exchange {
+ public:
+  // The window's side: changes the pending commands and wakes the physics thread.
+  template <class Change>
+  void request(Change change) {
+    const std::lock_guard lock(mutex_);
+    change(pending_);
+    wake_.notify_all();
+  }
+  std::shared_ptr<const Snapshot> newest() {
+    const std::lock_guard lock(mutex_);
+    wanted_ = true;
+    wake_.notify_all();
+    return snapshot_;
+  }
+  void wait_until_done() {
+    std::unique_lock lock(mutex_);
+    const std::uint64_t ticket = pending_.ticket = ++tickets_;
+    wanted_ = true;
+    wake_.notify_all();
+    done_.wait(lock, [&] { return served_ >= ticket; });
+  }
+
+  // The physics thread's side. Takes the commands that are there. If it is `idle`, waits for them or until `due` (wall
+  // time [s]; infinity = for ever), and wakes up for a snapshot: if there is an `unpublished` state, or if
+  // `wakes_for_snapshot` and none was wanted so far.
+  struct Waiting {
+    bool idle = false, unpublished = false, wakes_for_snapshot = false;
+    double due = 0;
+  };
+  PendingCommands take(const Waiting& waiting) {
+    std::unique_lock lock(mutex_);
+    const auto ready = [&] {
+      return pending_.any() || (waiting.unpublished && (wanted_ || taken_ > served_)) ||
+             (waiting.wakes_for_snapshot && wanted_);
+    };
+    if (waiting.idle && !ready()) {
+      served_ = taken_;
+      done_.notify_all();
+      if (std::isfinite(waiting.due))
+        wake_.wait_until(
+            lock,
+            std::chrono::steady_clock::time_point(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                std::chrono::duration<double>(waiting.due))),
+            ready);
+      else
+        wake_.wait(lock, ready);
+    }
+    watched_ = wanted_;
+    PendingCommands taken = std::exchange(pending_, {});
+    taken_ = std::max(taken_, taken.ticket);
+    return taken;
+  }
+  void publish(std::shared_ptr<const Snapshot> next) {
+    const std::lock_guard lock(mutex_);
+    snapshot_ = std::move(next);
+    wanted_ = false;
+  }
+  bool is_wanted() const {  // a snapshot
+    const std::lock_guard lock(mutex_);
+    return wanted_ || is_awaited();
+  }
+  bool is_awaited() const { return taken_ > served_; }  // wait_until_done() waits; for the physics thread
+  bool was_watched() const { return watched_; }         // a snapshot was wanted at the last take(); the same
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable wake_, done_;  // for the physics thread; for wait_until_done()
+  PendingCommands pending_;
+  std::shared_ptr<const Snapshot> snapshot_;
+  bool wanted_ = true;                      // newest() was called after the last snapshot
+  std::uint64_t tickets_ = 0, served_ = 0;  // calls of wait_until_done() begun and served
+  std::uint64_t taken_ = 0;                 // the latest one that the physics thread has taken
+  bool watched_ = false;
+};
+
+}  // namespace
+
+// The physics thread: takes commands, carries them out, steps, and publishes snapshots. All members but the exchange
+// and what is thread-safe belong to it.
+struct Physics::Parts {
+  Parts(const Configuration& configuration, Messages& all)
+      : messages(all), batch(configuration, measurements, messages), device(batch.simulation().device_name()),
+        cuda_device(batch.simulation().cuda_device()) {
+    batch.watch({});
+  }
+
+  Exchange exchange;
+  Messages& messages;
+  Measurements measurements;
+  ExplosionLog explosions;
+  std::atomic<bool> velocities_wanted = false;
+
+  LiveBatch batch;
+  const std::string device;
+  const int cuda_device;
+  Stepping stepping{batch};
+  Comparison comparison{batch, messages};
+  TimelinePlayer timeline{batch, comparison, stepping, [this](std::int64_t count) { take_steps(count); }};
+  RecordingPlayer recording{batch, stepping};
+  ReproPlayer repro{batch};
+  std::set<std::string> reported_notes;
+  bool stop_at_explosion = false;
+  bool dirty = true;   // something changed after the last snapshot
+  std::thread thread;  // last: it starts when all other members exist
+
+  bool is_viewing() const { return recording.is_open() || timeline.is_viewing(); }
+  void run();
+  PendingCommands wait_for_commands();
+  bool guarded(auto task);
+  void carry_out(PendingCommands& taken);
+  void prepare_changes(const PendingCommands& taken);
+  bool set_scene(const PendingCommands::Scene& scene);
+  void forget_all();
+  void restart();
+  void play_recording(std::shared_ptr<TrajectoryReader> reader);
+  void show_recording(double time);
+  void seek(double time);
+  void carry_out_seek(const PendingCommands& taken);
+  void make_present();
+  bool advance();
+  void take_steps(std::int64_t count);
+  void note_explosions() { explosions.note(*batch.robots(), batch.telemetry()); }
+  void publish_snapshot();
+};
 
 Physics::Physics(const Configuration& configuration, Messages& messages)
     : parts_(std::make_unique<Parts>(configuration, messages)) {
@@ -15,34 +188,18 @@ Physics::Physics(const Configuration& configuration, Messages& messages)
 }
 
 Physics::~Physics() {
-  {
-    const std::lock_guard lock(parts_->mutex);
-    parts_->pending.quit = true;
-    parts_->wake.notify_all();
-  }
+  parts_->exchange.request([](PendingCommands& pending) { pending.quit = true; });
   parts_->thread.join();
 }
 
-namespace {
-
-// Changes the pending commands and wakes the physics thread.
-template <class Change>
-void request(auto& parts, Change change) {
-  const std::lock_guard lock(parts.mutex);
-  change(parts.pending);
-  parts.wake.notify_all();
-}
-
-}  // namespace
-
 void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration, std::uint64_t surroundings) {
-  request(*parts_, [&](PendingCommands& pending) {
+  parts_->exchange.request([&](PendingCommands& pending) {
     pending.scene = {std::move(robots), configuration, nullptr, nullptr, surroundings};
   });
 }
 void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration,
                         std::shared_ptr<const Repro> repro) {
-  request(*parts_, [&](PendingCommands& pending) {
+  parts_->exchange.request([&](PendingCommands& pending) {
     pending.scene = {std::vector{robot}, configuration, std::move(repro), nullptr};
     pending.steps = 0;
     pending.drop_timeline();
@@ -50,54 +207,54 @@ void Physics::set_repro(const LiveRobot& robot, const Configuration& configurati
 }
 void Physics::set_recording(std::vector<LiveRobot> robots, const Configuration& configuration,
                             std::shared_ptr<TrajectoryReader> recording) {
-  request(*parts_, [&](PendingCommands& pending) {
+  parts_->exchange.request([&](PendingCommands& pending) {
     pending.scene = {std::move(robots), configuration, nullptr, std::move(recording)};
     pending.steps = 0;
     pending.drop_timeline();
   });
 }
 void Physics::seek(double time) {
-  request(*parts_, [&](PendingCommands& pending) {
+  parts_->exchange.request([&](PendingCommands& pending) {
     pending.seek = time;
     pending.steps_back = 0;
   });
 }
 void Physics::step_back(std::int64_t count) {
-  request(*parts_, [&](PendingCommands& pending) {
+  parts_->exchange.request([&](PendingCommands& pending) {
     pending.playing = false;
     pending.steps_back += std::max<std::int64_t>(0, count);
   });
 }
 void Physics::go_on() {
-  request(*parts_, [&](PendingCommands& pending) {
+  parts_->exchange.request([&](PendingCommands& pending) {
     pending.go_on = true;
     if (pending.seek) pending.seek_first = std::exchange(pending.seek, {});
   });
 }
 void Physics::set_loop(std::optional<std::pair<double, double>> times) {
-  request(*parts_, [&](PendingCommands& pending) { pending.loop = times; });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.loop = times; });
 }
 void Physics::set_timeline_budget(std::size_t bytes) {
-  request(*parts_, [&](PendingCommands& pending) { pending.timeline_budget = bytes; });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.timeline_budget = bytes; });
 }
 void Physics::set_view(const ViewSettings& settings) {
-  request(*parts_, [&](PendingCommands& pending) { pending.view = settings; });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.view = settings; });
 }
 void Physics::set_perturbations(std::vector<LivePerturbation> perturbations) {
-  request(*parts_, [&](PendingCommands& pending) { pending.perturbations = std::move(perturbations); });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.perturbations = std::move(perturbations); });
 }
 void Physics::set_bridge(std::shared_ptr<PositionBridge> bridge) {
-  request(*parts_, [&](PendingCommands& pending) { pending.bridge = std::move(bridge); });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.bridge = std::move(bridge); });
 }
 int Physics::cuda_device() const { return parts_->cuda_device; }
 void Physics::play() {
-  request(*parts_, [](PendingCommands& pending) {
+  parts_->exchange.request([](PendingCommands& pending) {
     pending.playing = pending.drop_steps = true;
     pending.steps = 0;
   });
 }
 void Physics::pause() {
-  request(*parts_, [](PendingCommands& pending) {
+  parts_->exchange.request([](PendingCommands& pending) {
     pending.playing = false;
     pending.drop_steps = true;
     pending.steps = 0;
@@ -105,66 +262,323 @@ void Physics::pause() {
 }
 void Physics::set_speed(double speed) {
   if (!(speed > 0)) return;
-  request(*parts_, [&](PendingCommands& pending) { pending.speed = speed; });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.speed = speed; });
 }
 void Physics::step(std::int64_t count) {
-  request(*parts_, [&](PendingCommands& pending) {
+  parts_->exchange.request([&](PendingCommands& pending) {
     pending.playing = false;
     pending.steps += std::max<std::int64_t>(0, count);
   });
 }
 void Physics::reset() {
-  request(*parts_, [](PendingCommands& pending) {
+  parts_->exchange.request([](PendingCommands& pending) {
     pending.reset = true;
     pending.steps = 0;
     pending.drop_timeline();
   });
 }
 void Physics::pause_on_explosion(bool pause) {
-  request(*parts_, [&](PendingCommands& pending) { pending.pause_on_explosion = pause; });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.pause_on_explosion = pause; });
 }
 
 void Physics::set_second(std::optional<SideDifference> difference) {
-  request(*parts_, [&](PendingCommands& pending) { pending.difference = std::move(difference); });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.difference = std::move(difference); });
 }
 void Physics::set_ghosts(std::vector<LiveRobot> ghosts) {
-  request(*parts_, [&](PendingCommands& pending) { pending.ghosts = std::move(ghosts); });
+  parts_->exchange.request([&](PendingCommands& pending) { pending.ghosts = std::move(ghosts); });
 }
-const Measurements& Physics::second_measurements() const { return parts_->second_measurements; }
-const Measurements& Physics::ghost_measurements() const { return parts_->ghost_measurements; }
+const Measurements& Physics::second_measurements() const { return parts_->comparison.second_measurements(); }
+const Measurements& Physics::ghost_measurements() const { return parts_->comparison.ghost_measurements(); }
 
 void Physics::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
 
-std::shared_ptr<const Snapshot> Physics::newest() {
-  const std::lock_guard lock(parts_->mutex);
-  parts_->snapshot_wanted = true;
-  parts_->wake.notify_all();
-  return parts_->snapshot;
-}
-
-std::vector<Explosion> Physics::take_explosions() {
-  const std::lock_guard lock(parts_->mutex);
-  return std::exchange(parts_->explosions, {});
-}
-
-std::optional<Repro> Physics::repro(RobotId robot) const {
-  std::function<Repro()> repro;
-  {
-    const std::lock_guard lock(parts_->mutex);
-    if (const auto found = parts_->repros.find(robot); found != parts_->repros.end()) repro = found->second;
-  }
-  return repro ? std::optional(repro()) : std::nullopt;
-}
-
+std::shared_ptr<const Snapshot> Physics::newest() { return parts_->exchange.newest(); }
+std::vector<Explosion> Physics::take_explosions() { return parts_->explosions.take(); }
+std::optional<Repro> Physics::repro(RobotId robot) const { return parts_->explosions.repro(robot); }
 const Measurements& Physics::measurements() const { return parts_->measurements; }
 std::string Physics::device_name() const { return parts_->device; }
+void Physics::wait_until_done() { parts_->exchange.wait_until_done(); }
 
-void Physics::wait_until_done() {
-  std::unique_lock lock(parts_->mutex);
-  const std::uint64_t ticket = parts_->pending.ticket = ++parts_->tickets;
-  parts_->snapshot_wanted = true;
-  parts_->wake.notify_all();
-  parts_->done.wait(lock, [&] { return parts_->tickets_done >= ticket; });
+void Physics::Parts::run() {
+  stepping.start();
+  for (PendingCommands taken = wait_for_commands(); !taken.quit; taken = wait_for_commands()) {
+    guarded([&] { carry_out(taken); });
+    guarded([&] { dirty = advance() || dirty; });
+    if (!dirty || !exchange.is_wanted() || !(stepping.may_publish() || exchange.is_awaited())) continue;
+    dirty = false;  // also if publishing fails, so that the failure is not repeated
+    guarded([&] { publish_snapshot(); });
+  }
+}
+
+// Waits for commands or for the time of the next step; on a GPU that the window watches, for that of its next picture.
+PendingCommands Physics::Parts::wait_for_commands() {
+  const bool wanted = exchange.is_wanted();
+  double due = std::numeric_limits<double>::infinity();
+  if (stepping.is_running()) due = stepping.is_unlimited() ? 0 : std::min(stepping.next_due(wanted), wall_now() + 1);
+  return exchange.take({.idle = stepping.left() == 0 && !timeline.is_seeking(),
+                        .unpublished = dirty,
+                        .wakes_for_snapshot = stepping.interrupts_device() && !wanted,
+                        .due = due});
+}
+
+// A failure of physics must not end the window: reports the error, pauses, and returns false.
+bool Physics::Parts::guarded(auto task) {
+  try {
+    task();
+    return true;
+  } catch (const std::exception& error) {
+    messages.add(Severity::error, error.what());
+    stepping.stop();
+    timeline.stop_seeking();
+  }
+  return false;
+}
+
+void Physics::Parts::carry_out(PendingCommands& taken) {
+  if (!taken.any()) return;
+  dirty = true;
+  if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
+  prepare_changes(taken);
+  bool robots_changed = false;
+  const bool scene_changed = taken.scene.has_value();
+  if (taken.scene && !guarded([&] { robots_changed = set_scene(*taken.scene); })) {
+    // The scene is empty now, and paused. What was taken with it holds for the next one.
+    robots_changed = true;
+    taken.scene.reset();
+    taken.playing.reset();
+  }
+  if (taken.view) batch.watch(*taken.view);
+  if (taken.view) comparison.watch(*taken.view);
+  if (taken.difference) comparison.set_second(*taken.difference);
+  if (taken.ghosts) comparison.set_ghosts(std::move(*taken.ghosts));
+  if (taken.scene && taken.scene->recording)
+    play_recording(taken.scene->recording);
+  else if (recording.is_open() && taken.reset)
+    show_recording(recording.begin());
+  else if (taken.reset || (taken.scene && repro.is_set()))
+    restart();
+  const bool perturbed = taken.perturbations || scene_changed;
+  if (perturbed) {
+    batch.perturb(taken.perturbations ? std::move(*taken.perturbations) : batch.perturbations());
+    comparison.follow();
+  }
+  // While a recording is played nothing goes along: nothing is simulated.
+  if (recording.is_open() || batch.empty()) {
+    comparison.end();
+  } else if (comparison.must_begin()) {
+    timeline.finish_seek();
+    comparison.begin();
+    stepping.start();
+  }
+  if ((perturbed || taken.reset) && !is_viewing()) timeline.follow_changes(robots_changed);
+  if (taken.bridge) batch.set_bridge(std::move(*taken.bridge));
+  if (robots_changed) stepping.forget_cost();
+  if (taken.speed) stepping.set_speed(*taken.speed);
+  if (taken.playing) stepping.play(*taken.playing);
+  if (taken.drop_steps) stepping.drop();
+  carry_out_seek(taken);
+  stepping.add(taken.steps);
+  if (taken.playing || taken.speed || taken.reset || taken.seek || robots_changed) stepping.start();
+  stepping.follow_time_step();
+}
+
+// Whatever changes the robots makes the moment that is shown the present first.
+void Physics::Parts::prepare_changes(const PendingCommands& taken) {
+  if (taken.timeline_budget) timeline.set_budget(*taken.timeline_budget);
+  if (taken.seek_first) seek(*taken.seek_first);
+  const bool perturbed = taken.perturbations && *taken.perturbations != batch.perturbations();
+  if (is_viewing() && (taken.scene || taken.go_on || perturbed)) make_present();
+  if (taken.reset) timeline.return_to_present();
+}
+
+// Returns whether the list of robots or the kind of environment changed.
+bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
+  repro.set(scene.repro);
+  const Configuration before = batch.configuration();
+  const bool at_start = batch.steps() == 0, first = batch.empty() && at_start;
+  const bool moves = scene.surroundings != batch.surroundings();
+  bool changed = false;
+  try {
+    changed = batch.move(scene.robots, scene.configuration, scene.surroundings);
+  } catch (...) {
+    if (batch.empty()) forget_all();
+    throw;
+  }
+  if (moves) {
+    timeline.forget_states();
+    stepping.forget_cost();
+    explosions.forget_whole(*batch.robots(), batch.telemetry());
+  }
+  if (first || (at_start && scene.configuration.dt != before.dt))
+    batch.restart_measures();
+  else
+    batch.measure_robots();
+  if (first) batch.measure();
+  if (!changed) return !same_parts(before.environment, scene.configuration.environment);
+  explosions.forget_absent(*batch.robots());
+  note_explosions();
+  for (const std::string& note : batch.simulation().notes())
+    if (reported_notes.insert(note).second) messages.add(Severity::note, note);
+  return true;
+}
+
+// The robots could not be simulated, and none is there now.
+void Physics::Parts::forget_all() {
+  comparison.end();
+  explosions.forget_absent(*batch.robots());
+  repro.set(nullptr);
+  recording.close();
+  timeline.restart();
+  batch.restart_measures();
+}
+
+// Returns all robots to rest at time 0, or a replay to its start.
+void Physics::Parts::restart() {
+  batch.reset();
+  stepping.forget_cost();  // exploded robots cost nothing until now
+  stepping.drop();
+  explosions.clear();
+  if (repro.is_set()) {
+    repro.begin();
+    stepping.start();
+  }
+  timeline.restart();
+  batch.sample();
+  batch.restart_measures();
+  batch.measure();
+  comparison.restart();
+}
+
+void Physics::Parts::play_recording(std::shared_ptr<TrajectoryReader> reader) {
+  timeline.clear();
+  recording.open(std::move(reader));
+  note_explosions();
+}
+
+void Physics::Parts::show_recording(double time) {
+  recording.show(time);
+  note_explosions();
+}
+
+void Physics::Parts::seek(double time) { recording.is_open() ? show_recording(time) : timeline.seek(time); }
+
+void Physics::Parts::carry_out_seek(const PendingCommands& taken) {
+  if (taken.loop) timeline.set_loop(*taken.loop);
+  if (taken.seek) seek(*taken.seek);
+  if (taken.steps_back > 0 && recording.is_open())
+    show_recording(recording.previous());
+  else if (taken.steps_back > 0)
+    timeline.step_back(taken.steps_back);
+  // Playing a recording at its end plays it again.
+  if (recording.is_open() && taken.playing && *taken.playing && recording.is_at_end())
+    show_recording(recording.begin());
+}
+
+// The moment that is shown becomes the present.
+void Physics::Parts::make_present() {
+  if (recording.is_open()) {
+    recording.leave();
+    batch.cut_measures(batch.steps());
+    timeline.restart();
+    stepping.start();
+  } else if (timeline.make_present()) {
+    repro.skip();
+  } else {
+    return;
+  }
+  explosions.forget_whole(*batch.robots(), batch.telemetry());
+}
+
+// Makes one slice of the steps that are due. Returns whether anything changed.
+bool Physics::Parts::advance() {
+  if (timeline.is_seeking()) {
+    timeline.advance_seek();
+    return true;
+  }
+  if (batch.empty()) stepping.drop();
+  if (stepping.left() == 0 && !stepping.is_running()) return false;
+  if (recording.is_open()) {
+    if (!recording.advance(timeline.loop())) return false;
+    note_explosions();
+    return true;
+  }
+  if (timeline.loop_back()) return true;
+  const std::int64_t affordable = timeline.limited(stepping.slice());
+  if (affordable <= 0) {
+    timeline.return_to_present();
+    return true;
+  }
+  if (stepping.left() > 0) {
+    const std::int64_t count = std::min(affordable, stepping.left());
+    take_steps(count);
+    stepping.add(-std::min(count, stepping.left()));
+    timeline.arrive();
+    return true;
+  }
+  const std::int64_t count = std::min(affordable, stepping.due(exchange.was_watched()));
+  if (count <= 0) return false;
+  take_steps(count);
+  stepping.done(count);
+  if (!timeline.loop()) timeline.arrive();
+  return true;
+}
+
+// Interrupts the steps where a sample of the telemetry is due and where a replay changes something.
+void Physics::Parts::take_steps(std::int64_t count) {
+  const bool viewing = timeline.is_viewing();
+  const std::int64_t target = batch.steps() + count;
+  double spent = 0, measuring = 0;
+  while (batch.steps() < target) {
+    if (viewing) {
+      timeline.apply_events();
+    } else if (repro.advance()) {
+      comparison.follow();
+      timeline.follow_changes(false);
+      stepping.follow_time_step();
+    }
+    const std::int64_t sample = std::max(std::min(batch.next_measure(), comparison.next_measure()), batch.steps() + 1);
+    const std::int64_t change = viewing ? timeline.next_event_step() : repro.next_step();
+    const std::int64_t stop = std::min({target, sample, change, comparison.next_beginning()});
+    const double start = wall_now();
+    batch.step(stop - batch.steps());
+    comparison.advance();
+    const double stepped = wall_now();
+    spent += stepped - start;
+    if (stop != sample && stop != target) continue;
+    batch.sample();
+    if (timeline.shows_present_robots()) {
+      batch.measure();
+      comparison.measure();
+    }
+    const auto repro_of = [&](std::size_t robot) { return timeline.repro(robot); };
+    const bool exploded = !viewing && explosions.note(*batch.robots(), batch.telemetry(), repro_of);
+    measuring += wall_now() - stepped;
+    if (!exploded || !stop_at_explosion) continue;
+    stepping.stop();
+    break;
+  }
+  if (stepping.took(count, spent, measuring)) {
+    batch.thin_measures();
+    comparison.thin_measures();
+  }
+  if (!viewing) timeline.stepped(spent);
+}
+
+void Physics::Parts::publish_snapshot() {
+  const double start = wall_now();
+  // On a GPU, velocities are a copy, and the steps wait for it.
+  const bool with_velocities = !stepping.playing() || velocities_wanted || exchange.is_awaited();
+  std::shared_ptr<Snapshot> next = batch.snapshot(with_velocities);
+  next->timeline = timeline.state();
+  if (recording.is_open()) {
+    next->timeline.viewing = next->timeline.recording = true;
+    next->timeline.begin = recording.begin();
+    next->timeline.head = recording.end();
+  }
+  stepping.describe(*next);
+  comparison.publish(*next, with_velocities);
+  next->gathering_seconds = stepping.published(start);
+  exchange.publish(std::move(next));
 }
 
 }  // namespace mercury

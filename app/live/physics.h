@@ -42,20 +42,13 @@
 
 #include "app/live/measurements.h"
 #include "app/live/messages.h"
+#include "app/live/replay_log.h"
 #include "app/live/snapshot.h"
-#include "app/recording/repro.h"
 #include "app/recording/trajectory_reader.h"
 #include "app/scene/side_difference.h"
 #include "app/scene/view_settings.h"
 
 namespace mercury {
-
-// An explosion that the physics thread has seen.
-struct Explosion {
-  RobotId robot = 0;
-  double time = 0;                           // [s]
-  std::uint32_t culprit_spring = no_spring;  // index in Robot::springs
-};
 
 // All members are called from one thread, the window's.
 class Physics {

@@ -4,10 +4,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "app/live/snapshot.h"
+#include "mercury/robot.h"
+#include "mercury/state.h"
 
 namespace mercury {
 
@@ -58,5 +61,12 @@ class Population {
   std::map<std::uint64_t, std::map<RobotId, Departed>> surroundings_;
   std::size_t departed_masses_ = 0;
 };
+
+// The state of a robot whose body was edited.
+//
+// Masses of `after` that were in `before`, at the same place at rest, go on as they are in `state`. New masses are as
+// far from their place at rest as the nearest mass that was there, and move with its velocity. None if the robot had
+// exploded or no mass stayed.
+std::optional<State> carried_state(const Robot& before, const State& state, const Robot& after);
 
 }  // namespace mercury

@@ -2,6 +2,7 @@
 #include "app/live/replay_log.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "app/live/scene_document.h"
 
@@ -156,6 +157,54 @@ Repro ReplayLog::Record::repro() const {
     if (change.configuration || change.materials || change.perturbations) repro.changes.push_back(std::move(change));
   }
   return repro;
+}
+
+bool ExplosionLog::note(const LiveRobots& robots, const std::vector<Telemetry>& telemetry,
+                        const std::function<std::function<Repro()>(std::size_t)>& repro_of) {
+  const std::lock_guard lock(mutex_);
+  bool any = false;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const RobotId id = robots.robots[i].id;
+    if (!telemetry[i].exploded || !exploded_.insert(id).second) continue;
+    any = true;
+    if (std::function<Repro()> repro = repro_of ? repro_of(i) : nullptr) repros_[id] = std::move(repro);
+    explosions_.push_back({id, telemetry[i].exploded_at, telemetry[i].culprit_spring});
+  }
+  return any;
+}
+
+void ExplosionLog::forget_absent(const LiveRobots& robots) {
+  std::erase_if(exploded_, [&](RobotId id) { return !robots.index_of(id); });
+}
+
+void ExplosionLog::forget_whole(const LiveRobots& robots, const std::vector<Telemetry>& telemetry) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(exploded_, [&](RobotId id) {
+    const auto index = robots.index_of(id);
+    const bool whole = !index || !telemetry[*index].exploded;
+    if (whole) repros_.erase(id);
+    return whole;
+  });
+}
+
+void ExplosionLog::clear() {
+  const std::lock_guard lock(mutex_);
+  exploded_.clear();
+  repros_.clear();
+}
+
+std::vector<Explosion> ExplosionLog::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(explosions_, {});
+}
+
+std::optional<Repro> ExplosionLog::repro(RobotId robot) const {
+  std::function<Repro()> repro;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = repros_.find(robot); found != repros_.end()) repro = found->second;
+  }
+  return repro ? std::optional(repro()) : std::nullopt;
 }
 
 }  // namespace mercury

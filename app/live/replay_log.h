@@ -15,13 +15,15 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "app/live/scene_events.h"
 #include "app/live/snapshot.h"
+#include "app/live/timeline.h"
 #include "app/recording/repro.h"
 
 namespace mercury {
@@ -89,6 +91,35 @@ class ReplayLog {
   Configuration configuration_;
   std::vector<LivePerturbation> perturbations_;
   double since_ = 0;  // wall time of steps since the last states [s]
+};
+
+// An explosion that the physics thread has seen.
+struct Explosion {
+  RobotId robot = 0;
+  double time = 0;                           // [s]
+  std::uint32_t culprit_spring = no_spring;  // index in Robot::springs
+};
+
+// Which robots have exploded, and what it takes to repeat it. The physics thread writes it; any thread may take from
+// it.
+class ExplosionLog {
+ public:
+  // Notes robots that are exploded and were not before. `repro_of`: of a robot that exploded in the steps just made, by
+  // its index; without it, they came back exploded. Returns whether there are any.
+  bool note(const LiveRobots& robots, const std::vector<Telemetry>& telemetry,
+            const std::function<std::function<Repro()>(std::size_t)>& repro_of = {});
+  void forget_absent(const LiveRobots& robots);  // when one comes back, it is noted again
+  void forget_whole(const LiveRobots& robots, const std::vector<Telemetry>& telemetry);  // absent or not exploded now
+  void clear();
+
+  std::vector<Explosion> take();  // since the last call
+  std::optional<Repro> repro(RobotId robot) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<RobotId> exploded_;
+  std::vector<Explosion> explosions_;
+  std::map<RobotId, std::function<Repro()>> repros_;
 };
 
 }  // namespace mercury

@@ -2,6 +2,7 @@
 #include "app/live/snapshot.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace mercury {
 namespace {
@@ -29,6 +30,29 @@ std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
 std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const { return part(positions.host(), *robots, robot); }
 std::span<const Vec3> Snapshot::velocities_of(std::size_t robot) const {
   return velocities.empty() ? std::span<const Vec3>{} : part(velocities, *robots, robot);
+}
+
+std::span<Vec3> SnapshotPositions::set_on_host(std::size_t masses) {
+  device_.reset();
+  on_host_ = true;
+  host_.resize(size_ = masses);
+  return host_;
+}
+
+void SnapshotPositions::set_on_device(std::unique_ptr<PositionSnapshot> positions, std::size_t masses) {
+  device_ = std::move(positions);
+  on_host_ = false;
+  size_ = masses;
+}
+
+std::span<const Vec3> SnapshotPositions::host() const {
+  const std::lock_guard lock(mutex_);
+  if (!on_host_) {
+    host_.resize(size_);
+    device_->read(host_);
+    on_host_ = true;
+  }
+  return host_;
 }
 
 }  // namespace mercury

@@ -5,16 +5,16 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "app/live/snapshot_positions.h"
-#include "app/live/timeline_state.h"
 #include "app/scene/robot_shape.h"
 #include "app/scene/scene_details.h"
+#include "app/video/position_bridge.h"
 #include "mercury/simulation.h"
 
 namespace mercury {
@@ -32,6 +32,7 @@ struct LiveRobot {
   std::shared_ptr<const Robot> robot;
   std::shared_ptr<const std::vector<Material>> materials;  // replaces its table, same length; or null
   RobotId begins_as = 0;  // a new robot begins in the state of this one, if it is the same body; 0 = at rest
+  friend bool operator==(const LiveRobot&, const LiveRobot&) = default;
 };
 
 // The table in use, indexed by material id.
@@ -66,6 +67,42 @@ struct LivePerturbation {
   friend bool operator==(const LivePerturbation&, const LivePerturbation&) = default;
 };
 
+// The positions of a snapshot: on the host, or on the GPU until somebody on the host asks for them. The physics thread
+// sets them; afterwards every thread may read them.
+class SnapshotPositions {
+ public:
+  std::size_t size() const { return size_; }  // number of masses
+  // Positions on the host, to be written [m].
+  std::span<Vec3> set_on_host(std::size_t masses);
+  void set_on_device(std::unique_ptr<PositionSnapshot> positions, std::size_t masses);
+  // Gives back the memory of the GPU.
+  void release_device() { device_.reset(); }
+
+  // Null = they are on the host.
+  const PositionSnapshot* device() const { return device_.get(); }
+  // The first call copies them from the GPU and waits for that. Throws DeviceError.
+  std::span<const Vec3> host() const;
+
+ private:
+  std::size_t size_ = 0;
+  std::unique_ptr<PositionSnapshot> device_;
+  mutable std::mutex mutex_;
+  mutable bool on_host_ = true;
+  mutable std::vector<Vec3> host_;
+};
+
+// What a picture says about the timeline of its robots (timeline.h). Times are simulated [s].
+struct TimelineState {
+  double begin = 0, head = 0;  // the moments that can be shown
+  bool viewing = false;        // shows an earlier moment, or a recording
+  bool recording = false;      // of a file
+  bool seeking = false;        // is on its way to `target`
+  double target = 0;
+  bool looping = false;
+  double loop_begin = 0, loop_end = 0;
+  std::size_t bytes = 0, budget = 0, keyframes = 0;  // of memory: used, at most
+};
+
 struct Snapshot {
   std::shared_ptr<const LiveRobots> robots;
   Configuration configuration;
@@ -82,7 +119,7 @@ struct Snapshot {
   const ColorQuantity* color = &material_color();  // the quantity in details.values
   std::vector<LivePerturbation> perturbations;
 
-  // The same moment of what goes along with these robots (companion.h), or null: the second side, and the ghosts. A
+  // The same moment of what goes along with these robots (comparison.h), or null: the second side, and the ghosts. A
   // ghost has the id of its robot.
   std::shared_ptr<const Snapshot> second, ghosts;
 
@@ -98,6 +135,41 @@ struct Snapshot {
 
   std::span<const Vec3> positions_of(std::size_t robot) const;
   std::span<const Vec3> velocities_of(std::size_t robot) const;  // empty if the snapshot has none
+};
+
+// Memory of snapshots, used again: a snapshot of a large scene is tens of megabytes, too much to allocate per picture.
+// Whoever drops the last reference to a snapshot, on whatever thread, gives its memory back to the pool. The pool may
+// be destroyed before its snapshots.
+class SnapshotPool {
+ public:
+  // A snapshot that may still hold old values: the caller sets every member.
+  std::shared_ptr<Snapshot> take() {
+    std::unique_ptr<Snapshot> snapshot;
+    {
+      const std::lock_guard lock(free_->mutex);
+      if (!free_->snapshots.empty()) {
+        snapshot = std::move(free_->snapshots.back());
+        free_->snapshots.pop_back();
+      }
+    }
+    if (!snapshot) snapshot = std::make_unique<Snapshot>();
+    return {snapshot.release(), [free = free_](Snapshot* done) {
+              std::unique_ptr<Snapshot> owned(done);
+              owned->positions.release_device();
+              owned->second.reset();
+              owned->ghosts.reset();
+              const std::lock_guard lock(free->mutex);
+              if (free->snapshots.size() < most_free) free->snapshots.push_back(std::move(owned));
+            }};
+  }
+
+ private:
+  static constexpr std::size_t most_free = 4;
+  struct Free {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Snapshot>> snapshots;
+  };
+  std::shared_ptr<Free> free_ = std::make_shared<Free>();
 };
 
 }  // namespace mercury

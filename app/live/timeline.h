@@ -3,7 +3,7 @@
 //
 //   keyframes    K0           K1      K2  K3 head
 //   steps     ---|------------|-------|---|--|--->
-//   events           ^   ^        ^                 parameters, materials, perturbations (scene_events.h)
+//   events           ^   ^        ^                 parameters, materials, perturbations
 //
 // A moment is the keyframe before it, stepped on with the events in between. Keyframes are dense near the head and thin
 // out as they grow old: the one goes whose absence costs least against its age. Two neighbors never become so far
@@ -13,10 +13,13 @@
 // first keyframe of an era is the state right after the change.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "app/live/snapshot.h"
@@ -31,8 +34,9 @@ struct Keyframe {
   std::uint64_t next_event = 0;  // number of the first event after it
   std::uint64_t era = 0;
   double work = 0;  // wall time that all steps before it took [s]
-  // Of the robots' companions (companion.h), if they had begun before.
-  std::shared_ptr<const BatchState> second, ghosts;
+  // States of the second side and of the ghosts (comparison.h), if they had begun before.
+  using Companions = std::array<std::shared_ptr<const BatchState>, 2>;
+  Companions companions;
 
   std::int64_t step() const { return state.clock.step; }
   std::size_t bytes() const;
@@ -78,6 +82,45 @@ class Timeline {
   std::vector<Keyframe> keyframes_;  // by step and era
   std::vector<Clock> clocks_;        // by base_step
   std::size_t bytes_ = 0, budget_ = usual_budget;
+};
+
+// What the user changed while robots were simulated, each with its step: what a repro repeats (replay_log.h), and what
+// the timeline applies again between two keyframes.
+//
+// A change after `step` steps, before the next one.
+struct SceneEvent {
+  using Materials = std::shared_ptr<const std::vector<Material>>;
+  std::int64_t step = 0;
+  std::optional<Configuration> configuration;
+  std::optional<std::pair<RobotId, Materials>> materials;  // a robot and its table; null = the robot's own
+  std::optional<std::vector<LivePerturbation>> perturbations;
+};
+
+// Events have consecutive numbers. Not thread-safe; the physics thread owns it.
+class SceneEvents {
+ public:
+  void clear();
+  // A slider or the mouse makes many changes of one kind between two steps. Only the last one counts, unless a state in
+  // between needs the others.
+  void add(SceneEvent event);
+  // A state follows the events so far: they must not change any more.
+  void seal() { sealed_ = end(); }
+  std::uint64_t begin() const { return first_; }
+  std::uint64_t end() const { return first_ + events_.size(); }
+  // Null if there is no such event.
+  const SceneEvent* find(std::uint64_t number) const {
+    return number >= first_ && number < end() ? &events_[number - first_] : nullptr;
+  }
+  void forget_before(std::uint64_t number);
+  void cut(std::uint64_t number);  // forgets this event and all later ones
+  // A copy of all events from begin() on, shared by callers until the log changes.
+  std::shared_ptr<const std::vector<SceneEvent>> copy();
+
+ private:
+  std::vector<SceneEvent> events_;
+  std::uint64_t first_ = 0;   // number of events_[0]
+  std::uint64_t sealed_ = 0;  // events before this number do not change
+  std::shared_ptr<const std::vector<SceneEvent>> copied_;
 };
 
 }  // namespace mercury

@@ -10,7 +10,7 @@
 #include "app/scene/group_layout.h"
 #include "app/video/frame_writer.h"
 #include "app/video/video_stages.h"
-#include "render/context.h"
+#include "render/context/context.h"
 #include "render/renderer.h"
 
 namespace mercury {

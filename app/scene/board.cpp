@@ -15,7 +15,7 @@ using render::Vector3;
 constexpr float spacing = 1.25f;          // side of a cell / that of the largest robot
 constexpr float most_stretch = 1.5f;      // of cells, to fill the picture
 constexpr float field_of_view = 0.05f;    // so small that all cells look alike [rad]
-constexpr float text_height = 1 / 42.0f;  // of a line, as a share of the picture's height (render/overlay.cpp)
+constexpr float text_height = 1 / 42.0f;  // of a line, as a share of the picture's height (render/text/overlay.cpp)
 
 // Room for ticks, titles, legend and caption at the edges of the picture.
 render::Insets edges_for(float aspect) {

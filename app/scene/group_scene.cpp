@@ -8,7 +8,7 @@
 
 #include "app/scene/camera_controller.h"
 #include "mercury/origin.h"
-#include "render/overlay.h"
+#include "render/text/overlay.h"
 
 namespace mercury {
 namespace {

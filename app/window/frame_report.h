@@ -5,9 +5,9 @@
 #include <chrono>
 #include <cstdint>
 
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/panel.h"
 #include "app/window/toolkit/window.h"
-#include "app/window/viewport/viewport_area.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/panel.h"
 #include "app/window/viewer.h"
 
 namespace mercury::window {

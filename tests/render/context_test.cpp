@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/context.h"
+#include "render/context/context.h"
 
 #include <epoxy/gl.h>
 

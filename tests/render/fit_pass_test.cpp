@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/fit_pass.h"
+#include "render/passes/visibility_passes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "render/bindings.h"
-#include "render/frame_block.h"
+#include "render/passes/bindings.h"
+#include "render/passes/scene_buffers.h"
 #include "tests/render/offscreen.h"
 
 namespace mercury::render {

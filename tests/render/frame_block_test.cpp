@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/frame_block.h"
+#include "render/passes/scene_buffers.h"
 
 #include <gtest/gtest.h>
 

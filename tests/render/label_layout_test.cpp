@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names cover neither each other nor other bodies, and there are few of them when there are many bodies.
-#include "render/label_layout.h"
+#include "render/text/label_layout.h"
 
 #include <gtest/gtest.h>
 

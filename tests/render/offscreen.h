@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "render/context.h"
+#include "render/context/context.h"
 #include "render/readback.h"
 #include "render/renderer.h"
 #include "render/vector.h"

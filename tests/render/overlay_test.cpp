@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/overlay.h"
+#include "render/text/overlay.h"
 
 #include <gtest/gtest.h>
 
-#include "render/font.h"
+#include "render/text/font.h"
 
 namespace mercury::render {
 namespace {

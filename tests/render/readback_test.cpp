@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/gl_objects.h"
+#include "render/context/gl_objects.h"
 #include "tests/render/offscreen.h"
 #include "tests/render/wobbling_bodies.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/scale.h"
+#include "render/text/scale.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/skin_topology.h"
+#include "render/body_data.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "render/context.h"
+#include "render/context/context.h"
 #include "render/readback.h"
 #include "render/renderer.h"
 #include "tests/render/wobbling_bodies.h"

@@ -2,8 +2,8 @@
 // Edits a body in the picture: clicks on its skin add, remove or paint voxels.
 #pragma once
 
-#include "app/window/panels/panel_context.h"
-#include "app/window/viewport/viewport_area.h"
+#include "app/window/panels/panel.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 

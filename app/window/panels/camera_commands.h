@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "app/window/panels/panel_context.h"
-#include "app/window/viewport/viewport_area.h"
+#include "app/window/panels/panel.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/window/panels/key_hint.h"
+#include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 

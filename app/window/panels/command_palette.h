@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/panel.h"
 
 namespace mercury::window {
 

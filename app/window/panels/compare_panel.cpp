@@ -8,7 +8,7 @@
 
 #include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/widgets.h"
-#include "app/window/viewport/comparison_view.h"
+#include "app/window/viewport/second_view.h"
 #include "mercury/error.h"
 
 namespace mercury::window {

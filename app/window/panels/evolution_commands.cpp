@@ -1,16 +1,172 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/evolution_commands.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "app/window/panels/evolve_form.h"
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "app/live/robot_saving.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+#include "mercury/error.h"
+#include "mercury/generator.h"
+#include "mercury/origin.h"
+#include "mercury/quantity.h"
 
 namespace mercury::window {
 namespace {
 
 namespace fs = std::filesystem;
+
+const std::vector<const char*> all_genes{"body", "muscles", "both"};
+
+int index_in(const std::vector<const char*>& words, const std::string& word) {
+  const auto found = std::ranges::find(words, word);
+  return found == words.end() ? 0 : static_cast<int>(found - words.begin());
+}
+
+// A row for one parameter of a table.
+template <class Struct>
+void parameter_row(const char* name, Struct& values, EventLog& log) {
+  for_each_parameter(values, [&]<class Value>(const auto& parameter, Value& value) {
+    if (parameter.name != name) return;
+    ImGui::PushID(name);
+    row(name, std::string(parameter.help).c_str());
+    if constexpr (std::is_same_v<Value, double>) {
+      ImGui::InputDouble("##value", &value, 1, 10, fmt::format("%.3g {}", parameter.unit).c_str());
+    } else if constexpr (!std::is_same_v<Value, bool>) {
+      int shown = static_cast<int>(value);
+      ImGui::InputInt("##value", &shown, 1, 10);
+      value = static_cast<Value>(std::clamp(shown, 1, 1'000'000));
+    }
+    log.item(std::string("evolve.") + name);
+    ImGui::PopID();
+  });
+}
+
+class EvolveForm {
+ public:
+  EvolveForm(PanelContext& context, std::vector<LiveRobot> founders);
+
+  // Returns whether the values can be used.
+  bool draw(EventLog& log);
+  void accept();
+
+ private:
+  EvolveRequest request() const;
+  std::string problem_of(const EvolveRequest& request) const;
+  std::string problem_of_founders(const std::string& genes) const;
+
+  PanelContext& context_;
+  std::vector<LiveRobot> founders_;
+  EvolveRequest values_;  // but the folder
+  std::string name_, folder_;
+  std::vector<std::string> checked_;  // the request that problem_ is about, as words
+  std::string problem_ = "?";
+};
+
+EvolveForm::EvolveForm(PanelContext& context, std::vector<LiveRobot> founders)
+    : context_(context), founders_(std::move(founders)), values_(context.evolve) {
+  const fs::path folder =
+      context.preferences.save_folder.empty() ? fs::current_path() : fs::path(context.preferences.save_folder);
+  folder_ = folder.string();
+  name_ = unused_name(folder / file_name_of(founders_.front().name + "-evolution")).filename().string();
+  if (!problem_of_founders(values_.genes).empty()) values_.genes = "muscles";
+}
+
+EvolveRequest EvolveForm::request() const {
+  EvolveRequest request = values_;
+  request.settings.configuration = context_.scene.configuration();
+  request.folder = name_.empty() ? fs::path() : (fs::path(folder_) / name_).lexically_normal();
+  return request;
+}
+
+std::string EvolveForm::problem_of_founders(const std::string& genes) const {
+  if (genes == "muscles") return {};
+  std::set<std::string> kinds;
+  for (const LiveRobot& robot : founders_) kinds.insert(kind_of(*robot.robot));
+  if (kinds.size() > 1) return "the robots are of several kinds: only their muscles can evolve together";
+  if (!find_generator(*kinds.begin()))
+    return "nothing is known of how these bodies were made: only their muscles can evolve";
+  return {};
+}
+
+// Asks the library, which knows its rules best.
+std::string EvolveForm::problem_of(const EvolveRequest& request) const {
+  std::error_code unknown;
+  if (request.folder.empty()) return "give the run a name";
+  if (fs::exists(request.folder, unknown) &&
+      !(fs::is_directory(request.folder, unknown) && fs::is_empty(request.folder, unknown)))
+    return request.folder.filename().string() + " exists already; give another name";
+  if (std::string problem = problem_of_founders(request.genes); !problem.empty()) return problem;
+  EvolutionSettings settings = request.settings;
+  if (settings.algorithm.name == "map-elites")
+    settings.algorithm.axes = {{.quantity = std::string(quantities().front().name)}};
+  try {
+    validate(settings);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+bool EvolveForm::draw(EventLog& log) {
+  row("name", "of the new folder");
+  text_field("##name", name_);
+  log.item("evolve.name");
+  row("in", "the folder in which the new one is made");
+  text_field("##folder", folder_);
+  log.item("evolve.folder");
+  std::vector<const char*> names;
+  std::string help;
+  for (const AlgorithmDescription& algorithm : algorithms()) {
+    names.push_back(algorithm.name.data());
+    help += fmt::format("{}{}: {}", help.empty() ? "" : "\n", algorithm.name, algorithm.help);
+  }
+  int algorithm = index_in(names, values_.settings.algorithm.name), genes = index_in(all_genes, values_.genes);
+  combo("algorithm", help.c_str(), algorithm, names);
+  log.item("evolve.algorithm");
+  values_.settings.algorithm.name = names[static_cast<std::size_t>(algorithm)];
+  combo("what changes", "the bodies, how the muscles move (amplitude, frequency, phase), or both", genes, all_genes);
+  log.item("evolve.genes");
+  values_.genes = all_genes[static_cast<std::size_t>(genes)];
+  row("objective", "a formula; more is better, as in \"distance - 0.1 * strain\"");
+  text_field("##objective", values_.settings.objectives.front());
+  log.item("evolve.objective");
+  parameter_row("population", values_.settings.algorithm, log);
+  parameter_row("generations", values_.settings, log);
+  parameter_row("seconds", values_.settings.trials, log);
+  const EvolveRequest now = request();
+  if (std::vector<std::string> words = evolve_arguments(now, {}); problem_ == "?" || words != checked_) {
+    problem_ = problem_of(now);
+    checked_ = std::move(words);
+  }
+  const auto trials = static_cast<double>(now.settings.algorithm.population) * (now.settings.generations + 1.0);
+  if (problem_.empty()) {
+    note(
+        fmt::format("{:.0f} trials of {:.3g} s, with the parameters of this scene", trials, now.settings.trials.seconds)
+            .c_str());
+  } else {
+    ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
+    ImGui::TextWrapped("%s", problem_.c_str());
+    ImGui::PopStyleColor();
+  }
+  return problem_.empty();
+}
+
+void EvolveForm::accept() {
+  const EvolveRequest chosen = request();
+  context_.evolve = values_;
+  context_.preferences.save_folder = folder_;
+  context_.preferences.panels = true;
+  context_.preferences.left_panel = "Evolution";
+  context_.log.write("evolving", {{"folder", chosen.folder.string()}, {"robots", founders_.size()}});
+  context_.run.evolve(chosen, founders_);
+}
 
 std::optional<fs::path> run_of(const fs::path& path) {
   if (is_run_folder(path)) return path;
@@ -24,6 +180,21 @@ void show_panel(PanelContext& context) {
 }
 
 }  // namespace
+
+void ask_evolve(PanelContext& context) {
+  std::vector<LiveRobot> founders;
+  for (const RobotId id : context.scene.selection())
+    if (const DocumentRobot* robot = context.scene.document().find(id)) founders.push_back(robot->body);
+  if (founders.empty()) return;
+  const std::string what = founders.size() == 1 ? founders.front().name : fmt::format("{} robots", founders.size());
+  const auto form = std::make_shared<EvolveForm>(context, std::move(founders));
+  context.dialogs.ask({.title = "Evolve " + what,
+                       .text = "Their children compete, generation after generation, in the background. The folder "
+                               "keeps all of them.",
+                       .button = "Evolve",
+                       .on_accept = [form] { form->accept(); },
+                       .form = [form](EventLog& log) { return form->draw(log); }});
+}
 
 void open_paths(PanelContext& context, const std::vector<fs::path>& paths) {
   std::vector<fs::path> robots;

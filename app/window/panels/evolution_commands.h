@@ -6,9 +6,13 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/panel.h"
 
 namespace mercury::window {
+
+// The dialog "Evolve these robots": asks for the settings of a new run, and starts it in the background from the
+// selected robots.
+void ask_evolve(PanelContext& context);
 
 // Opens what was dropped or chosen: a run (its folder, or the run.toml in it), and robots.
 void open_paths(PanelContext& context, const std::vector<std::filesystem::path>& paths);

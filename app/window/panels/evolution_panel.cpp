@@ -9,11 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "app/window/panels/elite_map_section.h"
 #include "app/window/panels/evolution_commands.h"
-#include "app/window/panels/family_tree.h"
-#include "app/window/panels/individual_details.h"
-#include "app/window/panels/key_hint.h"
+#include "app/window/panels/run_sections.h"
+#include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"

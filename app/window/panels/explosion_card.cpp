@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/window/panels/file_commands.h"
 #include "app/window/panels/robot_commands.h"
-#include "app/window/panels/saving.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
-#include "app/window/viewport/explosion_marks.h"
+#include "app/window/viewport/marks.h"
 
 namespace mercury::window {
 namespace {

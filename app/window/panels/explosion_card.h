@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/window/panels/panel_context.h"
-#include "app/window/viewport/viewport_area.h"
+#include "app/window/panels/panel.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 

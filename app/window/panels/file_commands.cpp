@@ -2,14 +2,15 @@
 #include "app/window/panels/file_commands.h"
 
 #include <fmt/format.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "app/export/export_format.h"
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/robot_commands.h"
-#include "app/window/panels/saving.h"
-#include "app/window/panels/scene_commands.h"
 
 namespace mercury::window {
 namespace {
@@ -91,6 +92,85 @@ void end_evolution(PanelContext& context, std::function<void()> quit) {
                            }});
 }
 
+std::string list_of(const std::vector<std::filesystem::path>& files) {
+  std::string text = files.empty() ? "" : files.front().string();
+  if (files.size() > 1) text += fmt::format(" and {} more", files.size() - 1);
+  return text;
+}
+
+void report(PanelContext& context, const std::string& what, const SaveResult& result) {
+  if (result.outcome == SaveResult::Outcome::failed) {
+    context.toasts.show(Tone::error, result.message);
+    context.dialogs.reopen_file_dialog(result.message);
+    return;
+  }
+  context.preferences.save_folder = result.files.front().parent_path().string();
+  context.toasts.show(Tone::success, fmt::format("{} saved: {}", what, list_of(result.files)));
+  std::vector<std::string> files;
+  for (const auto& file : result.files) files.push_back(file.string());
+  context.log.write("saved", {{"what", what}, {"files", files}});
+}
+
+namespace fs = std::filesystem;
+
+std::optional<RobotId> robot_to_export(PanelContext& context) {
+  if (const auto current = context.scene.current()) return current;
+  const std::vector<RobotId> robots = selected_or_all(context.scene);
+  if (robots.empty()) {
+    context.toasts.show(Tone::info, "there is no robot to export");
+    return std::nullopt;
+  }
+  return robots.front();
+}
+
+// Asks for a file of one of the formats for which `condition` holds.
+void ask_file(PanelContext& context, RobotId robot, const char* what, bool (*condition)(const ExportFormat&),
+              std::function<void(const fs::path&)> on_accept) {
+  FileRequest request{.kind = FileRequest::Kind::save,
+                      .title = fmt::format("Export the {} of {}", what, name_of_robot(context.scene, robot)),
+                      .button = "Export",
+                      .extensions = {},
+                      .folder = context.preferences.save_folder,
+                      .name = "",
+                      .formats = {}};
+  for (const ExportFormat& format : export_formats()) {
+    if (!condition(format)) continue;
+    request.extensions.emplace_back(format.extension);
+    request.formats.push_back(format.title.data());  // a literal
+  }
+  request.name = file_name_of(name_of_robot(context.scene, robot)) + request.extensions.front();
+  context.dialogs.ask_files(std::move(request), [on_accept = std::move(on_accept)](const FileChoice& answer) {
+    on_accept(answer.paths.front());
+  });
+}
+
+void begin_motion(PanelContext& context, RobotId robot, const fs::path& path, double seconds, bool overwrite) {
+  const SaveResult result = context.scene.export_motion(robot, path, seconds, overwrite);
+  if (result.outcome == SaveResult::Outcome::failed) {
+    context.toasts.show(Tone::error, result.message);
+    context.dialogs.reopen_file_dialog(result.message);
+    return;
+  }
+  if (result.outcome != SaveResult::Outcome::exists) {
+    context.preferences.save_folder = path.parent_path().string();
+    return;
+  }
+  context.log.write("asks", {{"what", "overwrite"}});
+  context.dialogs.ask(
+      {.title = "Replace?",
+       .text = result.files.front().string() + " exists already.",
+       .button = "Replace",
+       .on_accept = [&context, robot, path, seconds] { begin_motion(context, robot, path, seconds, true); },
+       .on_cancel = [&context] { context.dialogs.reopen_file_dialog(); }});
+}
+
+std::optional<double> seconds_from(const std::string& text) {
+  double seconds = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (error != std::errc{} || end != text.data() + text.size() || !(seconds > 0)) return std::nullopt;
+  return seconds;
+}
+
 }  // namespace
 
 void open_robots(PanelContext& context) {
@@ -168,6 +248,68 @@ void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
                          for (const RobotId robot : lost) context.scene.select(robot, false);
                          save_robots(context);
                        }});
+}
+
+void save_with_confirmation(PanelContext& context, const std::string& what,
+                            std::function<SaveResult(bool overwrite)> save) {
+  const SaveResult result = save(false);
+  if (result.outcome != SaveResult::Outcome::exists) {
+    report(context, what, result);
+    return;
+  }
+  context.log.write("asks", {{"what", "overwrite"}});
+  const std::string question =
+      result.files.size() == 1 ? fmt::format("{} exists already.", result.files.front().string())
+                               : fmt::format("{} files exist already: {}", result.files.size(), list_of(result.files));
+  context.dialogs.ask({.title = "Replace?",
+                       .text = question,
+                       .button = "Replace",
+                       .on_accept = [&context, what, save] { report(context, what, save(true)); },
+                       .on_cancel = [&context] { context.dialogs.reopen_file_dialog(); }});
+}
+
+void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make) {
+  context.dialogs.ask_files({.kind = FileRequest::Kind::save,
+                             .title = "Save " + what,
+                             .button = "Save",
+                             .extensions = {".csv"},
+                             .folder = context.preferences.save_folder,
+                             .name = what + ".csv",
+                             .formats = {}},
+                            [&context, what, make = std::move(make)](const FileChoice& answer) {
+                              const std::filesystem::path path = answer.paths.front();
+                              save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
+                                return context.scene.save_text(path, text, overwrite);
+                              });
+                            });
+}
+
+void export_pose(PanelContext& context) {
+  const std::optional<RobotId> robot = robot_to_export(context);
+  if (!robot) return;
+  ask_file(context, *robot, "pose", holds_pose, [&context, id = *robot](const fs::path& path) {
+    save_with_confirmation(context, "pose", [&context, id, path](bool overwrite) {
+      return context.scene.export_pose(id, path, overwrite);
+    });
+  });
+}
+
+void export_motion(PanelContext& context) {
+  const std::optional<RobotId> robot = robot_to_export(context);
+  if (!robot) return;
+  context.dialogs.ask_text("Export the motion",
+                           fmt::format("How many seconds of {}, from time 0? They are simulated in the background.",
+                                       name_of_robot(context.scene, *robot)),
+                           "5", "Next", [&context, id = *robot](const std::string& text) {
+                             const std::optional<double> seconds = seconds_from(text);
+                             if (!seconds)
+                               return context.toasts.show(Tone::error,
+                                                          "\"" + text + "\" is no number of seconds above 0");
+                             ask_file(context, id, "motion", holds_simulated_motion,
+                                      [&context, id, length = *seconds](const fs::path& path) {
+                                        begin_motion(context, id, path, length, false);
+                                      });
+                           });
 }
 
 }  // namespace mercury::window

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens and saves robots and scenes through the file dialog.
+// Opens, saves and exports robots and scenes through the file dialog.
 #pragma once
 
 #include <functional>
+#include <string>
 
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/panel.h"
 
 namespace mercury::window {
 
@@ -16,5 +17,19 @@ void save_scene(PanelContext& context);
 void save_robots(PanelContext& context);
 // Calls `quit`, after asking the user if changes to robots would be lost.
 void quit_with_confirmation(PanelContext& context, std::function<void()> quit);
+
+// Calls save(false). If files exist already, asks the user and calls save(true). Shows the result; after a
+// failure the file dialog opens again as the user left it. `what` names the contents in messages: "ranking".
+void save_with_confirmation(PanelContext& context, const std::string& what,
+                            std::function<SaveResult(bool overwrite)> save);
+
+// Asks for a file and saves the text that make() returns then.
+void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make);
+
+// Exports a robot for other programs through the file dialog: the selected one, else the first.
+// Its present pose.
+void export_pose(PanelContext& context);
+// Its motion from time 0: asks for how long, and where.
+void export_motion(PanelContext& context);
 
 }  // namespace mercury::window

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/help_window.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -43,6 +46,48 @@ void mouse() {
   ImGui::EndTable();
 }
 
+struct Gesture {
+  const char* hand;
+  const char* effect;
+};
+constexpr std::array<Gesture, 4> gestures{
+    {{"drag", "turn"}, {"right drag", "move"}, {"wheel", "zoom"}, {"Ctrl drag", "pull a mass"}}};
+constexpr float fade_time = 0.8f;  // [s]
+
+ImU32 faded(ImU32 color, float opacity) {
+  ImVec4 parts = ImGui::ColorConvertU32ToFloat4(color);
+  parts.w *= opacity;
+  return ImGui::ColorConvertFloat4ToU32(parts);
+}
+
+float width_of(const Gesture& gesture) {
+  return ImGui::CalcTextSize(gesture.hand).x + ImGui::CalcTextSize(gesture.effect).x + 1.6f * ImGui::GetFontSize();
+}
+
+void draw_chip(const Gesture& gesture, ImVec2 at, float opacity) {
+  const float text = ImGui::GetFontSize(), margin = 0.5f * text;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddRectFilled(at, {at.x + width_of(gesture), at.y + 1.7f * text}, faded(palette().on_picture, 0.85f * opacity),
+                     0.4f * text);
+  list.AddText({at.x + margin, at.y + 0.35f * text}, faded(palette().accent, opacity), gesture.hand);
+  list.AddText({at.x + margin + ImGui::CalcTextSize(gesture.hand).x + 0.6f * text, at.y + 0.35f * text},
+               faded(ImGui::GetColorU32(ImGuiCol_Text), opacity), gesture.effect);
+}
+
+// Without what stands at the right or covers the lower end.
+ViewportArea free_part(ViewportArea area, std::initializer_list<Box> taken) {
+  const float rows = 5 * ImGui::GetFontSize();
+  for (const Box& box : taken) {
+    const bool at_right = box.low.x > (area.low.x + area.high.x) / 2;
+    if (!box.meets({{area.low.x, area.high.y - rows}, area.high})) continue;
+    if (at_right)
+      area.high.x = box.low.x;
+    else
+      area.high.y = box.low.y;
+  }
+  return area;
+}
+
 }  // namespace
 
 void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
@@ -72,6 +117,53 @@ void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
     }
   }
   ImGui::End();
+}
+
+void FirstSteps::draw(PanelContext& context, const ViewportArea& picture, std::initializer_list<Box> taken, double dt) {
+  Preferences& preferences = context.preferences;
+  const UsedGestures& used = context.gestures;
+  const std::array now{used.turned, used.moved, used.zoomed, used.pulled};
+  std::vector<std::size_t> shown;
+  fading_ = false;
+  for (std::size_t i = 0; i < gestures.size(); ++i) {
+    preferences.gestures_used[i] = preferences.gestures_used[i] || now[i];
+    if (preferences.gestures_used[i]) opacity_[i] -= static_cast<float>(dt) / fade_time;
+    // One that was used in an earlier session does not appear at all.
+    if (preferences.gestures_used[i] && !now[i]) opacity_[i] = 0;
+    fading_ = fading_ || (preferences.gestures_used[i] && opacity_[i] > 0);
+    if (opacity_[i] > 0) shown.push_back(i);
+  }
+  if (!context.preferences.panels) return;
+  const ViewportArea area = free_part(picture, taken);
+  // As many rows as the width of the picture needs.
+  const float text = ImGui::GetFontSize(), spacing = 0.5f * text, room = area.width() - 2 * text;
+  std::vector<std::vector<std::size_t>> rows;
+  float filled = room;
+  for (const std::size_t i : shown) {
+    const float width = width_of(gestures[i]);
+    if (rows.empty() || filled + spacing + width > room) {
+      rows.emplace_back();
+      filled = -spacing;
+    }
+    rows.back().push_back(i);
+    filled += spacing + width;
+  }
+  if (area.height() < 0.5f * picture.height()) return;
+  // A narrow side has other texts there.
+  if (rows.size() > 1 && (context.scene.second() || !context.scene.ghosts().empty())) return;
+  float y = area.high.y - (2.1f * static_cast<float>(rows.size()) + 0.5f) * text;
+  for (const std::vector<std::size_t>& row : rows) {
+    float width = -spacing;
+    for (const std::size_t i : row) width += spacing + width_of(gestures[i]);
+    float x = (area.low.x + area.high.x - width) / 2;
+    for (const std::size_t i : row) {
+      const Gesture& gesture = gestures[i];
+      draw_chip(gesture, {x, y}, std::clamp(opacity_[i], 0.0f, 1.0f));
+      context.log.item(std::string("gesture.") + gesture.effect, {x, y}, {x + width_of(gesture), y + 1.7f * text});
+      x += width_of(gesture) + spacing;
+    }
+    y += 2.1f * text;
+  }
 }
 
 }  // namespace mercury::window

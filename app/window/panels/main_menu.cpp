@@ -4,10 +4,9 @@
 #include <imgui.h>
 
 #include "app/window/panels/evolution_commands.h"
-#include "app/window/panels/export_commands.h"
+#include "app/window/panels/file_commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/robot_commands.h"
-#include "app/window/panels/scene_commands.h"
 #include "app/window/toolkit/theme.h"
 
 namespace mercury::window {

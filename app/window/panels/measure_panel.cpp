@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "app/scene/side_difference.h"
+#include "app/window/panels/file_commands.h"
+#include "app/window/panels/play_bar.h"
 #include "app/window/panels/robot_commands.h"
-#include "app/window/panels/saving.h"
-#include "app/window/panels/timeline_strip.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/widgets.h"
 

@@ -13,14 +13,12 @@
 #include "app/window/panels/color_section.h"
 #include "app/window/panels/compare_panel.h"
 #include "app/window/panels/evolution_commands.h"
-#include "app/window/panels/export_commands.h"
 #include "app/window/panels/file_commands.h"
 #include "app/window/panels/panels.h"
+#include "app/window/panels/play_bar.h"
 #include "app/window/panels/robot_commands.h"
-#include "app/window/panels/scene_commands.h"
-#include "app/window/panels/text_size.h"
-#include "app/window/panels/timeline_strip.h"
-#include "app/window/panels/video_recorder.h"
+#include "app/window/panels/video_panel.h"
+#include "app/window/panels/view_panel.h"
 
 namespace mercury::window {
 

@@ -2,14 +2,14 @@
 #include "app/window/panels/play_bar.h"
 
 #include <fmt/format.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "app/window/panels/key_hint.h"
-#include "app/window/panels/timeline_strip.h"
 #include "app/window/toolkit/imgui_layer.h"
+#include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -153,6 +153,158 @@ void draw_rate(const LiveScene& scene) {
   tooltip(scene.device_name().c_str());
 }
 
+constexpr double megabyte = 1024.0 * 1024.0;
+
+// Where moments are on the screen.
+struct Track {
+  ImVec2 low, high;
+  double begin, end;  // [s]
+  float x(double time) const {
+    const double share = end > begin ? std::clamp((time - begin) / (end - begin), 0.0, 1.0) : 1;
+    return low.x + static_cast<float>(share) * (high.x - low.x);
+  }
+  double time(float x) const {
+    const float share = high.x > low.x ? std::clamp((x - low.x) / (high.x - low.x), 0.0f, 1.0f) : 1.0f;
+    return begin + static_cast<double>(share) * (end - begin);
+  }
+};
+
+std::string moment_text(double seconds) { return fmt::format("{:.2f} s", seconds); }
+
+std::string memory_text(const TimelineState& timeline) {
+  const double used = static_cast<double>(timeline.bytes) / megabyte;
+  return fmt::format("{:.{}f} of {:.0f} MB", used, used < 10 ? 1 : 0, static_cast<double>(timeline.budget) / megabyte);
+}
+
+// A drag shows the moment under the mouse.
+void drag(PanelContext& context, const Track& track) {
+  const double time = track.time(ImGui::GetIO().MousePos.x);
+  if (ImGui::IsItemActivated()) begin_scrub(context);
+  if (ImGui::IsItemActive()) scrub_to(context, time);
+  if (ImGui::IsItemDeactivated()) end_scrub(context);
+  if (ImGui::IsItemHovered()) context.cursor.next = time;
+  if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%s", moment_text(time).c_str());
+}
+
+// A thin line at the moment under the mouse, also if that is over a plot.
+void draw_cursor(PanelContext& context, const Track& track) {
+  if (!context.cursor.time || *context.cursor.time < track.begin || *context.cursor.time > track.end) return;
+  const float x = track.x(*context.cursor.time);
+  ImGui::GetWindowDrawList()->AddLine({x, track.low.y}, {x, track.high.y}, ImGui::GetColorU32(ImGuiCol_Text));
+  context.log.item("timeline.cursor", {x - 0.5f, track.low.y}, {x + 0.5f, track.high.y});
+}
+
+void draw_track(const LiveScene& scene, const TimelineState& timeline, const Track& track) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float middle = (track.low.y + track.high.y) / 2, thick = std::max(3.0f, 0.16f * (track.high.y - track.low.y));
+  const double now = timeline.seeking ? timeline.target : scene.snapshot().time;
+  const auto bar = [&](double from, double to, float half, ImU32 color) {
+    list.AddRectFilled({track.x(from), middle - half}, {std::max(track.x(to), track.x(from) + 1), middle + half}, color,
+                       half);
+  };
+  bar(track.begin, track.end, thick, palette().grid);
+  if (timeline.looping) bar(timeline.loop_begin, timeline.loop_end, 2.4f * thick, packed({90, 170, 230, 255}, 0.35f));
+  bar(track.begin, now, thick, palette().accent);
+  if (const auto begin = scene.loop_begin()) bar(*begin, *begin, 2.2f * thick, palette().warning);
+  for (const double mark : scene.bookmarks()) {
+    const float x = track.x(mark), size = 1.8f * thick;
+    list.AddTriangleFilled({x - size, track.low.y}, {x + size, track.low.y}, {x, track.low.y + 2 * size},
+                           palette().warning);
+  }
+  list.AddCircleFilled({track.x(now), middle}, 2.4f * thick, ImGui::GetColorU32(ImGuiCol_Text));
+  if (timeline.seeking) list.AddCircle({track.x(scene.snapshot().time), middle}, 1.8f * thick, palette().faint);
+}
+
+// Memory of the timeline; a click sets its budget.
+void draw_memory(PanelContext& context, const TimelineState& timeline, float width) {
+  const std::string text = timeline.recording ? "recording" : memory_text(timeline);
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  ImGui::PushStyleColor(ImGuiCol_Button, IM_COL32_BLACK_TRANS);
+  if (ImGui::Button((text + "##timeline-memory").c_str(), {width, 0}) && !timeline.recording)
+    ImGui::OpenPopup("timeline memory");
+  ImGui::PopStyleColor(2);
+  context.log.item("timeline.memory");
+  tooltip(timeline.recording
+              ? "a recording: its frames, and straight lines between them"
+              : fmt::format("{} states of the last minutes; the moments between them are computed again, to the bit. "
+                            "Click to set how much memory they may take",
+                            timeline.keyframes)
+                    .c_str());
+  if (!ImGui::BeginPopup("timeline memory")) return;
+  int& megabytes = context.preferences.timeline_megabytes;
+  ImGui::SetNextItemWidth(14 * ImGui::GetFontSize());
+  ImGui::SliderInt("##budget", &megabytes, Preferences::least_timeline, Preferences::most_timeline, "%d MB",
+                   ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+  context.log.item("timeline.budget");
+  ImGui::EndPopup();
+}
+
+bool strip_button(PanelContext& context, const char* text, const char* name, const std::string& help, bool lit) {
+  ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+  const bool clicked = toggle_button(text, lit);
+  context.log.item(name);
+  tooltip(help.c_str());
+  return clicked;
+}
+
+float button_width(const char* text) {
+  return ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x + ImGui::GetStyle().ItemInnerSpacing.x;
+}
+
+void draw_actions(PanelContext& context, const TimelineState& timeline) {
+  // They are always there: the track must not change its length under the mouse.
+  ImGui::BeginDisabled(!timeline.viewing);
+  if (strip_button(context, "Go on", "timeline.go_on",
+                   with_keys(context.keys, "go on from this moment; forget what came after it", Action::go_on), false))
+    change_timeline(context, Action::go_on);
+  ImGui::EndDisabled();
+  if (strip_button(context, "Fork", "timeline.fork",
+                   with_keys(context.keys, "go on from this moment, with copies of the selected robots", Action::fork),
+                   false))
+    change_timeline(context, Action::fork);
+  if (strip_button(context, "Loop", "timeline.loop",
+                   with_keys(context.keys, "begin a loop here, close it here, end it", Action::loop),
+                   timeline.looping || context.scene.loop_begin()))
+    change_timeline(context, Action::loop);
+  if (strip_button(context, "Mark", "timeline.mark",
+                   with_keys(context.keys, "set or remove a bookmark here", Action::bookmark), false))
+    change_timeline(context, Action::bookmark);
+}
+
+float actions_width() {
+  return button_width("Go on") + button_width("Fork") + button_width("Loop") + button_width("Mark");
+}
+
+void fork(PanelContext& context) {
+  LiveScene& scene = context.scene;
+  const std::vector<RobotId> selected = scene.selection();
+  if (selected.empty()) {
+    context.toasts.show(Tone::info, "select the robots to fork first");
+    return;
+  }
+  const std::vector<RobotId> copies = scene.fork(selected);
+  scene.clear_selection();
+  for (const RobotId id : copies) scene.select(id, false);
+  context.toasts.show(Tone::info, fmt::format("{} forked at {}",
+                                              copies.size() == 1 ? "1 robot" : fmt::format("{} robots", copies.size()),
+                                              moment_text(scene.snapshot().time)));
+}
+
+void mark_loop(PanelContext& context) {
+  const std::string now = moment_text(context.scene.snapshot().time);
+  switch (context.scene.mark_loop()) {
+    case LoopMark::begun:
+      context.toasts.show(Tone::info, "a loop begins at " + now + "; go to its end and press again");
+      break;
+    case LoopMark::closed:
+      context.toasts.show(Tone::info, "the loop ends at " + now);
+      break;
+    case LoopMark::ended:
+      context.toasts.show(Tone::info, "no loop any more");
+      break;
+  }
+}
+
 }  // namespace
 
 float play_bar_height() {
@@ -182,6 +334,64 @@ void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
   ImGui::SameLine();
   draw_rate(context.scene);
   ImGui::End();
+}
+
+void draw_timeline_strip(PanelContext& context) {
+  LiveScene& scene = context.scene;
+  const TimelineState timeline = scene.snapshot().timeline;
+  const std::size_t budget = static_cast<std::size_t>(context.preferences.timeline_megabytes) << 20;
+  if (timeline.budget != budget) scene.set_timeline_budget(budget);
+  const float memory = ImGui::CalcTextSize("8888 of 8888 MB").x, height = ImGui::GetFrameHeight();
+  const float width =
+      ImGui::GetContentRegionAvail().x - actions_width() - memory - ImGui::GetStyle().ItemInnerSpacing.x;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float inset = 0.4f * height;
+  ImGui::InvisibleButton("##timeline", {std::max(width, 2 * height), height});
+  const Track track{{corner.x + inset, corner.y},
+                    {corner.x + std::max(width, 2 * height) - inset, corner.y + height},
+                    timeline.begin,
+                    timeline.head};
+  context.log.item("timeline", track.low, track.high);
+  drag(context, track);
+  draw_track(scene, timeline, track);
+  draw_cursor(context, track);
+  draw_actions(context, timeline);
+  ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+  draw_memory(context, timeline, memory);
+}
+
+void begin_scrub(PanelContext& context) {
+  context.scrub.plays_on = context.scene.playing();
+  context.scene.pause();
+  context.scrub.time = std::nan("");
+}
+
+void scrub_to(PanelContext& context, double time) {
+  if (time != context.scrub.time) context.scene.seek(time);
+  context.scrub.time = time;
+}
+
+void end_scrub(PanelContext& context) {
+  if (std::exchange(context.scrub.plays_on, false)) context.scene.play();
+}
+
+void change_timeline(PanelContext& context, Action action) {
+  LiveScene& scene = context.scene;
+  const TimelineState& timeline = scene.snapshot().timeline;
+  if (action == Action::step_back) scene.step_back();
+  if (action == Action::first_moment) scene.seek(timeline.begin);
+  if (action == Action::present) scene.seek(timeline.head);
+  if (action == Action::loop) mark_loop(context);
+  if (action == Action::bookmark)
+    context.toasts.show(Tone::info, (scene.toggle_bookmark() ? "bookmark at " : "no bookmark any more at ") +
+                                        moment_text(scene.snapshot().time));
+  if (action == Action::next_bookmark) scene.seek_bookmark(1);
+  if (action == Action::previous_bookmark) scene.seek_bookmark(-1);
+  if (action == Action::go_on && timeline.viewing) {
+    scene.go_on();
+    context.toasts.show(Tone::info, "goes on from " + moment_text(scene.snapshot().time));
+  }
+  if (action == Action::fork) fork(context);
 }
 
 }  // namespace mercury::window

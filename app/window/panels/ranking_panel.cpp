@@ -9,9 +9,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "app/window/panels/file_commands.h"
 #include "app/window/panels/robot_commands.h"
-#include "app/window/panels/robot_menu.h"
-#include "app/window/panels/saving.h"
+#include "app/window/panels/robot_list.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/window/panels/panel.h"
-#include "app/window/panels/row_selection.h"
+#include "app/window/panels/robot_list.h"
 
 namespace mercury::window {
 

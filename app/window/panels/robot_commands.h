@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands on robots that panels, menus and keys share.
+// Commands on robots and on the whole scene that panels, menus and keys share.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "app/window/panels/panel_context.h"
+#include "app/window/panels/panel.h"
 
 namespace mercury::window {
 
@@ -32,5 +33,14 @@ void invert_selection(PanelContext& context);
 void keep_only(PanelContext& context, const std::vector<RobotId>& robots);
 // Asks how many robots to keep. `order`: the best first; empty = those that went farthest at equal age.
 void ask_for_best(PanelContext& context, std::vector<RobotId> order = {});
+
+// Runs `act` while the scene's view settings hold the camera of the window, and then restores them.
+void with_window_camera(PanelContext& context, const std::function<void()>& act);
+
+// Copies the command line that makes this scene to the clipboard. `subcommand`: "view" or "render".
+void copy_as_command(PanelContext& context, const char* subcommand);
+
+// Switches the drag arrows on or off.
+void toggle_drag_arrows(PanelContext& context);
 
 }  // namespace mercury::window

@@ -1,14 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of robots: search, sort, select.
+// The list of robots: search, sort, select, and the menu of a right click on a robot, in a list or in the picture.
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "app/window/panels/panel_context.h"
-#include "app/window/panels/row_selection.h"
+#include "app/live/live_scene.h"
+#include "app/window/panels/panel.h"
+#include "app/window/toolkit/key_bindings.h"
 
 namespace mercury::window {
+
+// Clicks on rows of robots, as in a file manager.
+class RowSelection {
+ public:
+  // A plain click selects one robot. Shift-click selects all rows from the last one that was clicked, Ctrl-click adds
+  // or removes one, and with both keys the range is added. `rows`: the robots in the order that the user sees.
+  void click(LiveScene& scene, RobotId robot, std::span<const RobotId> rows);
+
+ private:
+  RobotId anchor_ = 0;  // where a range starts; 0 = nowhere
+};
 
 class RobotList {
  public:
@@ -26,5 +40,14 @@ class RobotList {
   std::vector<RobotId> order_;  // as shown
   RowSelection selection_;
 };
+
+// Opens the menu when the item that was just drawn is right-clicked. Its robot is selected first, unless it is one of
+// several that are.
+void robot_menu_of_row(PanelContext& context, RobotId robot);
+
+// Opens the menu for what was right-clicked in the picture.
+void open_robot_menu(PanelContext& context, const Hit& hit);
+// Draws the menu that is open. `execute` carries out a command.
+void draw_robot_menu(PanelContext& context, const std::function<void(Action)>& execute);
 
 }  // namespace mercury::window

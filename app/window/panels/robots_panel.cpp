@@ -5,14 +5,108 @@
 
 #include <algorithm>
 
+#include "app/options/generator_options.h"
 #include "app/window/panels/evolution_commands.h"
 #include "app/window/panels/file_commands.h"
-#include "app/window/panels/key_hint.h"
 #include "app/window/panels/robot_commands.h"
+#include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/widgets.h"
+#include "mercury/error.h"
 
 namespace mercury::window {
 namespace {
+
+bool whole_number(const char* name, const char* help, int& value, int low, int high, PanelContext& context,
+                  const std::string& item) {
+  ImGui::PushID(name);
+  row(name, help);
+  const bool changed = ImGui::InputInt("##value", &value, 1, 10);
+  context.log.item(item);
+  ImGui::PopID();
+  value = std::clamp(value, low, high);
+  return changed;
+}
+
+// The controls of one parameter, by the kind of its value. Each returns true when the value changed.
+struct Control {
+  const GeneratorParameter& parameter;
+  PanelContext& context;
+
+  const char* name() const { return parameter.name.c_str(); }
+  const char* help() const { return parameter.help.c_str(); }
+  std::string item() const { return "generate." + parameter.name; }
+  double highest() const { return parameter.usual_highest.value_or(parameter.highest.value_or(1e6)); }
+
+  bool operator()(std::int64_t& value) const {
+    auto number = static_cast<int>(value);
+    const bool changed = whole_number(name(), help(), number, static_cast<int>(parameter.lowest),
+                                      static_cast<int>(highest()), context, item());
+    value = number;
+    return changed;
+  }
+  template <class Number>
+  requires std::is_floating_point_v<Number>
+  bool operator()(Number& value) const {
+    const bool percent = parameter.unit.empty() && parameter.highest == 1;
+    const double scale = percent ? 100 : 1;
+    const std::string format = percent ? "%.0f %%" : "%.3g " + parameter.unit;
+    auto shown = static_cast<float>(scale * static_cast<double>(value));
+    const auto default_value = static_cast<float>(scale * static_cast<double>(std::get<Number>(parameter.initial)));
+    const bool changed =
+        slider(name(), help(), shown, default_value,
+               {static_cast<float>(scale * parameter.lowest), static_cast<float>(scale * highest()), format.c_str()});
+    context.log.item(item());
+    if (changed)
+      value = static_cast<Number>(std::clamp(static_cast<double>(shown) / scale, parameter.lowest, highest()));
+    return changed;
+  }
+  bool operator()(std::string& word) const {
+    std::vector<const char*> words;
+    for (const std::string& one : parameter.words) words.push_back(one.c_str());
+    auto index = static_cast<int>(std::ranges::find(parameter.words, word) - parameter.words.begin());
+    const bool changed = combo(name(), help(), index, words);
+    context.log.item(item());
+    if (changed) word = parameter.words.at(static_cast<std::size_t>(index));
+    return changed;
+  }
+  bool operator()(std::vector<int>& numbers) const {
+    row(name(), help());
+    std::string text = option_text(numbers);
+    const bool entered = text_field(("##" + parameter.name).c_str(), text);
+    context.log.item(item());
+    if (!entered) return false;
+    try {
+      const ParameterValue value = parameter_value_from(parameter, parameter.name, text);
+      check(parameter, value);
+      numbers = std::get<std::vector<int>>(value);
+    } catch (const InputError& error) {
+      context.toasts.show(Tone::warning, error.what());
+      return false;
+    }
+    return true;
+  }
+  bool operator()(SizeRange& sizes) const {
+    row("smallest", (parameter.unit + " along x, y and z").c_str());
+    bool changed = ImGui::InputInt3("##smallest", sizes.smallest.data());
+    row("largest", (parameter.unit + " along x, y and z").c_str());
+    changed = ImGui::InputInt3("##largest", sizes.largest.data()) || changed;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sizes.smallest[i] =
+          std::clamp(sizes.smallest[i], static_cast<int>(parameter.lowest), static_cast<int>(highest()));
+      sizes.largest[i] = std::clamp(sizes.largest[i], sizes.smallest[i], static_cast<int>(highest()));
+    }
+    return changed;
+  }
+};
+
+int rows_of(const GeneratorParameter& parameter) {
+  return std::holds_alternative<SizeRange>(parameter.initial) ? 2 : 1;
+}
+
+const Generator& generator_in(const RandomRobots& generation) {
+  const Generator* generator = find_generator(generation.kind);
+  return generator ? *generator : generators().front();
+}
 
 void draw_work(PanelContext& context) {
   for (const Work& work : context.scene.work()) {
@@ -26,6 +120,49 @@ void draw_work(PanelContext& context) {
 }
 
 }  // namespace
+
+void RandomSection::draw(PanelContext& context) {
+  RandomRobots& generation = context.creation.generation;
+  heading("Random robots");
+  std::vector<const char*> kinds;
+  std::string help;
+  for (const Generator& generator : generators()) {
+    kinds.push_back(generator.kind.c_str());
+    help += (help.empty() ? "" : "\n") + generator.kind + ": " + generator.help;
+  }
+  auto kind = static_cast<int>(&generator_in(generation) - generators().data());
+  if (combo("kind", help.c_str(), kind, kinds)) generation.kind = kinds[static_cast<std::size_t>(kind)];
+  context.log.item("generate.kind");
+  auto count = static_cast<int>(generation.count), seed = static_cast<int>(generation.seed);
+  whole_number("count", "how many robots", count, 1, 4096, context, "generate.count");
+  whole_number("seed", "the same seed gives the same robots", seed, 0, 1'000'000'000, context, "generate.seed");
+  generation.count = static_cast<std::size_t>(count);
+  generation.seed = static_cast<std::uint64_t>(seed);
+  // Above the parameters, so that a low window shows it, too.
+  ImGui::Checkbox("Replace", &context.creation.replace);
+  context.log.item("generate.replace");
+  tooltip("the new robots replace those in the scene; otherwise they are added");
+  ImGui::SameLine();
+  ImGui::Checkbox("More", &advanced_);
+  context.log.item("generate.more");
+  tooltip("show all settings of these robots");
+  ImGui::SameLine();
+  if (ImGui::Button("Generate", {-1, 0})) generate_robots(context);
+  context.log.item("generate");
+  tooltip(with_keys(context.keys, "make the robots, and increment the seed", Action::new_random).c_str());
+  for (const GeneratorParameter& parameter : generator_in(generation).parameters) {
+    if (parameter.advanced && !advanced_) continue;
+    ParameterValue value = value_of(generation.values, parameter);
+    if (std::visit(Control{parameter, context}, value)) generation.values[parameter.name] = value;
+  }
+}
+
+float RandomSection::height(const PanelContext& context) const {
+  int rows = 4;  // kind, count, seed, buttons
+  for (const GeneratorParameter& parameter : generator_in(context.creation.generation).parameters)
+    if (advanced_ || !parameter.advanced) rows += rows_of(parameter);
+  return static_cast<float>(rows) * ImGui::GetFrameHeightWithSpacing() + 2.2f * ImGui::GetFontSize();
+}
 
 void RobotsPanel::draw(PanelContext& context) {
   // What stands below the list: six rows of commands, and the random robots.

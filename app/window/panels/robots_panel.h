@@ -3,10 +3,21 @@
 #pragma once
 
 #include "app/window/panels/panel.h"
-#include "app/window/panels/random_section.h"
 #include "app/window/panels/robot_list.h"
 
 namespace mercury::window {
+
+// The part of the Robots panel that makes random robots: the settings of a generator (mercury/generator.h), and a
+// button.
+class RandomSection {
+ public:
+  void draw(PanelContext& context);
+  // Height of its rows [pixels].
+  float height(const PanelContext& context) const;
+
+ private:
+  bool advanced_ = false;  // show the advanced settings, too
+};
 
 class RobotsPanel : public Panel {
  public:

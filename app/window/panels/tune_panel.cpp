@@ -1,17 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/tune_panel.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
+#include <numbers>
+#include <set>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
-#include "app/window/panels/scene_commands.h"
+#include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/widgets.h"
+#include "mercury/origin.h"
 
 namespace mercury::window {
 namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+// The materials that the springs of a robot use.
+std::vector<int> used_materials(const Robot& robot) {
+  std::set<int> used;
+  for (const Spring& spring : robot.springs) used.insert(spring.material);
+  return {used.begin(), used.end()};
+}
+
+std::string name_of_material(const Robot& robot, int id) {
+  const auto index = static_cast<std::size_t>(id);
+  if (index < robot.material_names.size()) return robot.material_names[index];
+  if (robot.materials.empty()) return default_material_name(static_cast<MaterialId>(id));
+  return fmt::format("material {}", id);
+}
+
+bool is_dry(const Environment& environment) { return has_ground(environment) && !has_water(environment); }
+
+// On land every spring is 200 times as stiff. Of the 12 swimmers in robots/library, 7 explode there within 3 ms with
+// the force solver at 1 ms, 7 at 0.5 ms, 4 at 0.2 ms and none at 0.1 ms; with XPBD none does at 0.5 to 5 ms (10 s
+// each).
+constexpr double safe_dt = 1e-4;  // of the force solver [s]
+
+void use_xpbd(Configuration& configuration) { configuration.solver = Solver::xpbd; }
+void use_small_step(Configuration& configuration) {
+  configuration.solver = Solver::force;
+  configuration.dt = std::min(configuration.dt, safe_dt);
+}
+bool is_safe(const Configuration& configuration) {
+  return configuration.solver == Solver::xpbd || configuration.dt <= 1.01 * safe_dt;
+}
 
 // "drag coefficient"
 std::string label_of(std::string_view name) {
@@ -133,6 +170,178 @@ bool draw_physics_sliders(PanelContext& context, EnvironmentChoice& choice, Conf
 }
 
 }  // namespace
+
+void MaterialsSection::draw(PanelContext& context) {
+  heading("Materials");
+  const std::vector<RobotId> robots = selected_or_all(context.scene);
+  if (robots.empty()) {
+    note("There are no robots.");
+    return;
+  }
+  const std::size_t selected = context.scene.selection().size();
+  note(fmt::format("of {}",
+                   selected == 0
+                       ? fmt::format("all {} robots; select some to change only those", robots.size())
+                       : fmt::format("the {} selected", selected == 1 ? "robot" : fmt::format("{} robots", selected)))
+           .c_str());
+  draw_factors(context, robots);
+  if (ImGui::Button("Reset materials", {-1, 0})) {
+    scale_ = {};
+    context.scene.reset_materials(robots);
+    context.scene.end_edit();
+  }
+  context.log.item("materials.reset");
+  tooltip("restore the materials of the robot files");
+  draw_one(context, robots);
+}
+
+void MaterialsSection::draw_factors(PanelContext& context, const std::vector<RobotId>& robots) {
+  bool changed = slider("all stiffness", "factor on the stiffness of all materials", scale_.stiffness, 1,
+                        {0.1f, 10, "\xc3\x97 %.2f", true});
+  context.log.item("materials.stiffness");
+  changed |=
+      slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "\xc3\x97 %.2f"});
+  changed |= slider("all frequencies", "factor on how fast muscles beat", scale_.frequency, 1, {0, 5, "\xc3\x97 %.2f"});
+  changed |= slider("all phases", "added to the phase of every muscle", scale_.phase, 0, {-pi, pi, "%.2f rad"});
+  if (changed) context.scene.scale_materials(robots, scale_);
+}
+
+void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId>& robots) {
+  const RobotId shown = context.scene.current().value_or(robots.front());
+  const DocumentRobot* document = context.scene.document().find(shown);
+  if (!document || !ImGui::CollapsingHeader("One material")) return;
+  const Robot& robot = *document->body.robot;
+  const std::vector<int> used = used_materials(robot);
+  if (used.empty()) return;
+  if (std::find(used.begin(), used.end(), material_) == used.end()) material_ = used.front();
+  row("material", fmt::format("the materials of {}", document->body.name).c_str());
+  if (ImGui::BeginCombo("##material", name_of_material(robot, material_).c_str())) {
+    for (const int id : used)
+      if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, id), id).c_str(), id == material_))
+        material_ = id;
+    ImGui::EndCombo();
+  }
+  const std::span<const Material> table = context.scene.materials(shown);
+  if (static_cast<std::size_t>(material_) >= table.size()) return;
+  const auto id = static_cast<std::size_t>(material_);
+  Material material = table[id];
+  const Material original = materials_of(robot)[id];
+  bool changed = slider("stiffness", "k of a spring", material.stiffness, original.stiffness, {0, 500, "%.1f N/m"});
+  changed |= slider("amplitude", "relative change of length; 0 = passive", material.amplitude, original.amplitude,
+                    {0, 0.6f, "%.3f"});
+  changed |= slider("frequency", "omega", material.frequency, original.frequency, {0, 25, "%.2f rad/s"});
+  changed |= slider("phase", "phi", material.phase, original.phase, {-pi, 2 * pi, "%.2f rad"});
+  row("half wave", "only the negative half of the sine acts: the muscle shortens and comes back");
+  changed |= ImGui::Checkbox("##half wave", &material.half_wave);
+  context.log.item("materials.half_wave");
+  if (changed && is_valid(material)) context.scene.set_material(robots, static_cast<MaterialId>(material_), material);
+}
+
+void EnvironmentChoice::count(const LiveScene& scene) {
+  const LiveRobots& robots = *scene.snapshot().robots;
+  if (robots.revision == made_.revision) return;
+  made_ = {.revision = robots.revision};
+  for (const LiveRobot& robot : robots.robots) {
+    const std::string name = environment_of(*robot.robot);
+    if (!is_environment(name)) continue;
+    const Environment environment = environment_named(name);
+    if (is_dry(environment)) ++made_.for_land;
+    if (has_water(environment)) ++made_.for_water;
+  }
+}
+
+bool EnvironmentChoice::draw(PanelContext& context, Configuration& configuration) {
+  count(context.scene);
+  bool changed = draw_list(context, configuration);
+  changed |= draw_parts(context, configuration.environment);
+  changed |= draw_hint(context, configuration);
+  return changed;
+}
+
+// What may be added to any preset.
+bool EnvironmentChoice::draw_parts(PanelContext& context, Environment& environment) {
+  bool ground = has_ground(environment), contacts = environment.contacts.has_value(), changed = false;
+  if (ImGui::Checkbox("ground", &ground)) {
+    environment.ground = {};
+    if (ground) environment.ground = Plane{};
+    changed = true;
+  }
+  context.log.item("tune.ground");
+  tooltip("a floor at z = 0 with friction");
+  ImGui::SameLine();
+  if (ImGui::Checkbox("contacts", &contacts)) {
+    environment.contacts.reset();
+    if (contacts) environment.contacts.emplace();
+    changed = true;
+  }
+  context.log.item("tune.contacts");
+  tooltip("masses of a robot that no spring joins repel each other");
+  return changed;
+}
+
+bool EnvironmentChoice::draw_list(PanelContext& context, Configuration& configuration) const {
+  bool changed = false;
+  std::string help;
+  for (const EnvironmentPreset& preset : environment_presets)
+    help.append(help.empty() ? "" : ". ").append(preset.name).append(": ").append(preset.help);
+  row("where", help.c_str());
+  const std::string now(name_of(configuration.environment));
+  const bool open = ImGui::BeginCombo("##environment", now.c_str());
+  if (!open) context.log.item("tune.environment");
+  if (!open) return false;
+  const bool unsafe = made_.for_water > 0 && !is_dry(configuration.environment) && !is_safe(configuration);
+  for (const EnvironmentPreset& preset : environment_presets) {
+    const std::string name(preset.name);
+    const auto choose = [&](const std::string& label, const char* item, void (*adjust)(Configuration&)) {
+      const bool chosen = ImGui::Selectable(label.c_str(), adjust == nullptr && name == now);
+      context.log.item(item);
+      if (!chosen || (name == now && !adjust)) return;
+      configuration.environment = preset.environment;
+      if (adjust) adjust(configuration);
+      changed = true;
+    };
+    choose(name, ("tune.environment." + name).c_str(), nullptr);
+    if (!unsafe || !is_dry(preset.environment)) continue;
+    choose(fmt::format("   {} with XPBD", name), "tune.environment.xpbd", use_xpbd);
+    tooltip("the force solver would tear robots apart that are made for water; XPBD keeps them whole");
+    choose(fmt::format("   {} with a time step of 0.1 ms", name), "tune.environment.small", use_small_step);
+    tooltip("the force solver keeps robots whole that are made for water; ten times as much work");
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+// For robots that are made for another environment.
+bool EnvironmentChoice::draw_hint(PanelContext& context, Configuration& configuration) const {
+  const bool land = is_dry(configuration.environment);
+  const std::size_t strangers = land ? made_.for_water : made_.for_land;
+  if (strangers == 0) return false;
+  const std::string who = fmt::format("{} of {} robots {} made for {}", strangers, context.scene.robot_count(),
+                                      strangers == 1 ? "is" : "are", land ? "water" : "land");
+  if (!land) {
+    note(fmt::format("{}: without weight and floor, their gaits move them little", who).c_str());
+    context.log.item("tune.hint");
+    return false;
+  }
+  const bool safe = is_safe(configuration);
+  note(safe ? fmt::format("{}; they crawl here at best", who).c_str()
+            : fmt::format("{}. The force solver tears such robots apart at this time step:", who).c_str());
+  context.log.item("tune.hint");
+  if (safe) return false;
+  bool changed = false;
+  if (ImGui::Button("Use XPBD")) {
+    use_xpbd(configuration);
+    changed = true;
+  }
+  context.log.item("tune.use_xpbd");
+  ImGui::SameLine();
+  if (ImGui::Button("Step of 0.1 ms")) {
+    use_small_step(configuration);
+    changed = true;
+  }
+  context.log.item("tune.use_small");
+  return changed;
+}
 
 void TunePanel::draw(PanelContext& context) {
   Configuration configuration = context.scene.configuration();

@@ -160,4 +160,10 @@ bool write_keys_template(const std::filesystem::path& file) {
   return static_cast<bool>(stream.flush());
 }
 
+std::string with_keys(const KeyMap& keys, const std::string& text, Action action) {
+  const std::string names = keys.keys_of(action);
+  if (names.empty()) return text;
+  return fmt::format("{} ({}{})", text, names.size() == 1 ? "key " : "", names);
+}
+
 }  // namespace mercury::window

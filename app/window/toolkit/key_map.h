@@ -52,4 +52,7 @@ std::string load_keys(KeyMap& keys, const std::filesystem::path& file);
 // such a file afterwards.
 bool write_keys_template(const std::filesystem::path& file);
 
+// A tooltip that names the present keys of a command: "reset to the start (key R)"; without keys, the text alone.
+std::string with_keys(const KeyMap& keys, const std::string& text, Action action);
+
 }  // namespace mercury::window

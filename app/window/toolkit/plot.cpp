@@ -9,7 +9,7 @@
 
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
-#include "render/overlay.h"
+#include "render/text/overlay.h"
 
 namespace mercury::window {
 namespace {

@@ -5,7 +5,9 @@
 #include <imgui.h>
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/window/toolkit/event_log.h"
@@ -63,5 +65,10 @@ std::string brief(const std::string& text, std::size_t letters);
 
 // Shortens a text to a width, with an ellipsis at its end or, for paths, in its middle.
 std::string shortened(const std::string& text, float width, bool middle = false);
+
+// How well a text fits a query: higher is better; none if a letter of the query is missing. Letters of the query must
+// appear in order, in any case; blanks of the query are ignored. Letters that follow each other or begin a word count
+// more, and a text that has little beside the query comes first. An empty query fits everything equally.
+std::optional<int> fuzzy_match(std::string_view query, std::string_view text);
 
 }  // namespace mercury::window

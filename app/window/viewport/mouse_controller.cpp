@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/window/toolkit/theme.h"
-#include "app/window/viewport/hit_marks.h"
+#include "app/window/viewport/marks.h"
 
 namespace mercury::window {
 namespace {
@@ -27,11 +27,6 @@ bool inside(const ViewportArea& area, ImVec2 p) {
 render::Ray ray_at(const ViewportArea& area, const render::Camera& camera, ImVec2 p) {
   return camera.ray(p.x - area.low.x, p.y - area.low.y, static_cast<int>(area.width()),
                     static_cast<int>(area.height()));
-}
-
-ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const render::Vector3& point) {
-  const render::Vector3 p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
-  return {area.low.x + p.x, area.low.y + p.y};
 }
 
 render::Vector3 forward_of(const render::Camera& camera) { return (camera.target - camera.eye).normalized(); }

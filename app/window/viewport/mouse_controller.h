@@ -10,7 +10,7 @@
 #include "app/window/toolkit/event_log.h"
 #include "app/window/toolkit/toasts.h"
 #include "app/window/viewport/orbit_controller.h"
-#include "app/window/viewport/viewport_area.h"
+#include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
 

@@ -16,6 +16,11 @@ constexpr std::array<float, 3> shares{1, 0.75f, 0.5f};
 
 }  // namespace
 
+ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const render::Vector3& point) {
+  const render::Vector3 p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  return {area.low.x + p.x, area.low.y + p.y};
+}
+
 Viewport::Viewport(render::Context& gl_context, render::Quality quality)
     : renderer_(gl_context, {.width = 64, .height = 64, .quality = quality}), software_(gl_context.is_software()) {
   if (software_) moving_share_ = shares[2];

@@ -12,6 +12,27 @@
 
 namespace mercury::window {
 
+// The part of the window that shows the robots, in ImGui's coordinates: pixels from the upper left corner of the
+// window.
+struct ViewportArea {
+  ImVec2 low, high;
+  float width() const { return high.x - low.x; }
+  float height() const { return high.y - low.y; }
+  float aspect() const { return width() / height(); }
+};
+
+// Where a point of the scene is on the screen.
+ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const render::Vector3& point);
+
+// A part of it that something is drawn over; empty = nothing.
+struct Box {
+  ImVec2 low{0, 0}, high{0, 0};
+  bool meets(const Box& other) const {
+    return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y && other.low.y < high.y;
+  }
+  bool holds(ImVec2 point) const { return meets({point, {point.x + 1, point.y + 1}}); }
+};
+
 class Viewport {
  public:
   Viewport(render::Context& gl_context, render::Quality quality);

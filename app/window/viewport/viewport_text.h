@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text on the picture: names, clock, scale bar (the legend has a file of its own). ImGui draws it, so that it is
-// sharp even if the picture is coarse.
+// The text on the picture: names, clock, scale bar, and the legend, whose ends the mouse drags. ImGui draws it, so that
+// it is sharp even if the picture is coarse.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <span>
 
+#include "app/scene/view_settings.h"
 #include "app/window/toolkit/event_log.h"
-#include "app/window/viewport/viewport_area.h"
+#include "app/window/viewport/viewport.h"
 #include "render/camera.h"
 #include "render/scene.h"
 
@@ -29,5 +30,23 @@ struct ViewportTextOptions {
 // per body, in the coordinates of the picture. Returns the box of the caption; without one it is empty.
 Box draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
                        const render::Camera& camera, const ViewportTextOptions& options, EventLog& log);
+
+// The legend of the colors, over the picture: a scale whose ends the mouse drags, or swatches with names.
+class LegendView {
+ public:
+  // Draws the legend in the upper right corner of the picture. Returns true if the mouse changed the scale in `view`:
+  // dragging an end sets it, and a double click on one lets the scale fit again. Call between begin_frame() and
+  // end_frame() of ImGuiLayer, also without a legend.
+  bool draw(const std::optional<render::Legend>& legend, const ViewportArea& area, ViewSettings& view, EventLog& log);
+  const Box& box() const { return box_; }  // of the last draw()
+
+ private:
+  struct Bar;
+  bool draw_scale(const render::Legend& legend, const Bar& bar, ViewSettings& view, EventLog& log);
+  bool drag_end(bool high, const render::Legend& legend, const Bar& bar, ViewSettings& view, EventLog& log);
+
+  Box box_;
+  std::optional<render::Scale> held_;  // while an end is dragged: the scale when the drag began
+};
 
 }  // namespace mercury::window

@@ -43,7 +43,14 @@ class LiveRunTest : public test::FolderTest {
     for (const DocumentRobot& robot : scene.document().robots) robots.push_back(robot.body);
     return robots;
   }
-  EvolveRequest request() const { return {.folder = path("run"), .population = 4, .generations = 3, .seconds = 0.05}; }
+  EvolveRequest request() const {
+    EvolveRequest request{.folder = path("run")};
+    request.settings.configuration = configuration_;
+    request.settings.algorithm.population = 4;
+    request.settings.generations = 3;
+    request.settings.trials.seconds = 0.05;
+    return request;
+  }
   // A program that prints its words into the file "words" and then does what `script` says.
   std::string program(const std::string& script) const {
     write("program", "#!/bin/sh\nfor word; do echo \"$word\"; done > " + path("words") + "\n" + script + "\n", true);
@@ -138,15 +145,16 @@ TEST_F(LiveRunTest, AFamilyAndARobotAreReadInTheBackground) {
 TEST_F(LiveRunTest, TheProcessGetsTheRobotsAndTheSettings) {
   LiveRun run(program("ls \"$(sed -n 's/--from=//p' " + path("words") + ")\" > " + path("founders")));
   EvolveRequest wanted = request();
-  wanted.objective = "distance - 0.1 * strain";
-  Configuration configuration = configuration_;
-  configuration.environment = Land{};
-  configuration.dt = 2e-3;
-  run.evolve(wanted, founders(2), configuration);
+  wanted.settings.objectives = {"distance - 0.1 * strain"};
+  wanted.settings.trials.strain_limit = 1;
+  wanted.settings.configuration.environment = Land{};
+  wanted.settings.configuration.dt = 2e-3;
+  run.evolve(wanted, founders(2));
   finish(run);
   const std::string words = read("words");
-  for (const char* word : {"--algorithm=afpo", "--genes=body", "--objective=distance - 0.1 * strain", "--population=4",
-                           "--generations=3", "--seconds=0.05", "--environment=land", "--dt=0.002", "--device=cpu"})
+  for (const char* word :
+       {"--algorithm=afpo", "--genes=body", "--objective=distance - 0.1 * strain", "--population=4", "--generations=3",
+        "--seconds=0.05", "--strain-limit=1", "--environment=land", "--dt=0.002", "--device=cpu"})
     EXPECT_THAT(words, HasSubstr(word + std::string("\n")));
   EXPECT_TRUE(words.starts_with("evolve\n" + path("run") + "\n")) << words;
   EXPECT_EQ(read("founders"), "0000-voxel-5-0.json\n0001-voxel-5-1.json\n");
@@ -156,7 +164,7 @@ TEST_F(LiveRunTest, TheProcessGetsTheRobotsAndTheSettings) {
 
 TEST_F(LiveRunTest, TheLastLineOfAProcessThatFailsIsReported) {
   LiveRun run(program("printf 'progress 1\\rmercury: something\\nmercury: --objective: nonsense\\n' >&2; exit 2"));
-  run.evolve(request(), founders(1), configuration_);
+  run.evolve(request(), founders(1));
   finish(run);
   EXPECT_THAT(texts(run), ElementsAre("--objective: nonsense"));
   EXPECT_EQ(run.problem(), "--objective: nonsense");
@@ -165,14 +173,14 @@ TEST_F(LiveRunTest, TheLastLineOfAProcessThatFailsIsReported) {
 
 TEST_F(LiveRunTest, AProcessThatIsKilledIsReported) {
   LiveRun run(program("kill -9 $$"));
-  run.evolve(request(), founders(1), configuration_);
+  run.evolve(request(), founders(1));
   finish(run);
   EXPECT_THAT(texts(run), ElementsAre(HasSubstr("killed")));
 }
 
 TEST_F(LiveRunTest, AProgramThatIsMissingIsReported) {
   LiveRun run(path("no-such-program"));
-  run.evolve(request(), founders(1), configuration_);
+  run.evolve(request(), founders(1));
   finish(run);
   EXPECT_THAT(texts(run), ElementsAre(HasSubstr("no-such-program")));
 }
@@ -181,7 +189,7 @@ TEST_F(LiveRunTest, TheEndOfTheWindowStopsTheProcessInAnOrderlyWay) {
   {
     LiveRun run(program("trap 'echo orderly > " + path("end") + "; exit 1' TERM; echo > " + path("ready") +
                         "; while :; do :; done"));
-    run.evolve(request(), founders(1), configuration_);
+    run.evolve(request(), founders(1));
     for (; !std::filesystem::exists(path("ready")); std::this_thread::yield()) run.frame();
   }
   EXPECT_EQ(read("end"), "orderly\n");
@@ -191,7 +199,7 @@ TEST_F(LiveRunTest, AProcessThatIsLeftRunningOutlivesTheWindow) {
   {
     LiveRun run(
         program("echo > " + path("ready") + "; while [ ! -e " + path("go") + " ]; do :; done; echo > " + path("end")));
-    run.evolve(request(), founders(1), configuration_);
+    run.evolve(request(), founders(1));
     for (; !std::filesystem::exists(path("ready")); std::this_thread::yield()) run.frame();
     run.leave_running();
     EXPECT_EQ(run.activity(), Activity::none);

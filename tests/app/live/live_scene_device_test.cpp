@@ -11,7 +11,7 @@
 #include "app/video/position_bridge.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/random_voxel.h"
-#include "render/context.h"
+#include "render/context/context.h"
 #include "render/readback.h"
 #include "render/renderer.h"
 #include "tests/app/live/live_scene_setup.h"

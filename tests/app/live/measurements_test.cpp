@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "app/live/pace.h"
+#include "app/live/stepping.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
 

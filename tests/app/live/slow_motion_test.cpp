@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "app/live/slow_motion.h"
+#include "app/live/live_picture.h"
 
 namespace mercury {
 namespace {

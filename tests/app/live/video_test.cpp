@@ -6,7 +6,7 @@
 #include <cmath>
 #include <thread>
 
-#include "app/live/screen_recording.h"
+#include "app/live/group_video.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/live/carried_state.h"
+#include "app/live/population.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"

@@ -7,7 +7,6 @@
 #include <GLFW/glfw3.h>
 
 #include "app/window/panels/color_section.h"
-#include "app/window/panels/key_hint.h"
 #include "tests/app/program.h"
 
 namespace mercury::window {

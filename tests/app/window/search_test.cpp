@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/window/toolkit/fuzzy_match.h"
 #include "app/window/toolkit/plot.h"
+#include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
 namespace {

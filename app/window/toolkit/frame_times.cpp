@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/toolkit/frame_times.h"
+
+#include <algorithm>
+
+namespace mercury::window {
+namespace {
+
+constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
+constexpr double rare_frame_time = 1.0 / 20;  // while the GPU is left to the steps [s]
+constexpr double picture_share = 0.05;        // of the GPU's time, then
+// While input is waiting, frames are left out for this multiple of the time that the last one took.
+constexpr double backlog_factor = 4;
+
+}  // namespace
+
+double Pacing::wait(double spent, bool gpu_for_steps) const {
+  if (gpu_for_steps) return std::max(0.0, rare_frame_time - spent);
+  return paced_ ? std::max(0.0, frame_time - spent) : 0;
+}
+
+bool Pacing::leaves_out_frame(bool backlog) const {
+  return backlog && since(shown_at_) < backlog_factor * frame_seconds_;
+}
+
+bool Pacing::keeps_picture(bool gpu_for_steps, double draw_seconds) const {
+  return gpu_for_steps && since(drawn_at_) < (1 / picture_share - 1) * draw_seconds;
+}
+
+void Pacing::showed_frame(double seconds) {
+  shown_at_ = Clock::now();
+  frame_seconds_ = seconds;
+}
+
+void FrameHistory::add(const FrameTimes& times) {
+  constexpr std::size_t max_frames = 240;
+  frames_.push_back(times);
+  if (frames_.size() > max_frames) frames_.pop_front();
+}
+
+FrameTimes FrameHistory::mean() const {
+  FrameTimes mean;
+  for (const FrameTimes& times : frames_) {
+    const double share = 1.0 / static_cast<double>(frames_.size());
+    mean.whole += share * times.whole;
+    mean.scene += share * times.scene;
+    mean.positions += share * times.positions;
+    mean.picture += share * times.picture;
+    mean.panels += share * times.panels;
+    mean.thumbnails += share * times.thumbnails;
+    mean.present += share * times.present;
+  }
+  return mean;
+}
+
+}  // namespace mercury::window

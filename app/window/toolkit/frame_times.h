@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// When the window draws: how long it waits between two frames, which pictures it leaves out, and how long the last
+// frames took.
+#pragma once
+
+#include <chrono>
+#include <deque>
+
+namespace mercury::window {
+
+class Pacing {
+ public:
+  // `paced`: at most as often as displays show pictures; otherwise as often as possible.
+  explicit Pacing(bool paced) : paced_(paced) {}
+
+  // How long the next frame may wait for events [s]. `spent`: since the last one began [s]. `gpu_for_steps`: the user
+  // only watches robots that step as fast as a GPU can, and what drawing takes of its time is missing there.
+  double wait(double spent, bool gpu_for_steps) const;
+  // If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.
+  bool leaves_out_frame(bool backlog) const;
+  // Whether the robots of the last picture stay: then pictures get a small share of the GPU's time.
+  bool keeps_picture(bool gpu_for_steps, double draw_seconds) const;
+
+  void drew_robots() { drawn_at_ = Clock::now(); }
+  void showed_frame(double seconds);  // that drawing and showing it took
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+  bool paced_;
+  Clock::time_point shown_at_, drawn_at_;
+  double frame_seconds_ = 0;  // of the last frame that was shown
+};
+
+// The parts of one frame [s].
+struct FrameTimes {
+  double whole = 0;      // from one frame to the next
+  double scene = 0;      // taking over the newest state from the physics
+  double positions = 0;  // part of the picture: bringing positions to the renderer
+  double picture = 0;    // drawing the robots
+  double panels = 0;     // drawing the panels
+  double thumbnails = 0;
+  double present = 0;  // bringing picture and panels to the display
+};
+
+class FrameHistory {
+ public:
+  // Keeps the last 240 frames.
+  void add(const FrameTimes& times);
+  const std::deque<FrameTimes>& frames() const { return frames_; }
+  FrameTimes mean() const;
+
+ private:
+  std::deque<FrameTimes> frames_;
+};
+
+}  // namespace mercury::window

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/window/viewport/marks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+#include "render/cut.h"
+
+namespace mercury::window {
+namespace {
+
+// on_screen() if it is in front of the camera.
+std::optional<ImVec2> seen_at(const ViewportArea& area, const render::Camera& camera, const render::Vector3& point) {
+  const render::Vector3 p = camera.project(point, static_cast<int>(area.width()), static_cast<int>(area.height()));
+  return p.is_finite() && p.z >= camera.near ? std::optional(on_screen(area, camera, point)) : std::nullopt;
+}
+
+// Where a window of that size covers neither the two points nor the legend, if there is such a place.
+ImVec2 free_corner(const ViewportArea& area, ImVec2 size, ImVec2 a, ImVec2 b, const Box& legend) {
+  const float gap = 2 * ImGui::GetFontSize();
+  const float right = std::max(a.x, b.x) + gap, left = std::min(a.x, b.x) - gap - size.x;
+  const float above = std::min(a.y, b.y) - size.y - gap, below = std::max(a.y, b.y) + gap;
+  const auto inside = [&](float x, float y) {
+    return ImVec2(std::clamp(x, area.low.x, std::max(area.low.x, area.high.x - size.x)),
+                  std::clamp(y, area.low.y, std::max(area.low.y, area.high.y - size.y)));
+  };
+  const ImVec2 corners[] = {inside(right, above), inside(left, above), inside(right, below), inside(left, below)};
+  for (const ImVec2& corner : corners) {
+    const Box box{corner, {corner.x + size.x, corner.y + size.y}};
+    if (!box.meets(legend) && !box.holds(a) && !box.holds(b)) return corner;
+  }
+  return corners[1];
+}
+
+constexpr float shortest = 12;  // line on which the handle moves; below it the mouse moves it up and down [pixels]
+
+std::span<const float> floats(std::span<const Vec3> points) {
+  return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
+}
+
+// The index in the snapshot of the first selected robot, or of the first one that is visible.
+std::optional<std::size_t> robot_with_handle(LiveScene& scene) {
+  const Snapshot& snapshot = scene.snapshot();
+  const auto shown = [&](RobotId id) {
+    const auto index = snapshot.robots->index_of(id);
+    const bool seen = index && *index < scene.picture().offsets().size() && !snapshot.telemetry[*index].exploded;
+    return seen && !scene.is_hidden(id) ? index : std::nullopt;
+  };
+  for (const RobotId id : scene.selection())
+    if (const auto index = shown(id)) return index;
+  for (const DocumentRobot& robot : scene.document().robots)
+    if (const auto index = shown(robot.body.id)) return index;
+  return std::nullopt;
+}
+
+// Where the mouse is on the line from `low` to `high`, in percent.
+float percent_at(ImVec2 mouse, ImVec2 low, ImVec2 high, float before) {
+  const ImVec2 line{high.x - low.x, high.y - low.y};
+  const float squared = line.x * line.x + line.y * line.y;
+  if (squared < shortest * shortest) return before - 0.5f * ImGui::GetIO().MouseDelta.y;
+  return 100 * ((mouse.x - low.x) * line.x + (mouse.y - low.y) * line.y) / squared;
+}
+
+// The part of a spring in front of the camera, in window coordinates.
+struct Line {
+  ImVec2 a, b;
+  bool sees_a = true, sees_b = true;  // whether the ends are in front of the camera
+};
+
+std::optional<Line> line_of(const CulpritSpring& spring, const ViewportArea& area, const render::Camera& camera) {
+  const render::Vector3 forward = (camera.target - camera.eye).normalized();
+  const auto depth = [&](const render::Vector3& p) { return forward.dot(p - camera.eye) - camera.near; };
+  const float depth_a = depth(spring.at_a), depth_b = depth(spring.at_b);
+  if (depth_a <= 0 && depth_b <= 0) return std::nullopt;
+  const render::Vector3 along = spring.at_b - spring.at_a;
+  const float crossing = depth_a / (depth_a - depth_b);
+  const auto end = [&](const render::Vector3& p, float d) {
+    return on_screen(area, camera,
+                     d > 0 ? p : render::Vector3(spring.at_a + (crossing + (depth_a > 0 ? -1e-3f : 1e-3f)) * along));
+  };
+  return Line{end(spring.at_a, depth_a), end(spring.at_b, depth_b), depth_a > 0, depth_b > 0};
+}
+
+bool inside(const ViewportArea& area, ImVec2 p) {
+  return p.x >= area.low.x && p.x <= area.high.x && p.y >= area.low.y && p.y <= area.high.y;
+}
+
+// A bar and two rings with an outline, so that they stand out from any background.
+void draw_mark(const Line& line, bool chosen) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float text = ImGui::GetFontSize(), bar = (chosen ? 0.22f : 0.12f) * text, ring = 0.42f * text,
+              edge = 0.14f * text;
+  const ImU32 mark = palette().mark, outline = palette().mark_outline;
+  list.AddLine(line.a, line.b, outline, bar + 2 * edge);
+  for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
+    if (sees) list.AddCircle(at, ring, outline, 0, bar + 2 * edge);
+  list.AddLine(line.a, line.b, mark, bar);
+  for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
+    if (sees) list.AddCircle(at, ring, mark, 0, bar);
+}
+
+std::string length_text(float meters) {
+  return meters < 1 ? fmt::format("{:.3g} cm", 100 * meters) : fmt::format("{:.3g} m", meters);
+}
+
+std::vector<std::string> lines_of(const ExplodedRobot& robot, bool all) {
+  const CulpritSpring& spring = *robot.spring;
+  std::vector<std::string> lines{fmt::format("{}: spring {} exploded first", robot.name, spring.index)};
+  if (!all) return lines;
+  lines.push_back(fmt::format("masses {} and {}, {}", spring.a, spring.b, spring.figures.material_name));
+  lines.push_back(
+      fmt::format("{} long, {} at rest", length_text(spring.figures.length), length_text(spring.figures.rest_length)));
+  return lines;
+}
+
+// Finds room for text beside the ends of the line, or above or below its middle. Returns nothing if all positions are
+// taken.
+std::optional<Box> place_of(const std::vector<std::string>& lines, const Line& line, const ViewportArea& area,
+                            std::span<const Box> taken) {
+  const float text = ImGui::GetFontSize(), margin = 0.5f * text, away = 0.9f * text;
+  ImVec2 size{0, 1.2f * text * static_cast<float>(lines.size()) + margin};
+  for (const std::string& one : lines) size.x = std::max(size.x, ImGui::CalcTextSize(one.c_str()).x + 2 * margin);
+  const auto& [left, right] = line.a.x < line.b.x ? std::pair{line.a, line.b} : std::pair{line.b, line.a};
+  const ImVec2 middle{(left.x + right.x) / 2 - size.x / 2, (left.y + right.y) / 2};
+  const ImVec2 places[] = {{right.x + away, right.y - size.y / 2},
+                           {left.x - away - size.x, left.y - size.y / 2},
+                           {middle.x, std::min(left.y, right.y) - away - size.y},
+                           {middle.x, std::max(left.y, right.y) + away},
+                           {middle.x, middle.y - away - size.y},
+                           {middle.x, middle.y + away}};
+  for (const ImVec2 low : places) {
+    const Box box{low, {low.x + size.x, low.y + size.y}};
+    if (inside(area, box.low) && inside(area, box.high) &&
+        std::ranges::none_of(taken, [&](const Box& other) { return box.meets(other); }))
+      return box;
+  }
+  return std::nullopt;
+}
+
+void write(const std::vector<std::string>& lines, const Box& place) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float text = ImGui::GetFontSize(), margin = 0.5f * text;
+  list.AddRectFilled(place.low, place.high, palette().on_picture, 0.35f * text);
+  list.AddRect(place.low, place.high, palette().mark, 0.35f * text, 0, 0.08f * text);
+  float y = place.low.y + margin / 2;
+  for (std::size_t i = 0; i < lines.size(); ++i, y += 1.2f * text)
+    list.AddText({place.low.x + margin, y}, i == 0 ? ImGui::GetColorU32(ImGuiCol_Text) : palette().faint,
+                 lines[i].c_str());
+}
+
+}  // namespace
+
+std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
+                                    const render::Camera& camera) {
+  const auto index = scene.pointed_snapshot().robots->index_of(hit.robot);
+  const LivePicture& picture = scene.pointed_picture();
+  if (!index || *index >= picture.offsets().size()) return std::nullopt;
+  const Robot& robot = *scene.pointed_snapshot().robots->robots[*index].robot;
+  const std::span<const Vec3> positions = picture.positions_of(*index);
+  const auto place = [&](std::uint16_t mass) {
+    return seen_at(area, camera, render::Vector3(positions[mass]) + picture.offsets()[*index]);
+  };
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float text = ImGui::GetFontSize(), thick = 0.16f * text, edge = 0.09f * text;
+  const ImU32 mark = palette().warning, outline = palette().mark_outline;
+  list.PushClipRect(area.low, area.high);
+  if (hit.spring && *hit.spring < robot.springs.size()) {
+    const auto a = place(robot.springs[*hit.spring].a), b = place(robot.springs[*hit.spring].b);
+    if (a && b) {
+      list.AddLine(*a, *b, outline, thick + 2 * edge);
+      list.AddLine(*a, *b, mark, thick);
+    }
+  }
+  const auto at = hit.mass < positions.size() ? place(hit.mass) : std::nullopt;
+  if (at) {
+    list.AddCircleFilled(*at, 0.3f * text + edge, outline);
+    list.AddCircleFilled(*at, 0.3f * text, mark);
+  }
+  list.PopClipRect();
+  return at;
+}
+
+void write_figures(const LiveScene& scene, const Hit& hit) {
+  const HitDetails figures = scene.describe(hit);
+  ImGui::TextUnformatted(figures.robot.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
+  const std::string speed = figures.mass.speed ? fmt::format("{:.3g} m/s", *figures.mass.speed) : "...";
+  ImGui::Text("mass %d: %s, %zu springs", static_cast<int>(hit.mass), speed.c_str(), figures.mass.springs);
+  ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x),
+              static_cast<double>(figures.mass.position.y), static_cast<double>(figures.mass.position.z));
+  if (figures.spring) {
+    ImGui::Text("spring: %s", figures.spring->material_name.c_str());
+    ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
+                static_cast<double>(figures.spring->force));
+    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
+                static_cast<double>(figures.spring->rest_length));
+  }
+  ImGui::PopStyleColor();
+}
+
+float figures_height() { return 6 * ImGui::GetTextLineHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y; }
+
+bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const ViewportArea& area,
+                         const render::Camera& camera, const Box& legend) {
+  if (!scene.pointed_snapshot().robots->index_of(hit.robot)) return false;
+  const auto at = draw_hit_mark(scene, hit, area, camera);
+  const float text = ImGui::GetFontSize();
+  const ImVec2 mass = at.value_or(ImVec2(area.low.x, area.high.y));
+  // Beside the point that was clicked, too, so that a second click there reaches the robot.
+  const ImVec2 clicked = seen_at(area, camera, hit.point).value_or(mass);
+  const ImVec2 size{18 * text, figures_height() + 1.6f * text};
+  const ImVec2 corner = free_corner(area, size, mass, clicked, legend);
+  const float width = size.x, x = corner.x;
+  if (at)
+    ImGui::GetBackgroundDrawList()->AddLine(*at, {corner.x + (x > mass.x ? 0 : width), corner.y + 2 * text},
+                                            palette().warning, 0.06f * text);
+  ImGui::SetNextWindowPos(corner);
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {FLT_MAX, FLT_MAX});
+  ImGui::Begin("##pinned", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  write_figures(scene, hit);
+  const bool closed = ImGui::SmallButton("close");
+  log.item("pinned.close");
+  const ImVec2 low = ImGui::GetWindowPos();
+  log.item("panel.Pinned", low, {low.x + ImGui::GetWindowWidth(), low.y + ImGui::GetWindowHeight()});
+  ImGui::End();
+  return !closed;
+}
+
+bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, ViewSettings& view,
+                     EventLog& log) const {
+  const std::optional<std::size_t> robot = view.cut ? robot_with_handle(scene) : std::nullopt;
+  if (!robot) return false;
+  const auto frame = render::cut_frame(view.cut->axis, floats(scene.snapshot().robots->robots[*robot].robot->masses),
+                                       floats(scene.picture().positions_of(*robot)));
+  if (!frame) return false;
+  const auto at = [&](float place) {
+    return on_screen(
+        area, camera,
+        scene.picture().offsets()[*robot] + frame->center + (place - frame->axis.dot(frame->center)) * frame->axis);
+  };
+  const ImVec2 low = at(frame->low), high = at(frame->high), handle = at(frame->place_of(*view.cut));
+  const float text = ImGui::GetFontSize(), radius = 0.55f * text;
+  if (!(handle.x > area.low.x + text && handle.x < area.high.x - text && handle.y > area.low.y + text &&
+        handle.y < area.high.y - text))
+    return false;
+  ImGui::SetNextWindowPos({handle.x - 1.5f * radius, handle.y - 1.5f * radius});
+  ImGui::SetNextWindowSize({3 * radius, 3 * radius});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::Begin("##cut", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
+  ImGui::InvisibleButton("handle", {3 * radius, 3 * radius});
+  log.item("cut.handle");
+  const bool active = ImGui::IsItemActive(), marked = active || ImGui::IsItemHovered();
+  if (!active) tooltip("drag: where each robot is cut");
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect(area.low, area.high);
+  const ImU32 color = marked ? palette().accent : ImGui::GetColorU32(ImGuiCol_Text);
+  list.AddLine(low, high, palette().on_picture, 0.32f * text);
+  list.AddLine(low, high, color, 0.1f * text);
+  for (const ImVec2 end : {low, high}) list.AddCircleFilled(end, 0.16f * text, color);
+  list.AddCircleFilled(handle, radius + 0.1f * text, palette().on_picture);
+  list.AddCircleFilled(handle, radius, color);
+  list.AddCircle(handle, radius, IM_COL32(0, 0, 0, 160));
+  list.PopClipRect();
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  if (!active || (moved.x == 0 && moved.y == 0)) return false;
+  // A place in meters becomes a share of this robot, and of all others.
+  view.cut->shift = 0;
+  view.cut->percent = std::clamp(percent_at(ImGui::GetIO().MousePos, low, high, view.cut->percent), 0.0f, 100.0f);
+  return true;
+}
+
+void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks, EventLog& log,
+                          const ViewportArea& area, const render::Camera& camera) {
+  std::vector<std::pair<const ExplodedRobot*, Line>> drawn;
+  for (const ExplodedRobot& robot : robots)
+    if (const std::optional<Line> line = robot.spring ? line_of(*robot.spring, area, camera) : std::nullopt)
+      drawn.emplace_back(&robot, *line);
+  std::stable_partition(drawn.begin(), drawn.end(), [&](const auto& one) { return one.first->robot == marks.chosen; });
+  ImGui::GetBackgroundDrawList()->PushClipRect(area.low, area.high);
+  // The upper edge has the picture's caption.
+  const Box caption{area.low, {area.high.x, area.low.y + 2.2f * ImGui::GetFontSize()}};
+  std::vector<Box> taken{{marks.covered_low, marks.covered_high}, caption};
+  const float end = 0.7f * ImGui::GetFontSize();
+  for (const auto& [robot, line] : drawn) {
+    draw_mark(line, robot->robot == marks.chosen);
+    for (const ImVec2 at : {line.a, line.b}) taken.push_back({{at.x - end, at.y - end}, {at.x + end, at.y + end}});
+  }
+  for (const auto& [robot, line] : drawn) {
+    const bool chosen = robot->robot == marks.chosen;
+    if (chosen) {
+      log.item("explosion.a", line.a, line.a);
+      log.item("explosion.b", line.b, line.b);
+    }
+    const std::vector<std::string> lines = lines_of(*robot, chosen);
+    const std::optional<Box> place = place_of(lines, line, area, taken);
+    if (!place) continue;
+    write(lines, *place);
+    taken.push_back(*place);
+  }
+  ImGui::GetBackgroundDrawList()->PopClipRect();
+}
+
+}  // namespace mercury::window

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws the skins of all bodies: one call for the picture, one for the shadow map, one for depth alone. And ghosts, and
+// the ground under bodies that move over it.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "render/context/gl_objects.h"
+#include "render/context/programs.h"
+#include "render/passes/scene_buffers.h"
+#include "render/passes/visibility_passes.h"
+#include "render/scene.h"
+
+namespace mercury::render {
+
+class SkinPass {
+ public:
+  explicit SkinPass(const std::string& defines);
+  // Call when the bodies have been replaced.
+  void attach(const Bodies& bodies);
+  // Computes from the positions and the frame block: normals of faces, and at masses if `smooth`; the lists of faces to
+  // draw, and a SeenFace for each that is seen. `cut`: a plane cuts the bodies of this picture.
+  void deform(const Bodies& bodies, bool smooth, bool cut);
+
+  enum class ColorBy { materials, face_values, mass_values };
+  // `variant`: lines of #define; shaders/skin.frag explains them.
+  void draw(ColorBy color_by, const Scale& scale, const std::string& variant) const;
+  // Draws depth and, into a color attachment if there is one, the number of the face, counted from 1. `variant`: "",
+  // or cut_variant for the plane in place of backs that show a cut, or backs_variant for these backs themselves; with
+  // both, the number is that of the body (shaders/cut.glsl).
+  void draw_depth(const std::string& variant) const;
+  void draw_shadow() const;
+
+ private:
+  void find_mass_normals(const Bodies& bodies) const;
+  void gather_seen_faces(const Bodies& bodies) const;
+  void draw_seen() const;
+
+  VertexArray corners_;
+  Program face_normals_program_, mass_normals_program_, seen_faces_program_, shadow_;
+  ProgramVariants depth_, skin_;
+  CullPass cull_;
+  bool cut_ = false;
+  Buffer seen_faces_, face_normals_, face_areas_, mass_normals_;
+};
+
+inline constexpr const char* cut_variant = "#define CUT\n";
+inline constexpr const char* backs_variant = "#define CUT\n#define BACKS\n";
+
+// Runs the current compute program, with a local size of 64, for at least `count` invocations.
+void dispatch(std::size_t count);
+
+// Ghosts: translucent bodies in one color, over everything else.
+class GhostPass {
+ public:
+  GhostPass();
+  // Call it last of all that has a depth, with the depth test on. A ghost is hidden by what is nearer, and where it
+  // coincides with a body. Its own depth is written first, so that each pixel shows its nearest face only.
+  void draw(std::span<const Ghost> ghosts);
+
+ private:
+  VertexArray empty_;
+  Program program_;
+  StreamBuffer corners_;
+};
+
+// Round patches of ground that move under a body (Patch of render/scene.h).
+class PatchPass {
+ public:
+  PatchPass();
+  // Draws over the ground, behind bodies. `variant`: that of the backdrop.
+  void draw(std::span<const Patch> patches, const std::string& variant);
+
+ private:
+  VertexArray empty_;
+  ProgramVariants program_;
+  StreamBuffer patches_;
+};
+
+}  // namespace mercury::render

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/text/overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "render/text/font.h"
+#include "render/text/label_layout.h"
+
+namespace mercury::render {
+namespace {
+
+void set(float (&to)[4], Color color, float opacity) {
+  const auto light = linear_of(color);
+  const std::array<float, 4> all{light[0], light[1], light[2], opacity};
+  std::copy(all.begin(), all.end(), to);
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+constexpr float small = 0.82f;           // size of second lines
+constexpr float histogram_width = 2.2f;  // [sizes of text]
+
+}  // namespace
+
+float round_length(float most) {
+  const float power = std::pow(10.0f, std::floor(std::log10(std::max(most, 1e-30f))));
+  for (const float factor : {5.0f, 2.0f, 1.0f})
+    if (factor * power <= most * 1.0001f) return factor * power;
+  return power;
+}
+
+Overlay::Overlay(int width, int height, float text_size, const Style& style)
+    : width_(float(width)), height_(float(height)),
+      text_size_(text_size > 0 ? text_size : std::max(13.0f, std::round(float(height) / 42.0f))), style_(style) {}
+
+void Overlay::text(std::string_view utf8, float x, float y, float size, float align, float opacity) {
+  const FontData& font = font_data();
+  const float scale = size / float(font.size);
+  float pen = x - align * text_width(utf8, size);
+  const float base = y + scale * font.ascent;
+  for (const int code : characters_of(utf8)) {
+    const FontGlyph& glyph = glyph_of(code);
+    OverlayQuad quad;
+    quad.kind = OverlayQuad::glyph;
+    quad.rectangle = {pen + scale * float(glyph.left), base + scale * float(glyph.top), scale * float(glyph.width),
+                      scale * float(glyph.height)};
+    quad.source = {float(glyph.x), float(glyph.y), float(glyph.width), float(glyph.height)};
+    quad.sharpness = scale * float(font.spread) * 255 / 128;
+    set(quad.color, style_.text, opacity);
+    set(quad.edge, style_.text_edge, style_.text_edge_opacity * opacity);
+    if (glyph.width > 0) quads_.push_back(quad);
+    pen += scale * glyph.advance;
+  }
+}
+
+void Overlay::box(const Rectangle& area, float radius, Color color, float opacity) {
+  OverlayQuad quad;
+  quad.rectangle = area;
+  quad.source.x = radius;
+  set(quad.color, color, opacity);
+  quads_.push_back(quad);
+}
+
+void Overlay::scale_bar(const Rectangle& area, Colormap map) {
+  OverlayQuad quad;
+  quad.kind = OverlayQuad::scale;
+  quad.rectangle = area;
+  quad.map = std::uint32_t(map);
+  quads_.push_back(quad);
+}
+
+void Overlay::backing(const Rectangle& area, float opacity) {
+  box(area, 0.35f * text_size_, style_.text_edge, opacity);
+}
+
+void Overlay::label(const Rectangle& area, std::span<const std::string_view> lines) {
+  backing(area, 0.5f);
+  float y = area.y + 0.09f * text_size_;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const float size = text_size_ * (i == 0 ? 1 : small);
+    text(lines[i], area.x + 0.5f * area.width, y, size, 0.5f, i == 0 ? 1.0f : 0.85f);
+    y += size;
+  }
+}
+
+void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodies, const Camera& camera) {
+  const float pad = 0.3f * text_size_;
+  std::vector<const Label*> shown;
+  std::vector<LabelRequest> requests;
+  for (const Label& label : labels) {
+    if (label.body >= bodies.size() || label.text.empty()) continue;
+    const auto body = covered_by(bodies[label.body], camera, int(width_), int(height_));
+    if (!body) continue;
+    const std::vector<std::string_view> lines = lines_of(label.text);
+    LabelRequest request{.body = *body,
+                         .height = text_size_ * (1 + small * float(lines.size() - 1)) + 0.8f * pad,
+                         .depth = camera.project(bodies[label.body].center(), int(width_), int(height_)).z,
+                         .priority = label.priority,
+                         .forced = label.forced};
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      request.width = std::max(request.width, text_width(lines[i], text_size_ * (i == 0 ? 1 : small)) + 2 * pad);
+    shown.push_back(&label);
+    requests.push_back(request);
+  }
+  const auto placed = place_labels(requests, {0, 0, width_, height_});
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    if (placed[i]) label(*placed[i], lines_of(shown[i]->text));
+}
+
+void Overlay::texts(std::span<const Text> texts, const Camera& camera) {
+  for (const Text& t : texts) {
+    const Vector3 at = camera.project(t.at, int(width_), int(height_));
+    const float size = t.size * text_size_;
+    if (at.z > camera.near) text(t.text, at.x, at.y - t.align_y * size, size, t.align_x);
+  }
+}
+
+void Overlay::histogram(const Rectangle& area, std::span<const float> shares) {
+  const float step = area.height / float(shares.size());
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const float across = std::clamp(shares[i], 0.0f, 1.0f) * area.width;
+    if (across <= 0) continue;
+    const float top = area.y + area.height - float(i + 1) * step;
+    box({area.x + area.width - across, top, across, 0.8f * step}, 0, style_.text, 0.6f);
+  }
+}
+
+void Overlay::draw_scale(const Legend& legend, std::span<const Tick> ticks, float left, float top, float height) {
+  const float size = text_size_, graph = legend.histogram.empty() ? 0 : histogram_width * size;
+  const Rectangle area{std::round(left + graph), std::round(top), std::round(1.1f * size), height};
+  if (graph > 0) histogram({left, area.y, area.x - left - 0.15f * size, height}, legend.histogram);
+  scale_bar(area, legend.scale->map);
+  for (const Tick& tick : ticks) {
+    const float line = area.y + (1 - tick.position) * height;
+    box({area.x + area.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text, 0.9f);
+    text(tick.text, area.x + area.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
+  }
+}
+
+void Overlay::legend(const Legend& legend) {
+  const float size = text_size_, pad = 0.7f * size;
+  const std::string title = legend.title + (legend.unit.empty() ? "" : " [" + legend.unit + "]");
+  const std::vector<Tick> ticks = legend.scale ? ticks_of(*legend.scale) : std::vector<Tick>();
+  const float graph = legend.histogram.empty() ? 0 : histogram_width * size;
+  float widest = text_width(title, size);
+  for (const Tick& tick : ticks) widest = std::max(widest, graph + 1.9f * size + text_width(tick.text, 0.9f * size));
+  for (const auto& [color, name] : legend.swatches)
+    widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
+  const float bar = legend.scale ? std::round(std::clamp(0.36f * height_, 6 * size, 16 * size)) : 0;
+  const float rows = 1.25f * size * float(legend.swatches.size());
+  const float down = 1.5f * size + (bar > 0 ? bar + 0.6f * size : 0) + rows;
+  const Rectangle panel{width_ - widest - 3 * pad, 0.5f * (height_ - down) - pad, widest + 2 * pad, down + 1.6f * pad};
+  backing(panel, 0.55f);
+  const float left = panel.x + pad;
+  float y = panel.y + 0.8f * pad;
+  text(title, left, y, size);
+  y += 1.5f * size;
+  if (legend.scale) {
+    draw_scale(legend, ticks, left, y + 0.3f * size, bar);
+    y += bar + 0.6f * size;
+  }
+  for (const auto& [color, name] : legend.swatches) {
+    box({left - 1, y + 0.12f * size - 1, 0.95f * size + 2, 0.95f * size + 2}, 0.2f * size + 1, style_.text, 0.35f);
+    box({left, y + 0.12f * size, 0.95f * size, 0.95f * size}, 0.2f * size, color, 1);
+    text(name, left + 1.5f * size, y + 0.1f * size, 0.9f * size);
+    y += 1.25f * size;
+  }
+}
+
+void Overlay::clock(std::string_view shown) {
+  const float size = text_size_, pad = 0.45f * size;
+  const Rectangle area{size, height_ - 2.4f * size, text_width(shown, size) + 2 * pad, 1.4f * size};
+  backing(area, 0.5f);
+  text(shown, area.x + pad, area.y + 0.2f * size, size);
+}
+
+void Overlay::caption(std::string_view shown) {
+  const float size = 1.15f * text_size_, pad = 0.45f * size;
+  const std::vector<std::string_view> lines = lines_of(shown);
+  float across = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    across = std::max(across, text_width(lines[i], i == 0 ? size : small * size));
+  const float down = size * (1 + small * float(lines.size() - 1));
+  const Rectangle area{text_size_, text_size_, across + 2 * pad, down + 0.4f * size};
+  if (lines.empty()) return;
+  backing(area, 0.5f);
+  float y = area.y + 0.2f * size;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text(lines[i], area.x + pad, y, i == 0 ? size : small * size);
+    y += i == 0 ? size : small * size;
+  }
+}
+
+void Overlay::length(const Camera& camera) {
+  const float distance = (camera.eye - camera.target).norm();
+  const float pixels_a_meter = height_ / (2 * distance * std::tan(0.5f * camera.field_of_view));
+  const float shown = round_length(0.2f * width_ / pixels_a_meter);
+  const float across = shown * pixels_a_meter, size = text_size_;
+  std::array<char, 32> name{};
+  if (shown < 0.01f)
+    std::snprintf(name.data(), name.size(), "%g mm", double(1000 * shown));
+  else if (shown < 1)
+    std::snprintf(name.data(), name.size(), "%g cm", double(100 * shown));
+  else
+    std::snprintf(name.data(), name.size(), "%g m", double(shown));
+  const float x = width_ - across - 1.5f * size, y = height_ - 1.3f * size, line = std::max(1.5f, 0.12f * size);
+  backing({x - 0.5f * size, y - 1.35f * size, across + size, 2.05f * size}, 0.5f);
+  text(name.data(), x + 0.5f * across, y - 1.2f * size, size, 0.5f);
+  box({x, y, across, line}, 0, style_.text, 1);
+  box({x, y - 0.25f * size, line, 0.5f * size + line}, 0, style_.text, 1);
+  box({x + across - line, y - 0.25f * size, line, 0.5f * size + line}, 0, style_.text, 1);
+}
+
+}  // namespace mercury::render
