@@ -22,6 +22,7 @@
 #include "app/options/robot_memory.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
+#include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
@@ -277,7 +278,10 @@ void sweep(const BenchOptions& options, const Configuration& configuration, cons
 
 int bench(const BenchOptions& options) {
   const Configuration configuration = options.simulation.configuration();
-  require_positive("--least-seconds", options.least_seconds, "s");
+  constexpr double longest = 1e6;  // [s]
+  if (!(options.least_seconds > 0 && options.least_seconds <= longest))
+    throw InputError("--least-seconds", fmt::format("{} is not accepted; give a number above 0, at most {:.0f} s",
+                                                    options.least_seconds, longest));
   OutputFiles outputs = options.output.files();
   if (!options.csv.empty()) outputs.add_stream("--csv", options.csv);
   outputs.check();

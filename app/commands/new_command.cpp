@@ -88,7 +88,7 @@ void report(const ContestResult& found, const NewOptions& options) {
     say(fmt::format("{} got {:.3g} m far", winner.robot->name, winner.result.distance));
   if (found.interrupted)
     warn(fmt::format("stopped after {} of {} candidates; {}", found.tried(), options.best_of,
-                     found.winners.empty() ? "nothing was written" : "the best of these are written"));
+                     found.winners.empty() ? "no robot was written" : "the best of these are written"));
   else if (found.winners.size() < options.output.count())
     warn(fmt::format("only {} of {} candidates are sound: {}", found.winners.size(), options.best_of,
                      fates_text(found)));

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -13,6 +14,7 @@
 #include <thread>
 
 #include "app/base/interrupt.h"
+#include "app/base/messages.h"
 #include "app/base/standard_streams.h"
 #include "robots/file/whole_file.h"
 
@@ -46,11 +48,21 @@ class PipeWithReader {
   int descriptor_ = -1;
 };
 
+// A terminal would obey control characters in the names of robots; files and pipes get every byte.
+void print_results(std::string_view content) {
+  if (isatty(STDOUT_FILENO) == 0) return fmt::print("{}", content);
+  while (!content.empty()) {
+    const std::string_view line = content.substr(0, content.find('\n'));
+    fmt::print("{}\n", printable(line, 8 * line.size()));
+    content.remove_prefix(std::min(content.size(), line.size() + 1));
+  }
+}
+
 }  // namespace
 
 void write_results(const std::string& file, std::string_view content) {
   if (is_standard_output(file)) {
-    fmt::print("{}", content);
+    print_results(content);
     return;
   }
   flush_results_so_far();  // what was printed so far is not lost if this takes long, or fails

@@ -97,6 +97,40 @@ TEST_P(EveryCommand, WritesNoMessageIntoItsOutputFiles) {
 INSTANTIATE_TEST_SUITE_P(Terminal, EveryCommand, testing::ValuesIn(short_runs),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
+// --- Names of robots
+
+// `script` gives the program a terminal.
+TEST_F(FolderTest, ResultsOnATerminalDoNotControlIt) {
+  if (run_program("sh", {"-c", "command -v script"}).status != 0) GTEST_SKIP() << "no program `script`";
+  write("a.json", R"({"format": "mercury-robot", "version": 1, "name": "a\u001b[31mb", "masses": [[0,0,0],[1,0,0]],
+      "springs": [[0,1,21]], "faces": []})");
+  const std::string command =
+      std::string(MERCURY_PROGRAM) + " run " + path("a.json") + " --seconds 0.01 --device cpu -q --csv -";
+  const Outcome on_terminal = run_program("script", {"-qec", command, "/dev/null"});
+  EXPECT_EQ(on_terminal.status, 0) << on_terminal.output;
+  EXPECT_THAT(on_terminal.output, HasSubstr("a\\x1b[31mb"));
+  EXPECT_EQ(on_terminal.output.find('\x1b'), std::string::npos);
+  EXPECT_EQ(on_terminal.output.find(" ... "), std::string::npos);                   // nothing is cut
+  EXPECT_THAT(run_program("sh", {"-c", command}).output, HasSubstr("a\x1b[31mb"));  // into a pipe, every byte
+}
+
+// --- Values of options
+
+TEST_F(FolderTest, AGpuIsNotMistakenForACpu) {
+  const Outcome outcome = mercury({"bench", "--device", "gpu"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.messages, HasSubstr("cuda"));
+  EXPECT_EQ(outcome.messages.find("cpu"), std::string::npos) << outcome.messages;
+}
+
+TEST_F(FolderTest, BenchRefusesATimeThatNeverEnds) {
+  for (const char* seconds : {"1e23", "inf", "nan", "0"}) {
+    const Outcome outcome = mercury({"bench", "--least-seconds", seconds, "--device", "cpu"});
+    EXPECT_EQ(outcome.status, 2) << seconds;
+    EXPECT_THAT(outcome.messages, HasSubstr("--least-seconds: "));
+  }
+}
+
 // --- Signals
 
 // Runs a command that would take hours, sends a signal after its first message, and waits. Returns its wait status.
