@@ -42,9 +42,9 @@ Device device_named(std::string_view name) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), device.index);
     if (error == std::errc{} && end == digits.data() + digits.size() && device.index >= 0) return device;
   }
-  if (name == "gpu") throw ParameterError("device", "a GPU is named cuda, cuda:N or cuda:all");
-  throw ParameterError("device",
-                       "\"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
+  throw ParameterError("device", "\"" + std::string(name) +
+                                     "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all" +
+                                     (name == "gpu" ? "; did you mean cuda?" : ""));  // cpu would be nearest
 }
 
 int max_threads() {

@@ -87,7 +87,9 @@ TEST(Configuration, ErrorsForUnknownNamesListTheAcceptedOnes) {
   EXPECT_EQ(message_of([] { environment_named("ocean+lava"); }),
             "environment: \"ocean+lava\" is not an environment; give ocean, ocean-simple, land or space, followed by "
             "+ground or +contacts or both");
-  for (const char* name : {"gpu", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})
+  EXPECT_EQ(message_of([] { device_named("gpu"); }),
+            "device: \"gpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all; did you mean cuda?");
+  for (const char* name : {"gpus", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})
     EXPECT_EQ(message_of([&] { device_named(name); }),
               "device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
 }

@@ -100,7 +100,7 @@ TEST_F(Outputs, ExistingFilesStayUnlessForced) {
   write("mine", "mine");
   const std::vector<std::vector<std::string>> commands{
       {"run", path("eel.json"), "--seconds", "1e6", "--csv", path("mine")},
-      {"bench", "--least-seconds", "1e9", "--csv", path("mine")},
+      {"bench", "--least-seconds", "1e6", "--csv", path("mine")},
       {"render", path("eel.json"), "--seconds", "1e4", "-o", path("mine.mp4")},
       {"render", path("eel.json"), "--still", "1e6", "-o", path("mine.png")},
       {"render", path("eel.json"), "--seconds", "1e4", "--each", "-o", path("m.mp4")},

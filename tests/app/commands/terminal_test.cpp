@@ -119,8 +119,7 @@ TEST_F(FolderTest, ResultsOnATerminalDoNotControlIt) {
 TEST_F(FolderTest, AGpuIsNotMistakenForACpu) {
   const Outcome outcome = mercury({"bench", "--device", "gpu"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.messages, HasSubstr("cuda"));
-  EXPECT_EQ(outcome.messages.find("cpu"), std::string::npos) << outcome.messages;
+  EXPECT_THAT(outcome.messages, HasSubstr("did you mean cuda?"));
 }
 
 TEST_F(FolderTest, BenchRefusesATimeThatNeverEnds) {
