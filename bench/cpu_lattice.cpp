@@ -12,12 +12,12 @@
 namespace mercury::bench {
 namespace {
 
-using Random = std::mt19937_64;
+using Engine = std::mt19937_64;
 
 class Voxels {
  public:
   Voxels(int n, double holes, std::uint64_t seed) : n_(n), solid_(static_cast<std::size_t>(n * n * n)) {
-    Random random(seed);
+    Engine random(seed);
     for (std::size_t i = 0; i < solid_.size(); ++i) solid_[i] = static_cast<double>(random() >> 11) * 0x1p-53 >= holes;
   }
 
@@ -70,7 +70,7 @@ class Voxels {
         for (const int b : masses)
           if (a < b) joined.emplace(a, b);
     });
-    Random random(2);
+    Engine random(2);
     for (const auto& [a, b] : joined) {
       const auto i = static_cast<std::uint16_t>(a), j = static_cast<std::uint16_t>(b);
       const auto material = static_cast<MaterialId>(1 + random() % (default_material_count - 1));
@@ -111,7 +111,7 @@ Robot lattice_with_holes(int n, double share, std::uint64_t seed) { return Voxel
 Robot scrambled(const Robot& robot, std::uint64_t seed) {
   std::vector<std::uint16_t> number(robot.masses.size());
   std::iota(number.begin(), number.end(), std::uint16_t{0});
-  Random random(seed);
+  Engine random(seed);
   for (std::size_t i = number.size(); i > 1; --i) std::swap(number[i - 1], number[random() % i]);
   Robot result = robot;
   for (std::size_t i = 0; i < number.size(); ++i) result.masses[number[i]] = robot.masses[i];

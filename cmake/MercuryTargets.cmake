@@ -14,6 +14,11 @@ target_compile_options(mercury_build_flags INTERFACE
 # GCC 13 reports every reference that a call with a temporary argument returns as dangling.
 target_compile_options(mercury_build_flags INTERFACE
   $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,13>>:-Wno-dangling-reference>)
+# Sources that are compiled together see the names of each other's files.
+if(MERCURY_UNITY)
+  target_compile_options(mercury_build_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-shadow>
+    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wshadow=local> $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+endif()
 if(MERCURY_WERROR)
   target_compile_options(mercury_build_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Werror>

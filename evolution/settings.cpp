@@ -1,18 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <span>
 #include <string>
 
+#include "evolution/selection/registry.h"
 #include "mercury/error.h"
 #include "mercury/evolution.h"
+#include "mercury/quantity.h"
+#include "robots/names.h"
 #include "robots/number_text.h"
 
 namespace mercury {
 namespace {
 
+constexpr int most_cells = 1'000'000;  // of a map
+
 void require(bool holds, const char* parameter, const std::string& problem) {
   if (!holds) throw ParameterError(parameter, problem);
 }
 
+void validate_axes(std::span<const MapAxis> axes) {
+  double cells = 1;
+  for (const MapAxis& axis : axes) {
+    require(find_quantity(axis.quantity).has_value(), "axes",
+            "there is no quantity \"" + axis.quantity + "\"; give one of " + list_of(names_of_quantities()));
+    require(std::isfinite(axis.lowest) && std::isfinite(axis.highest) && std::isfinite(axis.highest - axis.lowest) &&
+                axis.lowest < axis.highest,
+            "axes", axis.quantity + " needs two finite ends, the lower one first");
+    require(axis.cells >= 1, "axes", axis.quantity + " needs at least one cell");
+    cells *= axis.cells;
+  }
+  require(cells <= most_cells, "axes", "the map has more than " + std::to_string(most_cells) + " cells");
+}
+
 }  // namespace
+
+void validate(const AlgorithmSettings& settings) {
+  check_parameters(settings);
+  validate_axes(settings.axes);
+  require(settings.name != "map-elites" || !settings.axes.empty(), "axes",
+          "map-elites needs one or more quantities, such as size and muscle_share");
+}
 
 void validate(const TrialSettings& trials) {
   require(trials.settle == 0 || (trials.settle > 0 && trials.settle < trials.seconds), "settle",

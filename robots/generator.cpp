@@ -8,6 +8,7 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "robots/make_all.h"
+#include "robots/names.h"
 #include "robots/number_text.h"
 
 namespace mercury {
@@ -71,14 +72,6 @@ const std::vector<Generator>& generators() {
 
 namespace {
 
-// "a, b or c"
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-  return text;
-}
-
 // Refuses values out of a parameter's range.
 class Check {
  public:
@@ -131,7 +124,7 @@ void check(const GeneratorParameter& parameter, const ParameterValue& value) {
 }
 
 std::string accepted_values(const GeneratorParameter& parameter) {
-  if (!parameter.words.empty()) return listed(parameter.words);
+  if (!parameter.words.empty()) return list_of(parameter.words, " or ");
   const std::string lowest = shortest_text(parameter.lowest), unit = parameter.unit.empty() ? "" : " " + parameter.unit;
   if (!parameter.highest) return lowest + unit + " or more";
   const std::string highest = shortest_text(*parameter.highest);
@@ -154,7 +147,7 @@ const Generator& generator_named(std::string_view kind) {
 std::string generator_kinds(std::string_view behind) {
   std::vector<std::string> kinds;
   for (const Generator& generator : generators()) kinds.push_back(generator.kind + std::string(behind));
-  return listed(kinds);
+  return list_of(kinds, " or ");
 }
 
 const ParameterValue& value_of(const ParameterValues& values, const GeneratorParameter& parameter) {

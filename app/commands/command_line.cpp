@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "app/base/messages.h"
-#include "app/base/suggestion.h"
 #include "mercury/error.h"
+#include "robots/names.h"
 
 namespace mercury {
 namespace {

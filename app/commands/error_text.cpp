@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "app/base/suggestion.h"
 #include "app/commands/command_list.h"
+#include "robots/names.h"
 
 namespace mercury {
 

@@ -15,6 +15,7 @@
 #include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/commands/dry_run.h"
+#include "app/commands/info_json.h"
 #include "app/commands/results_file.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
@@ -176,11 +177,6 @@ void print_report(const ImportReport& report, bool brief) {
   for (const ImportedElement& element : report.elements)
     fmt::print("  {:<{}}  {:<{}}  {:<12}  {}\n", printable(element.place), place, printable(element.value, 32), value,
                name_of(element.outcome), printable(element.reason));
-}
-
-// The text, or null if it is empty.
-nlohmann::ordered_json text_or_null(const std::string& text) {
-  return text.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(text);
 }
 
 nlohmann::ordered_json json_of(const ImportedFile& file) {

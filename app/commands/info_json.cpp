@@ -22,8 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
-Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 Json spring_or_null(std::uint32_t spring) { return spring == no_spring ? Json() : Json(spring); }
 
 template <class Value>
@@ -121,6 +119,8 @@ Json files_in(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 Json info_of(const Robot& robot, const std::filesystem::path& file) {
   const Inspection found = inspect(robot);

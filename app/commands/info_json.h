@@ -15,6 +15,9 @@
 
 namespace mercury {
 
+// The text, or null if it is empty.
+nlohmann::ordered_json text_or_null(const std::string& text);
+
 // The members of Python's Robot.info() have its names.
 nlohmann::ordered_json info_of(const Robot& robot, const std::filesystem::path& file);
 nlohmann::ordered_json info_of(const TrajectoryReader& recording);

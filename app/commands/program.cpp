@@ -15,7 +15,6 @@
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/standard_streams.h"
-#include "app/base/suggestion.h"
 #include "app/base/version.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
@@ -26,6 +25,7 @@
 #include "app/options/scene_file.h"
 #include "evolution/distribution/launcher.h"
 #include "mercury/error.h"
+#include "robots/names.h"
 
 namespace mercury {
 namespace {

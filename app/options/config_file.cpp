@@ -14,8 +14,8 @@
 #define TOML_EXCEPTIONS 1
 #include <toml++/toml.h>
 
-#include "app/base/suggestion.h"
 #include "mercury/error.h"
+#include "robots/names.h"
 
 namespace mercury {
 namespace {

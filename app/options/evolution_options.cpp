@@ -26,12 +26,6 @@ std::vector<std::string> names_of_algorithms() {
   return names;
 }
 
-std::vector<std::string> names_of_quantities() {
-  std::vector<std::string> names;
-  for (const Quantity& quantity : quantities()) names.emplace_back(quantity.name);
-  return names;
-}
-
 // "masses", "masses:20:120" or "masses:20:120:8"
 MapAxis axis_from(const std::string& text) {
   const std::vector<std::string_view> parts = split(text, ':');

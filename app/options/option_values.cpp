@@ -80,6 +80,11 @@ std::vector<int> sizes_from(const std::string& option, std::string_view text, st
   return sizes;
 }
 
+Grid grid_from(const std::string& option, const std::string& text) {
+  const auto sizes = sizes_from(option, text, 2, "COLUMNSxROWS");
+  return {sizes[0], sizes[1]};
+}
+
 Option add_choice(const Command& app, const std::string& name, std::string& value, std::vector<std::string> choices,
                   const std::string& description) {
   const std::string form = fmt::format("{}", fmt::join(choices, "|"));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/options/command.h"
+#include "app/scene/group_layout.h"
 #include "mercury/error.h"
 #include "mercury/vec3.h"
 
@@ -37,6 +38,8 @@ Vec3 vector_from(const std::string& option, std::string_view text);
 
 // "WxH" or "WxHxD": positive whole numbers. Throws InputError, with `form` as what is accepted: "WIDTHxHEIGHT".
 std::vector<int> sizes_from(const std::string& option, std::string_view text, std::size_t count, const char* form);
+// "COLUMNSxROWS".
+Grid grid_from(const std::string& option, const std::string& text);
 
 // An option with one value. If it is given twice, the last value counts. `name` may list several names: "-o,--output".
 template <class Value, class Parse>

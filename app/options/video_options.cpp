@@ -28,11 +28,6 @@ PictureSize size_from(const std::string& option, const std::string& text) {
   return {sizes[0], sizes[1]};
 }
 
-Grid grid_from(const std::string& option, const std::string& text) {
-  const auto sizes = sizes_from(option, text, 2, "COLUMNSxROWS");
-  return {sizes[0], sizes[1]};
-}
-
 }  // namespace
 
 void VideoOptions::add_to(const Command& command) {

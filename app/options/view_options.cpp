@@ -8,11 +8,6 @@
 namespace mercury {
 namespace {
 
-Grid grid_from(const std::string& option, const std::string& text) {
-  const auto sizes = sizes_from(option, text, 2, "COLUMNSxROWS");
-  return {sizes[0], sizes[1]};
-}
-
 std::pair<float, float> range_from(const std::string& option, const std::string& text) {
   const auto numbers = numbers_from(option, text, 2, "two numbers, as in -10,10");
   return {numbers[0], numbers[1]};

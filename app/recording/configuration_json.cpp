@@ -19,7 +19,6 @@ Json json_of(float value) { return shortest(value); }
 Json json_of(double value) { return value; }
 Json json_of(int value) { return value; }
 Json json_of(bool value) { return value; }
-Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
 
 double number_from(const std::string& name, const Json& json) {
   if (!json.is_number()) throw InputError(name, "is not a number");
@@ -69,6 +68,8 @@ double shortest(float value) {
   std::from_chars(text, end, number);
   return static_cast<float>(number) == value ? number : static_cast<double>(value);
 }
+
+Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
 
 Configuration configuration_from(const Json& json) {
   if (!json.is_object()) throw InputError("the configuration is not an object");

@@ -18,4 +18,7 @@ Configuration configuration_from(const nlohmann::ordered_json& json);
 // The double with the shortest decimal that converts back to this float: 0.2, not 0.20000000298023224.
 double shortest(float value);
 
+// [x, y, z], each as by shortest().
+nlohmann::ordered_json json_of(Vec3 v);
+
 }  // namespace mercury

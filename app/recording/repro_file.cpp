@@ -21,8 +21,6 @@ constexpr const char* format = "mercury-repro";
 constexpr int version = 1;
 constexpr std::int64_t max_steps = 1'000'000'000'000'000;
 
-Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
-
 Json json_of(std::span<const Vec3> vectors) {
   Json list = Json::array();
   for (const Vec3 v : vectors) list.push_back(json_of(v));

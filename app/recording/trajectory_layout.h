@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@ namespace mercury {
 
 inline constexpr int trajectory_format = 1;  // attribute "format" of /parameters
 inline constexpr std::array<int, 2> h5md_version{1, 1};
+inline constexpr std::size_t held_bytes = std::size_t{64} << 20;  // of frames that a writer or reader keeps in memory
 
 // Whether the name has the extension of a trajectory: .h5, .hdf5 or .h5md.
 bool is_trajectory_name(const std::filesystem::path& path);

@@ -15,8 +15,6 @@ namespace {
 
 using namespace hdf5;
 
-constexpr std::size_t held_bytes = std::size_t{64} << 20;
-
 Configuration read_configuration(hid_t parameters) {
   const auto read = [&]<class Value>(const auto& parameter, Value& value) {
     const std::string name(parameter.name);

@@ -24,7 +24,6 @@ using namespace hdf5;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Spring) == 12 && sizeof(Face) == 6);
 
-constexpr std::size_t held_bytes = std::size_t{64} << 20;  // of frames in memory
 constexpr std::size_t chunk_bytes = std::size_t{1} << 20;  // of one chunk of the largest robot, at most
 // A flush in a mode for readers takes time that grows with the square of the number of robots (HDF5 1.10): 0.2 s for
 // 2,000, minutes for 20,000.

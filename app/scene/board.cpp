@@ -23,7 +23,7 @@ render::Insets edges_for(float aspect) {
 }
 
 // The board's plane, with its middle at the origin.
-struct Plane {
+struct BoardPlane {
   PictureAxes axes;
   float cell_width = 0, cell_height = 0;  // [m]
   float width = 0, height = 0;
@@ -31,8 +31,8 @@ struct Plane {
   Vector3 toward_eye() const { return axes.right.cross(axes.up); }
 };
 
-Plane plane_for(const Grid& grid, std::span<const render::Bounds> robots, const render::Orbit& view, float aspect) {
-  Plane plane{.axes = picture_axes(view), .cell_width = 1e-3f, .cell_height = 1e-3f};
+BoardPlane plane_for(const Grid& grid, std::span<const render::Bounds> robots, const render::Orbit& view, float aspect) {
+  BoardPlane plane{.axes = picture_axes(view), .cell_width = 1e-3f, .cell_height = 1e-3f};
   for (const render::Bounds& robot : robots) {
     plane.cell_width = std::max(plane.cell_width, spacing * extent_along(robot, plane.axes.right));
     plane.cell_height = std::max(plane.cell_height, spacing * extent_along(robot, plane.axes.up));
@@ -46,7 +46,7 @@ Plane plane_for(const Grid& grid, std::span<const render::Bounds> robots, const 
   return plane;
 }
 
-render::Tile tile_at(const Plane& plane, const Vector3& center, std::optional<render::Color> color,
+render::Tile tile_at(const BoardPlane& plane, const Vector3& center, std::optional<render::Color> color,
                      render::Theme theme) {
   constexpr float gap = 0.03f;  // between tiles, of the shorter side
   const bool dark = theme == render::Theme::dark;
@@ -61,7 +61,7 @@ render::Tile tile_at(const Plane& plane, const Vector3& center, std::optional<re
 }
 
 // Ticks and titles. `line`: height of a line of text in the plane [m].
-void write_axes(const Board& board, const Plane& plane, float line, std::vector<render::Text>& texts) {
+void write_axes(const Board& board, const BoardPlane& plane, float line, std::vector<render::Text>& texts) {
   const float left = -0.5f * plane.width, low = -0.5f * plane.height;
   const auto add = [&](float x, float y, const std::string& text, float align_x, float align_y, float size) {
     if (!text.empty())
@@ -82,7 +82,7 @@ GroupPlacement place_on_board(const Board& board, std::span<const render::Bounds
   const render::Insets edges = edges_for(aspect);
   const float free_width = 1 - edges.left - edges.right, free_height = 1 - edges.top - edges.bottom;
   const render::Orbit view = direction_of(camera, true);
-  const Plane plane = plane_for(board.grid, robots, view, aspect * free_width / free_height);
+  const BoardPlane plane = plane_for(board.grid, robots, view, aspect * free_width / free_height);
   GroupPlacement placement{.camera = camera};
 
   // The camera: the board fills what the edges leave free.

@@ -78,9 +78,9 @@ struct Store {
 };
 
 // Stores that nobody uses; the next snapshots do.
-class Pool : public std::enable_shared_from_this<Pool> {
+class DevicePool : public std::enable_shared_from_this<DevicePool> {
  public:
-  explicit Pool(int device) : device_(device) {}
+  explicit DevicePool(int device) : device_(device) {}
 
   // It comes back to the pool when its last user lets go.
   std::shared_ptr<Store> take(std::size_t bytes) {
@@ -140,7 +140,7 @@ class CudaSnapshot final : public PositionSnapshot {
 
 class CudaBridge final : public PositionBridge {
  public:
-  explicit CudaBridge(int device) : device_(device), pool_(std::make_shared<Pool>(device)) {
+  explicit CudaBridge(int device) : device_(device), pool_(std::make_shared<DevicePool>(device)) {
     // Finds out now whether the two share memory.
     const DeviceMemory memory(device, 1);
     const DeviceBuffer buffer(memory);
@@ -190,7 +190,7 @@ class CudaBridge final : public PositionBridge {
   }
 
   int device_;
-  std::shared_ptr<Pool> pool_;
+  std::shared_ptr<DevicePool> pool_;
   const Simulation* simulation_ = nullptr;  // that leaves its positions in next_
   std::shared_ptr<Store> next_;             // of the next snapshot
   std::vector<Import> imports_;

@@ -10,7 +10,7 @@ namespace {
 static_assert(sizeof(Vec3) == 3 * sizeof(float), "positions are passed on as plain floats");
 
 // Memory of finished snapshots; the next ones use it again.
-class Pool {
+class HostPool {
  public:
   std::vector<Vec3> take() {
     const std::lock_guard lock(mutex_);
@@ -31,7 +31,7 @@ class Pool {
 
 class HostSnapshot final : public PositionSnapshot {
  public:
-  HostSnapshot(std::shared_ptr<Pool> pool, const Simulation& simulation)
+  HostSnapshot(std::shared_ptr<HostPool> pool, const Simulation& simulation)
       : pool_(std::move(pool)), positions_(pool_->take()) {
     positions_.resize(simulation.mass_count());
     simulation.read_positions(positions_);
@@ -44,7 +44,7 @@ class HostSnapshot final : public PositionSnapshot {
   std::span<const float> floats() const { return {&positions_.data()->x, 3 * positions_.size()}; }
 
  private:
-  std::shared_ptr<Pool> pool_;
+  std::shared_ptr<HostPool> pool_;
   std::vector<Vec3> positions_;
 };
 
@@ -58,7 +58,7 @@ class HostBridge final : public PositionBridge {
   }
 
  private:
-  std::shared_ptr<Pool> pool_ = std::make_shared<Pool>();
+  std::shared_ptr<HostPool> pool_ = std::make_shared<HostPool>();
 };
 
 }  // namespace

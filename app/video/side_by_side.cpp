@@ -12,11 +12,11 @@ namespace mercury {
 namespace {
 
 // A rectangle of bytes in an image: all of it, or one of the planes of yuv420.
-struct Plane {
+struct PixelPlane {
   std::size_t begin, row_bytes, rows;
 };
 
-std::vector<Plane> planes_of(const render::Image& image) {
+std::vector<PixelPlane> planes_of(const render::Image& image) {
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
   if (image.format != render::PixelFormat::yuv420)
     return {{0, (image.format == render::PixelFormat::rgb ? 3 : 4) * width, height}};
@@ -40,10 +40,10 @@ void join(std::span<const render::Image> parts, render::Image& into) {
   into.width = 0;
   for (const render::Image& part : parts) into.width += part.width;
   into.bytes.resize(render::image_size(into.format, into.width, into.height));
-  const std::vector<Plane> whole = planes_of(into);
+  const std::vector<PixelPlane> whole = planes_of(into);
   std::vector<std::size_t> filled(whole.size(), 0);  // bytes of each row
   for (const render::Image& part : parts) {
-    const std::vector<Plane> planes = planes_of(part);
+    const std::vector<PixelPlane> planes = planes_of(part);
     for (std::size_t p = 0; p < planes.size(); ++p) {
       for (std::size_t row = 0; row < planes[p].rows; ++row)
         std::copy_n(

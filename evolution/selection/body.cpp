@@ -12,13 +12,13 @@
 namespace mercury {
 namespace {
 
-struct Box {
+struct BodyBox {
   Vec3 lowest, highest;
 };
 
-Box bounds_of(const Robot& robot) {
+BodyBox bounds_of(const Robot& robot) {
   if (robot.masses.empty()) return {};
-  Box box{robot.masses.front(), robot.masses.front()};
+  BodyBox box{robot.masses.front(), robot.masses.front()};
   for (const Vec3& x : robot.masses) {
     box.lowest = {std::min(box.lowest.x, x.x), std::min(box.lowest.y, x.y), std::min(box.lowest.z, x.z)};
     box.highest = {std::max(box.highest.x, x.x), std::max(box.highest.y, x.y), std::max(box.highest.z, x.z)};
@@ -83,7 +83,7 @@ double mean_rest_length(const Robot& robot) {
 }  // namespace
 
 Vec3 box_of(const Robot& robot) {
-  const Box box = bounds_of(robot);
+  const BodyBox box = bounds_of(robot);
   return box.highest - box.lowest;
 }
 
@@ -100,7 +100,7 @@ double volume_of(const Robot& robot) {
 
 double mirror_symmetry(const Robot& robot) {
   if (robot.masses.empty()) return 1;
-  const Box box = bounds_of(robot);
+  const BodyBox box = bounds_of(robot);
   const double twice_middle = static_cast<double>(box.lowest.y) + box.highest.y;
   const double reach = std::max<double>(mean_rest_length(robot) / 2, min_rest_length);
   const PointGrid grid(robot.masses, reach);

@@ -15,6 +15,7 @@
 #include "mercury/error.h"
 #include "mercury/individual.h"
 #include "mercury/quantity.h"
+#include "robots/names.h"
 
 namespace mercury {
 namespace {
@@ -78,40 +79,11 @@ std::size_t end_of_number(const std::string& formula, std::size_t i) {
   return i;
 }
 
-// Insertions, deletions and replacements that turn one word into the other (Levenshtein 1966).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 [[noreturn]] void refuse_name(const std::string& formula, const std::string& name, const char* noun,
                               const std::vector<std::string>& names) {
-  const auto distance = [&](const std::string& known) { return edit_distance(name, known); };
-  const std::string& nearest = *std::ranges::min_element(names, {}, distance);
-  const bool is_near = distance(nearest) <= std::max<std::size_t>(1, name.size() / 3);
+  const std::string nearest = suggestion(name, names);
   refuse(formula, "there is no " + std::string(noun) + " " + name +
-                      (is_near ? "; did you mean " + nearest + "?" : "; give one of " + list_of(names)));
-}
-
-std::vector<std::string> names_of_quantities() {
-  std::vector<std::string> names;
-  for (const Quantity& quantity : quantities()) names.emplace_back(quantity.name);
-  return names;
+                      (nearest.empty() ? "; give one of " + list_of(names) : nearest));
 }
 
 void check_names(const std::string& formula, const mu::Parser& parser) {

@@ -104,6 +104,12 @@ constexpr Quantity table[] = {
 
 std::span<const Quantity> quantities() { return table; }
 
+std::vector<std::string> names_of_quantities() {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities()) names.emplace_back(quantity.name);
+  return names;
+}
+
 std::optional<std::size_t> find_quantity(std::string_view name) {
   const auto* found = std::ranges::find(table, name, &Quantity::name);
   if (found == std::end(table)) return std::nullopt;

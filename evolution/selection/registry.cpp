@@ -6,45 +6,9 @@
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 #include "mercury/error.h"
-#include "mercury/quantity.h"
+#include "robots/names.h"
 
 namespace mercury {
-namespace {
-
-constexpr int most_cells = 1'000'000;  // of a map
-
-void require(bool holds, const char* parameter, const std::string& problem) {
-  if (!holds) throw ParameterError(parameter, problem);
-}
-
-std::string names_of_quantities() {
-  std::string names;
-  for (const Quantity& quantity : quantities()) names += (names.empty() ? "" : ", ") + std::string(quantity.name);
-  return names;
-}
-
-void validate_axes(std::span<const MapAxis> axes) {
-  double cells = 1;
-  for (const MapAxis& axis : axes) {
-    require(find_quantity(axis.quantity).has_value(), "axes",
-            "there is no quantity \"" + axis.quantity + "\"; give one of " + names_of_quantities());
-    require(std::isfinite(axis.lowest) && std::isfinite(axis.highest) && std::isfinite(axis.highest - axis.lowest) &&
-                axis.lowest < axis.highest,
-            "axes", axis.quantity + " needs two finite ends, the lower one first");
-    require(axis.cells >= 1, "axes", axis.quantity + " needs at least one cell");
-    cells *= axis.cells;
-  }
-  require(cells <= most_cells, "axes", "the map has more than " + std::to_string(most_cells) + " cells");
-}
-
-void validate(const AlgorithmSettings& settings) {
-  check_parameters(settings);
-  validate_axes(settings.axes);
-  require(settings.name != "map-elites" || !settings.axes.empty(), "axes",
-          "map-elites needs one or more quantities, such as size and muscle_share");
-}
-
-}  // namespace
 
 std::span<const AlgorithmDescription> algorithms() {
   static const std::array all{ga(), afpo(), nsga2(), map_elites(), random_search()};
@@ -52,15 +16,15 @@ std::span<const AlgorithmDescription> algorithms() {
 }
 
 std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings) {
-  std::string names;
+  std::vector<std::string> names;
   for (const AlgorithmDescription& algorithm : algorithms()) {
     if (algorithm.name == settings.name) {
       validate(settings);
       return algorithm.make(settings);
     }
-    names += (names.empty() ? "" : ", ") + std::string(algorithm.name);
+    names.emplace_back(algorithm.name);
   }
-  throw ParameterError("algorithm", "\"" + settings.name + "\" is not an algorithm; give one of " + names);
+  throw ParameterError("algorithm", "\"" + settings.name + "\" is not an algorithm; give one of " + list_of(names));
 }
 
 // Random search, the baseline: every robot is new, the best ones live on.

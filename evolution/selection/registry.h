@@ -6,6 +6,9 @@
 
 namespace mercury {
 
+// Throws ParameterError.
+void validate(const AlgorithmSettings& settings);
+
 AlgorithmDescription ga();
 AlgorithmDescription afpo();
 AlgorithmDescription nsga2();

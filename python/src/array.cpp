@@ -28,7 +28,7 @@ std::string device_of(const Array& array) {
   return array.on_host() ? "cpu" : "cuda:" + std::to_string(array.cuda_device);
 }
 
-nb::tuple shape_of(const Array& array) {
+nb::tuple shape_tuple(const Array& array) {
   nb::list shape;
   for (const std::size_t length : array.shape) shape.append(length);
   return nb::tuple(shape);
@@ -101,7 +101,7 @@ nb::object to_dlpack(const Array& self, nb::object stream, nb::object max_versio
 nb::dict array_interface(const Array& self) {
   nb::dict interface;
   interface["version"] = 3;
-  interface["shape"] = shape_of(self);
+  interface["shape"] = shape_tuple(self);
   interface["typestr"] = std::strcmp(dtype_name(self), "bool") == 0 ? "|b1" : "<f4";
   interface["strides"] = nb::none();
   return interface;
@@ -144,7 +144,7 @@ std::string represent(nb::handle_t<Array> handle) {
   const Array& self = nb::cast<const Array&>(handle);
   const nb::object values = self.on_host() ? numpy_view(handle) : numpy_copy(self);
   const nb::object text = numpy().attr("array2string")(values, nb::arg("threshold") = 12, nb::arg("edgeitems") = 2);
-  return "Array(shape=" + nb::cast<std::string>(nb::str(shape_of(self))) + ", dtype=" + dtype_name(self) +
+  return "Array(shape=" + nb::cast<std::string>(nb::str(shape_tuple(self))) + ", dtype=" + dtype_name(self) +
          ", device='" + device_of(self) + "')\n" + nb::cast<std::string>(text);
 }
 
@@ -192,7 +192,7 @@ void* stream_from(nb::handle stream) {
 
 void bind_array(nb::module_& module) {
   nb::class_<Array>(module, "Array", description)
-      .def_prop_ro("shape", &shape_of, nb::sig("def shape(self) -> tuple[int, ...]"), "Length of each axis.")
+      .def_prop_ro("shape", &shape_tuple, nb::sig("def shape(self) -> tuple[int, ...]"), "Length of each axis.")
       .def_prop_ro(
           "ndim", [](const Array& self) { return self.shape.size(); }, "Number of axes.")
       .def_prop_ro("size", &Array::size, "Number of elements.")

@@ -140,7 +140,7 @@ nb::list robots(const Batch& self) {
   return list;
 }
 
-std::string represent(const Batch& self) {
+std::string represent_batch(const Batch& self) {
   const std::size_t robots = self.use([](const Simulation& simulation) { return simulation.size(); });
   return "<Batch of " + std::to_string(robots) + (robots == 1 ? " robot" : " robots") + " on " + self.device() + ">";
 }
@@ -244,7 +244,7 @@ void bind_reports(nb::class_<Batch>& batch) {
             return numpy_array(self.use([](const Simulation& simulation) { return simulation.hashes(); }), "uint64");
           },
           "The hashes of all robots, (robots,) uint64.")
-      .def("__repr__", &represent)
+      .def("__repr__", &represent_batch)
       .def("__reduce_ex__", refused_pickle("a Batch cannot be pickled or copied: make another one of batch.robots"),
            refused_pickle_signature);
 }

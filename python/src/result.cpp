@@ -37,7 +37,7 @@ nb::dict all_quantities(const Result& self) {
 
 nb::object record(const Telemetry& telemetry) { return telemetry_array(std::span(&telemetry, 1))[0]; }
 
-std::string represent(const Result& self) {
+std::string represent_result(const Result& self) {
   const std::string robot = "<Result " + std::to_string(self.evaluation.index) + ": ";
   if (!was_stepped(self)) return robot + self.evaluation.failure + ">";
   return robot + nb::str(nb::handle(nb::cast(distance(self)))).c_str() + " m in " +
@@ -111,7 +111,7 @@ void bind_result(nb::module_& module) {
             return self.has_state && was_stepped(self) ? vector_array(self.evaluation.state.velocities) : nb::none();
           },
           "Final velocities, (masses, 3) float32 [m/s]; as positions.")
-      .def("__repr__", &represent);
+      .def("__repr__", &represent_result);
 }
 
 }  // namespace mercury::python

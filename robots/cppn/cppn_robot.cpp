@@ -12,6 +12,7 @@
 #include "mercury/origin.h"
 #include "robots/cppn/cppn_graph.h"
 #include "robots/file/document.h"
+#include "robots/names.h"
 #include "robots/origin_json.h"
 #include "robots/portable_math.h"
 
@@ -186,9 +187,7 @@ std::size_t word(const OriginJson& value, const std::array<std::string_view, n>&
     const auto found = std::ranges::find(words, value.get<std::string>());
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
   }
-  std::string accepted;
-  for (std::size_t i = 0; i < n; ++i) accepted += (i == 0 ? "" : i + 1 == n ? " or " : ", ") + std::string(words[i]);
-  refuse_origin(place, "give " + accepted);
+  refuse_origin(place, "give " + list_of({words.begin(), words.end()}, " or "));
 }
 
 Cppn read_network(const OriginJson& origin) {

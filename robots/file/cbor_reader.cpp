@@ -11,7 +11,7 @@
 namespace mercury {
 namespace {
 
-enum Major : unsigned { natural, negative, byte_string, text_string, array, map, tag, other };
+enum class Major : unsigned { natural, negative, byte_string, text_string, array, map, tag, other };
 
 constexpr unsigned open_ended = 31;  // in the low bits of a head: the length is unknown
 constexpr unsigned char stop = 0xff;
@@ -54,7 +54,8 @@ class Reader {
   };
   struct Head {
     std::size_t place = 0;
-    unsigned major = 0, low = 0;
+    Major major = Major::natural;
+    unsigned low = 0;
     std::uint64_t value = 0;
   };
 
@@ -70,7 +71,7 @@ class Reader {
   Head read_head() {
     Head head{.place = at_};
     const unsigned first = next_byte();
-    head.major = first >> 5;
+    head.major = static_cast<Major>(first >> 5);
     head.low = first & 31;
     head.value = head.low;
     if (head.low >= 24 && head.low <= 27) {
@@ -111,26 +112,26 @@ class Reader {
 
   void read_key() {
     const Head head = read_head();
-    if (head.major != text_string) fail(head.place, "a key must be text");
+    if (head.major != Major::text_string) fail(head.place, "a key must be text");
     events_.key(read_string(head));
   }
 
   void read_item() {
     Head head = read_head();
-    while (head.major == tag && head.low != open_ended) head = read_head();
-    const bool may_be_open_ended = head.major >= byte_string && head.major <= map;
+    while (head.major == Major::tag && head.low != open_ended) head = read_head();
+    const bool may_be_open_ended = head.major >= Major::byte_string && head.major <= Major::map;
     if (head.low == open_ended && !may_be_open_ended) fail(head.place, "not valid CBOR");
     switch (head.major) {
-      case natural:
+      case Major::natural:
         return events_.number(natural_number(head.value));
-      case negative:
+      case Major::negative:
         return read_negative(head);
-      case byte_string:
+      case Major::byte_string:
         return events_.bytes(read_string(head));
-      case text_string:
+      case Major::text_string:
         return events_.text(read_string(head));
-      case array:
-      case map:
+      case Major::array:
+      case Major::map:
         return open(head);
       default:
         return read_other(head);
@@ -148,7 +149,7 @@ class Reader {
 
   void open(const Head& head) {
     if (open_.size() == max_depth) fail(head.place, "nested deeper than " + std::to_string(max_depth) + " levels");
-    Container container{.is_map = head.major == map, .remaining = unknown_length};
+    Container container{.is_map = head.major == Major::map, .remaining = unknown_length};
     if (head.low != open_ended) {
       // Each element takes at least a byte, so a document cannot announce more elements than it has bytes left. The
       // receiver sees the number before it is refused here, because it knows the place and the limit.

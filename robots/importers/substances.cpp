@@ -9,7 +9,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -18,8 +17,6 @@
 
 namespace mercury {
 namespace {
-
-constexpr double turn = 2 * std::numbers::pi;
 
 bool moves(const Substance& substance) { return substance.amplitude != 0; }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "mercury/material.h"
 
 namespace mercury {
+
+inline constexpr double turn = 2 * std::numbers::pi;  // [rad]
 
 // A material in double precision, and the size of its voxels.
 struct Substance {

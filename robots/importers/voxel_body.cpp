@@ -42,7 +42,7 @@ Json provenance_json(const Provenance& provenance) {
 }
 
 // Numbers in the form that Mercury's own files have, so that the text is the same after a robot was read as CBOR.
-std::string text_of(const Json& json) {
+std::string origin_text(const Json& json) {
   std::string cbor, text;
   CborWriter binary(cbor);
   read_json(json.dump(-1, ' ', false, Json::error_handler_t::replace), binary);
@@ -54,7 +54,7 @@ std::string text_of(const Json& json) {
 std::string with_provenance(const std::string& origin, const Provenance& provenance) {
   Json json = Json::parse(origin);
   json["imported"] = provenance_json(provenance);
-  return text_of(json);
+  return origin_text(json);
 }
 
 // The substances as base materials 1 to 22, and their pairs. Where the pairs of the default table are the mean
@@ -319,7 +319,7 @@ std::string import_origin(const VoxelBody& body, const Provenance& provenance) {
               {"materials", std::move(substances)},
               {"cells", body.cells}};
   if (!provenance.environment.empty()) origin["environment"] = provenance.environment;
-  return text_of(origin);
+  return origin_text(origin);
 }
 
 Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Provenance& provenance,

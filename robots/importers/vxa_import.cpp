@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -18,7 +17,6 @@
 namespace mercury {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
 constexpr double largest_amplitude = 0.9;  // a rest length must stay above 0
 
 class VxaImport {

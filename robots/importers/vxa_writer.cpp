@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "mercury/error.h"
@@ -21,7 +20,6 @@
 namespace mercury {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
 constexpr double density = 1000;        // one mass of 1 kg for each voxel of 0.1 m [kg/m3]
 constexpr double temperature = 1;       // amplitude: CTE is the amplitude of the muscle [degrees]
 constexpr std::size_t most_ascii = 78;  // up to "~"

@@ -2,12 +2,15 @@
 // A voxel body under design: a grid, and up to 20 muscles of its own.
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "mercury/voxel.h"
 
 namespace mercury::library {
+
+inline constexpr float turn = 2 * std::numbers::pi_v<float>;  // [rad]
 
 // x points ahead, y to the left, z up.
 class Body {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "robots/library/body.h"
 #include "robots/library/designs.h"
 
 namespace mercury::library {
 namespace {
-
-constexpr float turn = 2 * std::numbers::pi_v<float>;
 
 // A leg's front and back muscles work a quarter turn apart, so the leg stretches and swings, and its foot runs around
 // an ellipse: back along the ground while the leg is long.

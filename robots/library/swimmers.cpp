@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "robots/library/body.h"
 #include "robots/library/designs.h"
 
 namespace mercury::library {
 namespace {
-
-constexpr float turn = 2 * std::numbers::pi_v<float>;
 
 // A wave of muscle that runs down a body.
 struct Wave {

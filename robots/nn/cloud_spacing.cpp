@@ -13,16 +13,16 @@ constexpr double push_reach = 2;  // of the pushes, by the distance
 constexpr int push_steps = 3;
 constexpr double push_share = 0.3;  // of what is missing to that reach, per point and step
 
-struct Vector {
+struct Offset {
   double x = 0, y = 0, z = 0;
 };
 
-Vector between(const Vec3& a, const Vec3& b) {
+Offset between(const Vec3& a, const Vec3& b) {
   return {static_cast<double>(a.x) - static_cast<double>(b.x), static_cast<double>(a.y) - static_cast<double>(b.y),
           static_cast<double>(a.z) - static_cast<double>(b.z)};
 }
 
-double squared(const Vector& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+double squared(const Offset& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 
 // By Newton's method: those of libraries are not rounded alike everywhere.
 double cube_root(double x) {
@@ -126,9 +126,9 @@ void push_apart(std::vector<Unit>& units, double reach) {
   Grid grid(reach, 2 * units.size());
   for_each_point(units, [&](SpreadPoint& point) { grid.add(point.place); });
   for_each_point(units, [&](SpreadPoint& point) {
-    Vector push;
+    Offset push;
     grid.visit_around(point.place, [&](const Vec3& other) {
-      const Vector away = between(point.place, other);
+      const Offset away = between(point.place, other);
       const double now = squared(away);
       if (now < reach * reach && now > 0) {
         const double share = push_share * (reach / std::sqrt(now) - 1);
@@ -145,7 +145,7 @@ void push_apart(std::vector<Unit>& units, double reach) {
 
 double mean_spacing(std::span<const Vec3> places) {
   const auto n = static_cast<double>(places.size());
-  Vector mean;
+  Offset mean;
   for (const Vec3& p : places) mean = {mean.x + p.x, mean.y + p.y, mean.z + p.z};
   mean = {mean.x / n, mean.y / n, mean.z / n};
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0;

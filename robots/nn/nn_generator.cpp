@@ -71,7 +71,7 @@ Robot mutant(const Robot& parent, const MutationRequest& request, const std::str
                               seed_of(request.seed, 0));
 }
 
-Robot crossed(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
+Robot crossed_networks(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
   return with_crossed_muscles(grown(crossover(genome_in(a), genome_in(b), seed), a, name), b, seed_of(seed, 0));
 }
 
@@ -90,7 +90,7 @@ Generator nn_generator() {
                .example = {.name = "blob", .seed = 4, .values = {{"points", "1000"}}},
                .regrow = regrow,
                .mutate = mutant,
-               .cross = crossed,
+               .cross = crossed_networks,
                .genes = &nn_genes()};
   return with_parameters(std::move(nn), table(), random_nn_robot);
 }

@@ -279,7 +279,7 @@ Robot mutant(const Robot& parent, const MutationRequest& request, const std::str
 }
 
 // Two symmetric parents have symmetric children.
-Robot crossed(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
+Robot crossed_voxels(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
   const Mirror mirror = mirror_of(grid_in(a));
   const bool alike = mirror == mirror_of(grid_in(b));
   Robot child = cross_voxel_robots(a, b, seed, name, 2, alike ? mirror : Mirror::none);
@@ -303,7 +303,7 @@ Generator voxel_generator() {
                   .example = {.name = "eel", .seed = 4, .values = {{"voxels", "12x2x3"}}},
                   .regrow = regrow,
                   .mutate = mutant,
-                  .cross = crossed,
+                  .cross = crossed_voxels,
                   .genes = &voxel_genes()};
   return with_parameters(std::move(voxel), table(), random_voxel_robot);
 }

@@ -7,6 +7,7 @@
 #include "app/recording/trajectory_writer.h"
 #include "mercury/error.h"
 #include "tests/fuzz/target.h"
+#include "tests/same_bits.h"
 
 namespace mercury::fuzz {
 namespace {
@@ -14,10 +15,6 @@ namespace {
 constexpr std::size_t most_frames = 16;  // that are compared
 
 std::vector<Vec3> copy(std::span<const Vec3> values) { return {values.begin(), values.end()}; }
-
-bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
 
 // Writes what was read to another file.
 std::string written_again(TrajectoryReader& reader, std::size_t frames) {

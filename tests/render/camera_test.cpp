@@ -13,7 +13,7 @@ namespace {
 constexpr float pi = std::numbers::pi_v<float>;
 
 // An independent pinhole camera: similar triangles along and across the line of sight.
-Vector3 pinhole(const Camera& camera, const Vector3& point, int width, int height) {
+Vector3 pinhole_with_depth(const Camera& camera, const Vector3& point, int width, int height) {
   const Vector3 forward = (camera.target - camera.eye).normalized();
   const Vector3 right = forward.cross(camera.up).normalized();
   const Vector3 up = right.cross(forward);
@@ -26,7 +26,7 @@ Vector3 pinhole(const Camera& camera, const Vector3& point, int width, int heigh
 TEST(Camera, ProjectsAsAPinhole) {
   const Camera camera{.eye = {3, -4, 2}, .target = {0.5f, 0.2f, 0.1f}, .field_of_view = 0.8f};
   for (const Vector3& point : {Vector3(0, 0, 0), Vector3(0.5f, 0.2f, 0.1f), Vector3(-1, 0.3f, 0.7f)})
-    EXPECT_LT((camera.project(point, 640, 360) - pinhole(camera, point, 640, 360)).norm(), 2e-3f);
+    EXPECT_LT((camera.project(point, 640, 360) - pinhole_with_depth(camera, point, 640, 360)).norm(), 2e-3f);
 }
 
 TEST(Camera, TargetIsInTheMiddleOfThePicture) {

@@ -15,7 +15,7 @@
 namespace mercury::render {
 namespace {
 
-struct Body {
+struct FittedBody {
   Bounds box;
   Vector3 offset{0, 0, 0};
   bool hidden = false;
@@ -24,7 +24,7 @@ struct Body {
 class FitPassTest : public Offscreen {
  protected:
   // The frame block after the pass.
-  FrameBlock fitted(const std::vector<Body>& bodies, const Vector3& to_key, int side, float floor = 0) {
+  FrameBlock fitted(const std::vector<FittedBody>& bodies, const Vector3& to_key, int side, float floor = 0) {
     FrameBlock block{};
     const Vector3 direction = to_key.normalized();
     block.to_key = {direction.x, direction.y, direction.z, 0.1f};
@@ -32,7 +32,7 @@ class FitPassTest : public Offscreen {
     Buffer frame, boxes, placements;
     frame.write(&block, sizeof block);
     std::vector<Vector4> corners, places;
-    for (const Body& body : bodies) {
+    for (const FittedBody& body : bodies) {
       for (const Vector3& corner : {body.box.low, body.box.high}) corners.emplace_back(corner, 1.0f);
       const float flags = std::bit_cast<float>(body.hidden ? 1u : 0u);
       places.push_back({body.offset.x, body.offset.y, body.offset.z, flags});
@@ -62,12 +62,12 @@ class FitPassTest : public Offscreen {
 
 TEST_F(FitPassTest, ShadowMapCoversEveryCornerOfEveryBody) {
   // More bodies than lanes, so that each lane handles several.
-  std::vector<Body> bodies;
+  std::vector<FittedBody> bodies;
   for (int i = 0; i < 700; ++i)
     bodies.push_back({{Vector3(-1, -1, 0), Vector3(1, 1, 0.4f)}, {float(i % 30), -float(i % 7), 0.01f * float(i)}});
   for (const Vector3& to_key : {Vector3(0.3f, -0.4f, 0.8f), Vector3(0, 0, 1), Vector3(1, 0.2f, 0.3f)}) {
     const FrameBlock block = fitted(bodies, to_key, 1024);
-    for (const Body& body : bodies)
+    for (const FittedBody& body : bodies)
       for (int corner = 0; corner < 8; ++corner) {
         const Vector3 point(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 0.4f : 0);
         const Vector3 at = place(block, point + body.offset);
@@ -100,9 +100,9 @@ TEST_F(FitPassTest, ShadowMapMovesByWholeTexels) {
 }
 
 TEST_F(FitPassTest, HiddenAndEmptyBodiesAreIgnored) {
-  const Body seen{{Vector3(-1, -1, 0), Vector3(1, 1, 1)}};
-  const Body hidden{{Vector3(50, 50, 50), Vector3(60, 60, 60)}, {0, 0, 0}, true};
-  const Body broken{Bounds{}};
+  const FittedBody seen{{Vector3(-1, -1, 0), Vector3(1, 1, 1)}};
+  const FittedBody hidden{{Vector3(50, 50, 50), Vector3(60, 60, 60)}, {0, 0, 0}, true};
+  const FittedBody broken{Bounds{}};
   const FrameBlock alone = fitted({seen}, Vector3(0.3f, 0, 0.8f), 512);
   const FrameBlock among = fitted({hidden, seen, broken}, Vector3(0.3f, 0, 0.8f), 512);
   EXPECT_EQ(alone.shadow, among.shadow);

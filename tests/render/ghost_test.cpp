@@ -8,7 +8,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr int width = 200, height = 150;
+constexpr int ghost_width = 200, ghost_height = 150;
 const Color white{255, 255, 255, 255};
 
 Ghost ghost_of(const Mesh& mesh, float opacity = 0.4f) {
@@ -26,19 +26,19 @@ class GhostTest : public Offscreen {
 
 // The pixel of the middle of the triangle.
 Rgb middle_of(const Image& image) {
-  const Vector2 at = pinhole(front(), {0.05f, 0, -0.05f}, width, height);
+  const Vector2 at = pinhole(front(), {0.05f, 0, -0.05f}, ghost_width, ghost_height);
   return pixel(image, int(at.x), int(at.y));
 }
 
 int largest_change(const Image& a, const Image& b) {
   int largest = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) largest = std::max(largest, largest_difference(pixel(a, x, y), pixel(b, x, y)));
+  for (int y = 0; y < ghost_height; ++y)
+    for (int x = 0; x < ghost_width; ++x) largest = std::max(largest, largest_difference(pixel(a, x, y), pixel(b, x, y)));
   return largest;
 }
 
 TEST_F(GhostTest, LetsWhatIsBehindThrough) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(ghost_width, ghost_height);
   const Mesh mesh = triangle();
   const Image empty = with(renderer, {});
   int before = middle_of(empty).sum();
@@ -53,7 +53,7 @@ TEST_F(GhostTest, LetsWhatIsBehindThrough) {
 }
 
 TEST_F(GhostTest, IsHiddenByWhatIsNearerAndWhereItCoincides) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(ghost_width, ghost_height);
   const Mesh mesh = triangle(), behind = triangle(0.5f), nearer = triangle(-0.5f);
   renderer.set_bodies(std::array{mesh.body()});
   const Image alone = with(renderer, {});
@@ -63,7 +63,7 @@ TEST_F(GhostTest, IsHiddenByWhatIsNearerAndWhereItCoincides) {
 }
 
 TEST_F(GhostTest, ShowsItsNearestFaceOnly) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(ghost_width, ghost_height);
   const Mesh one = triangle();
   Mesh two = one;
   for (std::size_t i = 0; i < 9; ++i) two.positions.push_back(one.positions[i] + (i % 3 == 1 ? 0.3f : 0));
@@ -72,7 +72,7 @@ TEST_F(GhostTest, ShowsItsNearestFaceOnly) {
 }
 
 TEST_F(GhostTest, IsMovedByItsOffset) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(ghost_width, ghost_height);
   Mesh mesh = triangle();
   Ghost moved = ghost_of(mesh);
   moved.offset = {0.25f, 0, 0.125f};

@@ -14,7 +14,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr int width = 192, height = 108;
+constexpr int golden_width = 192, golden_height = 108;
 
 // Lightness and two opponent colors (CIE 1976 L*a*b*, D65) of the mean light over a square of pixels.
 Vector3 perceived(const Image& image, int x, int y, int side) {
@@ -40,10 +40,10 @@ struct Difference {
 Difference difference(const Image& a, const Image& b) {
   constexpr int side = 4;
   Difference result;
-  for (int y = 0; y + side <= height; y += side)
-    for (int x = 0; x + side <= width; x += side) {
+  for (int y = 0; y + side <= golden_height; y += side)
+    for (int x = 0; x + side <= golden_width; x += side) {
       const float d = (perceived(a, x, y, side) - perceived(b, x, y, side)).norm();
-      result.mean += d * float(side * side) / float(width * height);
+      result.mean += d * float(side * side) / float(golden_width * golden_height);
       result.largest = std::max(result.largest, d);
     }
   return result;
@@ -60,7 +60,7 @@ class GoldenTest : public Offscreen, public testing::WithParamInterface<Case> {}
 
 TEST_P(GoldenTest, PictureMatchesItsReference) {
   const Case& c = GetParam();
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(golden_width, golden_height);
   const WobblingGroup group = make_wobbling_group(6, 6, 4, 0.9f);
   renderer.set_bodies(group.views());
   const std::vector<float> positions = group.positions(1.7);
@@ -78,7 +78,7 @@ TEST_P(GoldenTest, PictureMatchesItsReference) {
   for (std::size_t i = 0; i < group.bodies.size(); ++i)
     boxes.push_back(bounds_of(group.bodies[i].rest).moved(group.placements[i].offset));
   Orbit orbit{.azimuth = -1.2f, .elevation = 0.6f};
-  orbit.frame(boxes, float(width) / float(height), 1.1f);
+  orbit.frame(boxes, float(golden_width) / float(golden_height), 1.1f);
   renderer.draw(scene, orbit.camera());
   const Image image = read(renderer);
   const std::string path = std::string(MERCURY_GOLDEN_FOLDER) + "/" + c.name + ".png";

@@ -8,7 +8,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr int width = 200, height = 150;
+constexpr int outline_width = 200, outline_height = 150;
 constexpr float line = 3.6f;  // at most so far outside [pixels]
 
 class OutlineTest : public Offscreen {
@@ -25,8 +25,8 @@ class OutlineTest : public Offscreen {
 
 // Whether a pixel within `reach` of (x, y) is one of those that differ.
 bool any_near(const Image& a, const Image& b, int x, int y, int reach) {
-  for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
-    for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u)
+  for (int v = std::max(0, y - reach); v <= std::min(outline_height - 1, y + reach); ++v)
+    for (int u = std::max(0, x - reach); u <= std::min(outline_width - 1, x + reach); ++u)
       if (largest_difference(pixel(a, u, v), pixel(b, u, v)) > 2) return true;
   return false;
 }
@@ -35,8 +35,8 @@ bool any_near(const Image& a, const Image& b, int x, int y, int reach) {
 // it.
 void expect_line_around(const Image& empty, const Image& plain, const Image& marked) {
   int changed = 0;
-  for (int y = 1; y + 1 < height; ++y)
-    for (int x = 1; x + 1 < width; ++x) {
+  for (int y = 1; y + 1 < outline_height; ++y)
+    for (int x = 1; x + 1 < outline_width; ++x) {
       bool inside = true;
       for (int v = -1; v <= 1; ++v)
         for (int u = -1; u <= 1; ++u)
@@ -51,7 +51,7 @@ void expect_line_around(const Image& empty, const Image& plain, const Image& mar
 }
 
 TEST_F(OutlineTest, IsOutsideTheSilhouetteOfEverythingThatIsShown) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(outline_width, outline_height);
   const Image empty = drawn(renderer, plain());
   const Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});
@@ -66,13 +66,13 @@ TEST_F(OutlineTest, IsOutsideTheSilhouetteOfEverythingThatIsShown) {
 }
 
 TEST_F(OutlineTest, IsAsWideAsItShouldBeOnEverySide) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(outline_width, outline_height);
   const Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});
   const Image plain_image = with(renderer, plain(), false), marked = with(renderer, plain(), true);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto corner = [&](std::size_t j) {
-      return pinhole(front(), Vector3(mesh.positions.data() + 3 * (j % 3)), width, height);
+      return pinhole(front(), Vector3(mesh.positions.data() + 3 * (j % 3)), outline_width, outline_height);
     };
     const Vector2 middle = 0.5f * (corner(i) + corner(i + 1));
     Vector2 out(corner(i + 1).y - corner(i).y, corner(i).x - corner(i + 1).x);
@@ -89,7 +89,7 @@ TEST_F(OutlineTest, IsAsWideAsItShouldBeOnEverySide) {
 }
 
 TEST_F(OutlineTest, FollowsACut) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(outline_width, outline_height);
   const Mesh mesh = triangle();
   Scene scene = plain();
   scene.cut = Cut{.axis = 2, .percent = 100 * 0.5f / 1.3f};  // at z = 0
@@ -97,14 +97,14 @@ TEST_F(OutlineTest, FollowsACut) {
   renderer.set_bodies(std::array{mesh.body()});
   const Image plain_image = with(renderer, scene, false), marked = with(renderer, scene, true);
   expect_line_around(empty, plain_image, marked);
-  const Vector2 tip = pinhole(front(), {0.1f, 0, 0.8f}, width, height),
-                edge = pinhole(front(), {0.1f, 0, 0}, width, height);
+  const Vector2 tip = pinhole(front(), {0.1f, 0, 0.8f}, outline_width, outline_height),
+                edge = pinhole(front(), {0.1f, 0, 0}, outline_width, outline_height);
   EXPECT_FALSE(any_near(plain_image, marked, int(tip.x), int(tip.y), 5)) << "what is cut away has no line";
   EXPECT_TRUE(any_near(plain_image, marked, int(edge.x), int(edge.y) - 1, 1));
 }
 
 TEST_F(OutlineTest, IsHiddenBehindNearerBodies) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(outline_width, outline_height);
   const Mesh far = triangle(0), near = triangle(-1.5f);
   renderer.set_bodies(std::array{far.body(), near.body()});
   // The nearer triangle covers the farther one, which is smaller in the picture.
@@ -118,7 +118,7 @@ TEST_F(OutlineTest, IsHiddenBehindNearerBodies) {
 }
 
 TEST_F(OutlineTest, HiddenBodiesHaveNone) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(outline_width, outline_height);
   const Mesh mesh = triangle();
   renderer.set_bodies(std::array{mesh.body()});
   Scene scene = plain();
@@ -130,7 +130,7 @@ TEST_F(OutlineTest, HiddenBodiesHaveNone) {
 }
 
 TEST_F(OutlineTest, CastsNoShadow) {
-  Renderer renderer = make_renderer(width, height);
+  Renderer renderer = make_renderer(outline_width, outline_height);
   const Mesh mesh = triangle();
   Scene scene;
   scene.surroundings = Surroundings::land;
@@ -141,7 +141,7 @@ TEST_F(OutlineTest, CastsNoShadow) {
   // The body and its shadow: whatever changes lies at the body's silhouette, which the floor does not change.
   std::array<Vector2, 3> corners;
   for (std::size_t i = 0; i < 3; ++i)
-    corners[i] = pinhole(front(), Vector3(mesh.positions.data() + 3 * i), width, height);
+    corners[i] = pinhole(front(), Vector3(mesh.positions.data() + 3 * i), outline_width, outline_height);
   const auto distance_to_edges = [&](const Vector2& p) {
     float nearest = 1e9f;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -152,8 +152,8 @@ TEST_F(OutlineTest, CastsNoShadow) {
     return nearest;
   };
   int changed = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
+  for (int y = 0; y < outline_height; ++y)
+    for (int x = 0; x < outline_width; ++x) {
       if (largest_difference(pixel(plain_image, x, y), pixel(marked, x, y)) == 0) continue;
       ++changed;
       ASSERT_LT(distance_to_edges({float(x) + 0.5f, float(y) + 0.5f}), line + 0.8f) << x << ", " << y;

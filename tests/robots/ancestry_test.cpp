@@ -19,7 +19,7 @@ const Ancestry full{.parents = {"a", "the \"b\" {"},
                     .muscles = 2,
                     .generation = 12};
 
-std::string refusal(const std::string& origin) {
+std::string refusal_of_origin(const std::string& origin) {
   try {
     ancestry_of({.origin = origin});
   } catch (const InputError& error) {
@@ -60,17 +60,17 @@ TEST(Ancestry, ReplacesTheOneBefore) {
 }
 
 TEST(Ancestry, ThatCannotBeUsedIsRefusedWithItsPlace) {
-  EXPECT_EQ(refusal(R"({"ancestry":3})"), "/origin/ancestry: a JSON object is expected");
-  EXPECT_EQ(refusal(R"({"ancestry":{}})"), "/origin/ancestry/parents: is missing");
-  EXPECT_EQ(refusal(R"({"ancestry":{"parents":"a"}})"), "/origin/ancestry/parents: an array of names is expected");
-  EXPECT_EQ(refusal(R"({"ancestry":{"parents":["a",3]}})"), "/origin/ancestry/parents/1: a name is expected");
-  EXPECT_EQ(refusal(with_ancestry("", {.parents = std::vector<std::string>(17, "a")})),
+  EXPECT_EQ(refusal_of_origin(R"({"ancestry":3})"), "/origin/ancestry: a JSON object is expected");
+  EXPECT_EQ(refusal_of_origin(R"({"ancestry":{}})"), "/origin/ancestry/parents: is missing");
+  EXPECT_EQ(refusal_of_origin(R"({"ancestry":{"parents":"a"}})"), "/origin/ancestry/parents: an array of names is expected");
+  EXPECT_EQ(refusal_of_origin(R"({"ancestry":{"parents":["a",3]}})"), "/origin/ancestry/parents/1: a name is expected");
+  EXPECT_EQ(refusal_of_origin(with_ancestry("", {.parents = std::vector<std::string>(17, "a")})),
             "/origin/ancestry/parents: at most 16 names are accepted");
-  EXPECT_EQ(refusal(R"({"ancestry":{"parents":[],"mutation_seed":-1}})"),
+  EXPECT_EQ(refusal_of_origin(R"({"ancestry":{"parents":[],"mutation_seed":-1}})"),
             "/origin/ancestry/mutation_seed: a whole number >= 0 is expected");
-  EXPECT_EQ(refusal(R"({"ancestry":{"parents":[],"strength":"strong"}})"),
+  EXPECT_EQ(refusal_of_origin(R"({"ancestry":{"parents":[],"strength":"strong"}})"),
             "/origin/ancestry/strength: a number >= 0 is expected");
-  EXPECT_EQ(refusal(R"(["ancestry"])"), "/origin: a JSON object is expected");
+  EXPECT_EQ(refusal_of_origin(R"(["ancestry"])"), "/origin: a JSON object is expected");
   for (const std::string origin : {"3", "[1]", "x", "}", "{"}) EXPECT_THROW(with_ancestry(origin, {}), InputError);
 }
 

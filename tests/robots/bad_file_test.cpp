@@ -10,7 +10,7 @@
 namespace mercury {
 namespace {
 
-std::string refusal(std::string_view document, RobotFormat format) {
+std::string refusal_of_document(std::string_view document, RobotFormat format) {
   try {
     parse_robot(document, format);
   } catch (const InputError& error) {
@@ -19,7 +19,7 @@ std::string refusal(std::string_view document, RobotFormat format) {
   return "no error";
 }
 
-std::string refusal_of_json(std::string_view document) { return refusal(document, RobotFormat::json); }
+std::string refusal_of_json(std::string_view document) { return refusal_of_document(document, RobotFormat::json); }
 
 // A valid document whose parts can be replaced.
 struct Parts {
@@ -169,7 +169,7 @@ TEST(BadRobotFiles, DeepNesting) {
   EXPECT_EQ(refusal_of_json("{\"origin\":{\"x\":" + deep), "nested deeper than 64 levels");
 }
 
-std::string refusal_of_cbor(std::string_view document) { return refusal(document, RobotFormat::cbor); }
+std::string refusal_of_cbor(std::string_view document) { return refusal_of_document(document, RobotFormat::cbor); }
 
 // A map with one pair; "masses" stands in it with the CBOR item given.
 std::string cbor_masses(std::string_view item) { return std::string("\xa1\x66masses").append(item); }

@@ -13,6 +13,7 @@
 #include "mercury/origin.h"
 #include "mercury/random.h"
 #include "robots/portable_math.h"
+#include "tests/refusal.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {
@@ -295,15 +296,6 @@ TEST(CppnEvolution, ManyGenerationsStayValidWithoutCycles) {
     ASSERT_TRUE(has_body(body_of(a)));
   }
   EXPECT_LE(a.network.nodes.size(), max_cppn_nodes);
-}
-
-std::string refusal(const auto& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(CppnOrigin, RefusesWhatCannotBeUsedAndSaysWhere) {

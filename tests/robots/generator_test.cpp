@@ -12,6 +12,7 @@
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/origin.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -38,15 +39,6 @@ ParameterValues small(const Generator& generator) {
 
 Robot made(const Generator& generator, std::uint64_t seed, std::uint64_t index = 0) {
   return generator.make(small(generator), "land", seed, index);
-}
-
-std::string refusal(const auto& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST_P(EveryGenerator, MakesValidRobotsThatNameTheirKindAndEnvironment) {

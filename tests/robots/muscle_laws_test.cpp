@@ -9,6 +9,7 @@
 
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -26,15 +27,6 @@ Robot own_robot() {
 std::vector<Material> own_bases() {
   const auto table = default_materials();
   return {table.begin() + 1, table.begin() + 1 + base_material_count};
-}
-
-std::string refusal(const auto& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(BaseMaterials, AreTwentyTwoInTheDefaultTableAndInTablesMadeOfOthers) {

@@ -14,7 +14,7 @@
 namespace mercury::cuda {
 namespace {
 
-std::vector<Robot> robots() {
+std::vector<Robot> tiled_robots() {
   return {bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 1), bodies::random_voxels({.x = 4, .y = 3, .z = 5}, 1),
           bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 2), bodies::random_voxels({.x = 15, .y = 15, .z = 2}, 2),
           // more than 64 face tiles
@@ -22,7 +22,7 @@ std::vector<Robot> robots() {
 }
 
 TEST(FaceTiles, HoldEveryFaceOnce) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : tiled_robots()) {
     std::multiset<std::set<int>> expected, found;
     for (const Face& f : robot.faces) expected.insert({f.a, f.b, f.c});
     for (const FacePair& p : make_face_tiles(pair_faces(robot))) {
@@ -36,7 +36,7 @@ TEST(FaceTiles, HoldEveryFaceOnce) {
 }
 
 TEST(FaceTiles, AreAsFewAsCanBe) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : tiled_robots()) {
     const std::vector<FacePair> given = pair_faces(robot), pairs = make_face_tiles(given);
     EXPECT_EQ(pairs.size(), (given.size() + 31) / 32 * 32);
     const auto unused = static_cast<std::size_t>(std::ranges::count(pairs, padding_faces));
@@ -47,7 +47,7 @@ TEST(FaceTiles, AreAsFewAsCanBe) {
 // A face tile takes a pass per column, and however pairs are dealt out, each corner in the busiest bank takes one pass
 // of an addition.
 TEST(FaceTiles, TakeFewPassesMoreThanNecessary) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : tiled_robots()) {
     const std::vector<FacePair> given = pair_faces(robot);
     CornerBanks banks;
     for (const FacePair& p : given) banks.add(p);

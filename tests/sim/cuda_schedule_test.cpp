@@ -53,7 +53,7 @@ Robot triangles(int masses, int count, unsigned seed) {
   return robot;
 }
 
-std::vector<Robot> robots() {
+std::vector<Robot> scheduled_robots() {
   std::vector<Robot> all{bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 1),
                          bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 2),
                          bodies::random_voxels({.x = 17, .y = 2, .z = 3}, 3), star(500)};
@@ -80,7 +80,7 @@ Key key(std::uint32_t a, std::uint32_t b, MaterialId material, float rest_length
 }
 
 TEST(Schedule, HoldsEverySpringOnceAndNothingElse) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : scheduled_robots()) {
     const Schedule schedule = schedule_of(robot);
     std::multiset<Key> expected, found;
     for (const Spring& s : robot.springs) expected.insert(key(s.a, s.b, s.material, s.rest_length));
@@ -97,7 +97,7 @@ TEST(Schedule, HoldsEverySpringOnceAndNothingElse) {
 }
 
 TEST(Schedule, NoTwoPartnersOfARowShareABank) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : scheduled_robots()) {
     const Schedule schedule = schedule_of(robot);
     for (std::uint32_t row = 0; row < schedule.rows(); ++row) {
       std::set<int> banks;
@@ -113,7 +113,7 @@ TEST(Schedule, NoTwoPartnersOfARowShareABank) {
 
 // Padding reads a partner like a spring does. Where a tile has all its masses, it must find a free bank.
 TEST(Schedule, PaddingOfAFullTileUsesFreeBanks) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : scheduled_robots()) {
     const Schedule schedule = schedule_of(robot);
     for (std::uint32_t tile = 0; tile < robot.masses.size() / lanes; ++tile)
       for (std::uint32_t row = schedule.row_start[tile]; row < schedule.row_start[tile + 1]; ++row) {
@@ -126,7 +126,7 @@ TEST(Schedule, PaddingOfAFullTileUsesFreeBanks) {
 }
 
 TEST(Schedule, PartnersOfMassesAreMassesAndLanesWithoutAMassReadOneAnother) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : scheduled_robots()) {
     const Schedule schedule = schedule_of(robot);
     for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
       for (std::uint32_t entry = schedule.row_start[tile] * lanes; entry < schedule.row_start[tile + 1] * lanes;
@@ -141,7 +141,7 @@ TEST(Schedule, PartnersOfMassesAreMassesAndLanesWithoutAMassReadOneAnother) {
 }
 
 TEST(Schedule, CountsTheSpringsOfASlotAndWhatItReceives) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : scheduled_robots()) {
     const Schedule schedule = schedule_of(robot);
     std::vector<std::uint32_t> valences(schedule.tiles() * lanes), incoming(valences.size());
     for (const Spring& spring : robot.springs) ++valences[spring.a], ++valences[spring.b];
@@ -153,7 +153,7 @@ TEST(Schedule, CountsTheSpringsOfASlotAndWhatItReceives) {
 
 // Koenig's theorem: a bipartite graph has as many colors as its busiest vertex has edges.
 TEST(Schedule, TilesHaveAsManyRowsAsTheirBusiestLaneOrBankHasSprings) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : scheduled_robots()) {
     const Schedule schedule = schedule_of(robot);
     ASSERT_EQ(schedule.entries.size(), std::size_t{schedule.rows()} * lanes);
     for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile) {
@@ -185,7 +185,7 @@ TEST(SpringOwners, MassesOfAPartlyEmptyTileOwnFewSprings) {
 }
 
 TEST(Arrangement, HoldsTheSpringsAndFacesOfTheRobot) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : scheduled_robots()) {
     const Arrangement arrangement = arrange(robot);
     const std::vector<std::uint16_t> masses = arrangement.order->masses();
     const auto mass_of = [&](std::uint32_t slot) { return masses.at(slot); };

@@ -18,14 +18,14 @@ namespace {
 
 SlotOrder order_of(const Robot& robot) { return choose_slots(robot, pair_faces(robot)); }
 
-std::vector<Robot> robots() {
+std::vector<Robot> ordered_robots() {
   return {bodies::point(), bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 1),
           bodies::random_voxels({.x = 7, .y = 1, .z = 1}, 1), bodies::random_voxels({.x = 5, .y = 4, .z = 3}, 1),
           bodies::random_voxels({.x = 10, .y = 10, .z = 10}, 1)};
 }
 
 TEST(SlotOrder, GivesEachMassASlotOfItsOwn) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : ordered_robots()) {
     const SlotOrder order = order_of(robot);
     std::vector<std::uint16_t> slots = order.slots, expected(robot.masses.size());
     std::ranges::sort(slots);
@@ -38,7 +38,7 @@ TEST(SlotOrder, GivesEachMassASlotOfItsOwn) {
 
 // The ranges of valences of two tiles meet in one number at most.
 TEST(SlotOrder, MassesOfATileHaveAboutTheSameValence) {
-  for (const Robot& robot : robots()) {
+  for (const Robot& robot : ordered_robots()) {
     const std::vector<std::uint32_t> valence = valences(robot);
     const std::vector<std::uint16_t> masses = order_of(robot).masses();
     std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges(tiles_for(masses.size()), {~0u, 0});

@@ -7,7 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/base/suggestion.h"
+#include "robots/names.h"
+
 
 namespace mercury::window {
 namespace {

@@ -89,10 +89,6 @@ std::optional<Line> line_of(const CulpritSpring& spring, const ViewportArea& are
   return Line{end(spring.at_a, depth_a), end(spring.at_b, depth_b), depth_a > 0, depth_b > 0};
 }
 
-bool inside(const ViewportArea& area, ImVec2 p) {
-  return p.x >= area.low.x && p.x <= area.high.x && p.y >= area.low.y && p.y <= area.high.y;
-}
-
 // A bar and two rings with an outline, so that they stand out from any background.
 void draw_mark(const Line& line, bool chosen) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
@@ -138,7 +134,7 @@ std::optional<Box> place_of(const std::vector<std::string>& lines, const Line& l
                            {middle.x, middle.y + away}};
   for (const ImVec2 low : places) {
     const Box box{low, {low.x + size.x, low.y + size.y}};
-    if (inside(area, box.low) && inside(area, box.high) &&
+    if (area.holds(box.low) && area.holds(box.high) &&
         std::ranges::none_of(taken, [&](const Box& other) { return box.meets(other); }))
       return box;
   }

@@ -20,10 +20,6 @@ constexpr double mark_delay = 0.05;     // the same for its name and for marks [
 constexpr double pick_share = 0.1;      // of the time, for looking what is under a mouse that rests
 constexpr float wheel_factor = 0.88f;   // of the distance to the target, per notch
 
-bool inside(const ViewportArea& area, ImVec2 p) {
-  return p.x >= area.low.x && p.x < area.high.x && p.y >= area.low.y && p.y < area.high.y;
-}
-
 render::Ray ray_at(const ViewportArea& area, const render::Camera& camera, ImVec2 p) {
   return camera.ray(p.x - area.low.x, p.y - area.low.y, static_cast<int>(area.width()),
                     static_cast<int>(area.height()));
@@ -48,7 +44,7 @@ void label(ImVec2 at, const std::string& text) {
 
 void MouseController::update(const ViewportArea& area, const render::Camera& camera) {
   const ImGuiIO& io = ImGui::GetIO();
-  const bool free = !io.WantCaptureMouse && inside(area, io.MousePos);
+  const bool free = !io.WantCaptureMouse && area.holds(io.MousePos);
   if (drag_ == Drag::none && free) press(area, camera);
   if (drag_ != Drag::none) {
     drag(area, camera);

@@ -19,6 +19,7 @@ struct ViewportArea {
   float width() const { return high.x - low.x; }
   float height() const { return high.y - low.y; }
   float aspect() const { return width() / height(); }
+  bool holds(ImVec2 p) const { return p.x >= low.x && p.x < high.x && p.y >= low.y && p.y < high.y; }
 };
 
 // Where a point of the scene is on the screen.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct Quantity {
 
 // All quantities. Their order is that of Assessment::values.
 std::span<const Quantity> quantities();
+std::vector<std::string> names_of_quantities();
 
 // Index in quantities(); nothing if there is none of that name.
 std::optional<std::size_t> find_quantity(std::string_view name);

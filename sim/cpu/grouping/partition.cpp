@@ -20,7 +20,7 @@ using Group = std::vector<std::size_t>;
 using Word = std::uint64_t;
 
 // One robot's cell, spring or face pair.
-struct Item {
+struct KeyedItem {
   std::uint64_t key;
   std::uint32_t robot;
 };
@@ -29,9 +29,9 @@ struct Item {
 // each key.
 class CommonItems {
  public:
-  CommonItems(std::span<const Item> items, std::size_t most) : items_(items) {
+  CommonItems(std::span<const KeyedItem> items, std::size_t most) : items_(items) {
     std::size_t keys = 0;
-    for (const Item& item : items) {
+    for (const KeyedItem& item : items) {
       Entry& entry = find(item.key);
       entry.key = item.key;
       if (++entry.count == 2) common_.push_back(item.key);
@@ -47,7 +47,7 @@ class CommonItems {
   // Calls visit(item, number) for each item that has a number.
   template <class Visit>
   void for_each(const Visit& visit) {
-    for (const Item& item : items_)
+    for (const KeyedItem& item : items_)
       if (const std::uint32_t number = find(item.key).number; number != none) visit(item, number);
   }
 
@@ -72,7 +72,7 @@ class CommonItems {
     return entries_[i];
   }
 
-  std::span<const Item> items_;
+  std::span<const KeyedItem> items_;
   std::vector<Entry> entries_ = std::vector<Entry>(4096);
   std::vector<std::uint64_t> common_;
 };
@@ -112,7 +112,7 @@ class ItemSets {
     const bool few_springs = all_springs <= limits.springs_per_robot * members.size();
     cell_cost_ = costs.slot +
                  (few_springs ? 0 : costs.entry * static_cast<double>(all_springs) / static_cast<double>(all_cells));
-    std::vector<Item> cells, springs, pairs;
+    std::vector<KeyedItem> cells, springs, pairs;
     for (std::uint32_t m = 0; m < members.size(); ++m)
       append_items(robots[members[m]], m, few_springs, cells, springs, pairs);
     CommonItems common_cells(cells, limits.items_distinguished), common_springs(springs, limits.items_distinguished),
@@ -155,8 +155,8 @@ class ItemSets {
   }
 
  private:
-  static void append_items(const RobotItems& items, std::uint32_t robot, bool with_springs, std::vector<Item>& cells,
-                           std::vector<Item>& springs, std::vector<Item>& pairs) {
+  static void append_items(const RobotItems& items, std::uint32_t robot, bool with_springs, std::vector<KeyedItem>& cells,
+                           std::vector<KeyedItem>& springs, std::vector<KeyedItem>& pairs) {
     const auto index = [&](std::uint16_t mass) { return std::uint64_t{index_of(items.cells[mass])}; };
     for (const LatticeCell c : items.cells) cells.push_back({index_of(c), robot});
     if (with_springs)
@@ -169,7 +169,7 @@ class ItemSets {
   }
 
   void set_bits(CommonItems& items, std::size_t first_word) {
-    items.for_each([&](const Item& item, std::uint32_t number) {
+    items.for_each([&](const KeyedItem& item, std::uint32_t number) {
       bits_[words_ * item.robot + first_word + number / 64] |= Word{1} << number % 64;
     });
   }

@@ -12,7 +12,7 @@
 namespace mercury {
 namespace {
 
-Configuration on_cpu(Environment environment = Ocean{}) {
+Configuration in_environment(Environment environment = Ocean{}) {
   return {.environment = environment, .device = {.kind = DeviceKind::cpu, .threads = 1}};
 }
 
@@ -48,7 +48,7 @@ std::vector<Vec3> positions_of(const Simulation& simulation) {
 void expect_first_steps(Physics& physics, const std::vector<LiveRobot>& robots) {
   physics.step(5);
   physics.wait_until_done();
-  Simulation simulation = alone(robots, on_cpu());
+  Simulation simulation = alone(robots, in_environment());
   simulation.step(5);
   EXPECT_EQ(positions_of(*physics.newest()), positions_of(simulation));
 }
@@ -56,13 +56,13 @@ void expect_first_steps(Physics& physics, const std::vector<LiveRobot>& robots) 
 // A time step that no simulation takes, and with it all that a user may change at the same moment.
 TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
   Messages messages;
-  Physics physics(on_cpu(), messages);
+  Physics physics(in_environment(), messages);
   const auto robots = some_robots(2);
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   physics.set_speed(unlimited_speed);
   physics.play();
   while (physics.newest()->steps < 10) std::this_thread::yield();  // commands wait for the end of a slice of steps
-  Configuration impossible = on_cpu();
+  Configuration impossible = in_environment();
   impossible.dt = -1;
   physics.set_scene(robots, impossible);
   physics.set_view({.color = &color_quantity("strain")});
@@ -73,7 +73,7 @@ TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
   EXPECT_FALSE(snapshot->playing);
   EXPECT_EQ(snapshot->speed, 3);
   EXPECT_EQ(snapshot->color->key, "strain");
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   physics.step(1);
   physics.wait_until_done();
   EXPECT_EQ(physics.newest()->robots->size(), 2u);
@@ -83,13 +83,13 @@ TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
 TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
   for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})}) {
     Messages messages;
-    Physics physics(on_cpu(environment), messages);
+    Physics physics(in_environment(environment), messages);
     const auto robots = some_robots(3);
-    physics.set_scene(robots, on_cpu(environment));
+    physics.set_scene(robots, in_environment(environment));
     physics.step(500);
     physics.step(137);
     physics.wait_until_done();
-    Simulation simulation = alone(robots, on_cpu(environment));
+    Simulation simulation = alone(robots, in_environment(environment));
     simulation.step(637);
     const auto snapshot = physics.newest();
     EXPECT_EQ(snapshot->steps, 637);
@@ -103,7 +103,7 @@ TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
 // Otherwise robots would start at a step that depends on how long they took to load.
 TEST(LivePhysics, TimeStandsStillWithoutRobots) {
   Messages messages;
-  Physics physics(on_cpu(), messages);
+  Physics physics(in_environment(), messages);
   physics.set_speed(unlimited_speed);
   physics.play();
   physics.step(5);
@@ -113,15 +113,15 @@ TEST(LivePhysics, TimeStandsStillWithoutRobots) {
   }
   const auto robots = some_robots(1);
   physics.pause();
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   expect_first_steps(physics, robots);
 }
 
 TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
   Messages messages;
-  Physics physics(on_cpu(), messages);
+  Physics physics(in_environment(), messages);
   const auto robots = some_robots(2);
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   physics.set_speed(unlimited_speed);
   physics.play();
   while (physics.newest()->steps < 300) std::this_thread::yield();
@@ -129,16 +129,16 @@ TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
   physics.wait_until_done();
   const auto snapshot = physics.newest();
   EXPECT_FALSE(snapshot->playing);
-  Simulation simulation = alone(robots, on_cpu());
+  Simulation simulation = alone(robots, in_environment());
   simulation.step(snapshot->steps);
   EXPECT_EQ(positions_of(*snapshot), positions_of(simulation));
 }
 
 TEST(LivePhysics, ResetReturnsToRestAtTimeZero) {
   Messages messages;
-  Physics physics(on_cpu(), messages);
+  Physics physics(in_environment(), messages);
   const auto robots = some_robots(2);
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   physics.wait_until_done();
   const auto start = physics.newest();
   physics.step(50);
@@ -153,24 +153,24 @@ TEST(LivePhysics, ResetReturnsToRestAtTimeZero) {
 
 TEST(LivePhysics, RobotsKeepTheirStateWhenOthersAreAddedAndRemoved) {
   Messages messages;
-  Physics physics(on_cpu(), messages);
+  Physics physics(in_environment(), messages);
   const auto robots = some_robots(3);
-  physics.set_scene({robots[0], robots[1]}, on_cpu());
+  physics.set_scene({robots[0], robots[1]}, in_environment());
   physics.step(40);
   physics.wait_until_done();
-  physics.set_scene({robots[2], robots[1]}, on_cpu());
+  physics.set_scene({robots[2], robots[1]}, in_environment());
   physics.step(60);
   physics.wait_until_done();
   const auto snapshot = physics.newest();
-  Simulation simulation = alone(robots, on_cpu());
+  Simulation simulation = alone(robots, in_environment());
   simulation.step(100);
   const auto expected = simulation.positions(1);
   EXPECT_TRUE(std::ranges::equal(snapshot->positions_of(1), expected));
   EXPECT_EQ(snapshot->robots->robots[0].id, robots[2].id);
   // The first robot comes back with its state of step 40.
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   physics.wait_until_done();
-  Simulation until_40 = alone(robots, on_cpu());
+  Simulation until_40 = alone(robots, in_environment());
   until_40.step(40);
   EXPECT_TRUE(std::ranges::equal(physics.newest()->positions_of(0), until_40.positions(0)));
   EXPECT_TRUE(std::ranges::equal(physics.newest()->positions_of(1), expected));
@@ -178,7 +178,7 @@ TEST(LivePhysics, RobotsKeepTheirStateWhenOthersAreAddedAndRemoved) {
 
 TEST(LivePhysics, PerturbationMovesTheCenterOfMassByItsForce) {
   // Empty space without damping: the only outer force is k (target - x) on one mass.
-  Configuration space = on_cpu(OceanSimple{.point_drag = 0});
+  Configuration space = in_environment(OceanSimple{.point_drag = 0});
   space.damping = 0;
   Messages messages;
   Physics physics(space, messages);
@@ -197,7 +197,7 @@ TEST(LivePhysics, PerturbationMovesTheCenterOfMassByItsForce) {
 }
 
 TEST(LivePhysics, ExplosionIsReportedOnceAndPausesOnRequest) {
-  Configuration wild = on_cpu();
+  Configuration wild = in_environment();
   wild.dt = 1;
   Messages messages;
   Physics physics(wild, messages);
@@ -229,38 +229,38 @@ TEST(LivePhysics, ExplosionIsReportedOnceAndPausesOnRequest) {
 
 TEST(LivePhysics, FailedSceneIsReportedAndTheNextOneIsSimulated) {
   Messages messages;
-  Physics physics(on_cpu(), messages);
+  Physics physics(in_environment(), messages);
   auto robots = some_robots(2);
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   physics.step(5);
   physics.wait_until_done();
   const LiveRobot impossible{.id = 9, .robot = std::make_shared<const Robot>()};
-  physics.set_scene({robots[0], impossible}, on_cpu());
+  physics.set_scene({robots[0], impossible}, in_environment());
   physics.wait_until_done();
   EXPECT_EQ(messages.take().size(), 1u);
   EXPECT_EQ(physics.newest()->robots->size(), 0u);
   EXPECT_EQ(physics.newest()->positions.size(), 0u);
-  physics.set_scene(robots, on_cpu());
+  physics.set_scene(robots, in_environment());
   expect_first_steps(physics, robots);
   EXPECT_TRUE(messages.take().empty());
 }
 
 TEST(LivePhysics, DetailsThatTheEnvironmentLacksAreIgnored) {
   Messages messages;
-  Physics physics(on_cpu(), messages);
+  Physics physics(in_environment(), messages);
   ViewSettings view{.color = &color_quantity("pressure")};
   view.shown.arrows.drag = true;
   physics.set_view(view);
-  physics.set_scene(some_robots(1), on_cpu());
+  physics.set_scene(some_robots(1), in_environment());
   physics.step(3);
   physics.wait_until_done();
   EXPECT_EQ(physics.newest()->color, &color_quantity("pressure"));
   EXPECT_FALSE(physics.newest()->details.values.face.empty());
-  physics.set_scene(some_robots(1), on_cpu(Land{}));
+  physics.set_scene(some_robots(1), in_environment(Land{}));
   physics.wait_until_done();
   EXPECT_EQ(physics.newest()->color, &material_color());
   EXPECT_TRUE(physics.newest()->details.arrows.empty());
-  physics.set_scene(some_robots(1), on_cpu());
+  physics.set_scene(some_robots(1), in_environment());
   physics.wait_until_done();
   EXPECT_EQ(physics.newest()->color, &color_quantity("pressure"));
   EXPECT_TRUE(messages.take().empty());

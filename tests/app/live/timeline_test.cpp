@@ -12,6 +12,7 @@
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
+#include "tests/same_bits.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {
@@ -38,10 +39,6 @@ Moment moment_of(const LiveScene& scene) {
                 .perturbations = snapshot.perturbations};
   for (const LiveRobot& robot : snapshot.robots->robots) moment.robots.push_back(robot.id);
   return moment;
-}
-
-bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
 }
 
 // Expects the scene to show that moment, apart from changes that take effect with the next step.

@@ -13,13 +13,10 @@
 #include "mercury/error.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
+#include "tests/same_bits.h"
 
 namespace mercury::test {
 namespace {
-
-bool same_bits(std::span<const Vec3> a, std::span<const Vec3> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
 
 class RecordingWithoutDevice : public FolderTest {
  protected:

@@ -13,7 +13,7 @@ namespace {
 
 using render::Bounds;
 
-constexpr int width = 1600, height = 900;
+constexpr int board_width = 1600, board_height = 900;
 constexpr float aspect = 16.0f / 9;
 
 Bounds box(float x, float y, float z) {
@@ -46,7 +46,7 @@ struct PlacedBoard {
     for (std::size_t i = 0; i < robots.size(); ++i) moved.push_back(robots[i].moved(placement.offsets[i]));
     camera = controller.at(moved, 0);
   }
-  render::Vector3 seen(const render::Vector3& point) const { return camera.project(point, width, height); }
+  render::Vector3 seen(const render::Vector3& point) const { return camera.project(point, board_width, board_height); }
   // The rectangle of a tile in the picture: left, upper, right and lower end.
   render::Vector4 rectangle(const render::Tile& tile) const {
     const render::Vector3 upper_left = seen(tile.center - tile.half_width + tile.half_height),
@@ -62,8 +62,8 @@ TEST(Board, TilesAreRectanglesInRowsInsideThePicture) {
     const render::Vector4 r = placed.rectangle(placed.placement.tiles[i]);
     EXPECT_GT(r.x, 0);
     EXPECT_GT(r.y, 0);
-    EXPECT_LT(r.z, width);
-    EXPECT_LT(r.w, height);
+    EXPECT_LT(r.z, board_width);
+    EXPECT_LT(r.w, board_height);
     if (i % 4 != 3) {  // the next one is to the right, at the same height and of the same size
       const render::Vector4 next = placed.rectangle(placed.placement.tiles[i + 1]);
       EXPECT_GT(next.x, r.z);

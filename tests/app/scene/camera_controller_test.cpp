@@ -15,7 +15,7 @@ namespace {
 
 using render::Bounds;
 
-constexpr int width = 1280, height = 720;
+constexpr int view_width = 1280, view_height = 720;
 constexpr double tick = 1.0 / 30;
 
 Bounds box(render::Vector3 middle, float half) {
@@ -39,9 +39,9 @@ float fill_of(const render::Camera& camera, const std::vector<Bounds>& boxes) {
   for (const Bounds& b : boxes)
     for (int i = 0; i < 8 && !b.empty(); ++i) {
       const render::Vector3 corner(i & 1 ? b.high.x : b.low.x, i & 2 ? b.high.y : b.low.y, i & 4 ? b.high.z : b.low.z);
-      const render::Vector3 pixel = camera.project(corner, width, height);
+      const render::Vector3 pixel = camera.project(corner, view_width, view_height);
       EXPECT_GT(pixel.z, 0) << "behind the eye";
-      fill = std::max({fill, std::abs(pixel.x / width * 2 - 1), std::abs(1 - pixel.y / height * 2)});
+      fill = std::max({fill, std::abs(pixel.x / view_width * 2 - 1), std::abs(1 - pixel.y / view_height * 2)});
     }
   return fill;
 }

@@ -48,9 +48,9 @@ Rectangle seen(const Bounds& b, const render::Orbit& view) {
   return r;
 }
 
-class Layout : public testing::TestWithParam<bool> {};
+class GridOnTheGround : public testing::TestWithParam<bool> {};
 
-TEST_P(Layout, NoRobotHidesAnother) {
+TEST_P(GridOnTheGround, NoRobotHidesAnother) {
   const render::Orbit view{.azimuth = -1.3f, .elevation = 0.5f};
   for (const int count : {1, 2, 7, 12, 30}) {
     const std::vector<Bounds> boxes = robots(count);
@@ -65,7 +65,7 @@ TEST_P(Layout, NoRobotHidesAnother) {
   }
 }
 
-TEST_P(Layout, FirstIsUpperLeftAndRowsFillFirst) {
+TEST_P(GridOnTheGround, FirstIsUpperLeftAndRowsFillFirst) {
   const render::Orbit view{.azimuth = -1.3f, .elevation = 0.5f};
   const std::vector<Bounds> boxes = robots(6);
   const auto offsets = grid_layout(boxes, {.grid = Grid{3, 2}, .view = view, .on_ground = GetParam()});
@@ -75,7 +75,7 @@ TEST_P(Layout, FirstIsUpperLeftAndRowsFillFirst) {
   EXPECT_GT(rectangle(0).bottom, rectangle(3).top);
 }
 
-INSTANTIATE_TEST_SUITE_P(Grid, Layout, testing::Values(false, true),
+INSTANTIATE_TEST_SUITE_P(Grid, GridOnTheGround, testing::Values(false, true),
                          [](const auto& tested) { return tested.param ? "OnTheGround" : "InWater"; });
 
 TEST(GridLayout, OnTheGroundHeightsDoNotChange) {

@@ -22,7 +22,7 @@ namespace {
 using render::Image;
 using testing::HasSubstr;
 
-constexpr PictureSize small{160, 90};
+constexpr PictureSize tiny{160, 90};
 
 class FilmTest : public FolderTest {
  protected:
@@ -35,7 +35,7 @@ class FilmTest : public FolderTest {
     }
   }
 
-  FilmOptions options(double rate = 10) const { return {.size = small, .frames_per_second = rate}; }
+  FilmOptions options(double rate = 10) const { return {.size = tiny, .frames_per_second = rate}; }
 
   static constexpr render::ContextKind kind = render::ContextKind::automatic;
   DrawingThread thread_{kind};
@@ -60,13 +60,13 @@ TEST_F(FilmTest, PictureHasTheRequestedSizeAndShowsTheRobots) {
 }
 
 TEST_F(FilmTest, SameStateGivesTheSameBytesFromAnyThread) {
-  const Image first = picture_of(thread_, simulation_, {.size = small});
+  const Image first = picture_of(thread_, simulation_, {.size = tiny});
   simulation_.step(500);
   const Image moved = picture_of(thread_, simulation_, {.size = {90, 160}});
   EXPECT_NE(moved.bytes, first.bytes);
   simulation_.reset();
   std::vector<Image> again(4);
-  for (Image& picture : again) std::thread([&] { picture = picture_of(thread_, simulation_, {.size = small}); }).join();
+  for (Image& picture : again) std::thread([&] { picture = picture_of(thread_, simulation_, {.size = tiny}); }).join();
   for (const Image& picture : again) EXPECT_EQ(picture.bytes, first.bytes);
 }
 
@@ -74,11 +74,11 @@ TEST_F(FilmTest, QualitiesAndQuantitiesDiffer) {
   simulation_.step(300);
   std::set<std::string> pictures;
   for (const ColorQuantity& quantity : color_quantities()) {
-    const Image picture = picture_of(thread_, simulation_, {.size = small, .view = {.color = &quantity}});
+    const Image picture = picture_of(thread_, simulation_, {.size = tiny, .view = {.color = &quantity}});
     EXPECT_TRUE(pictures.emplace(picture.bytes.begin(), picture.bytes.end()).second) << quantity.key;
   }
-  const Image low = picture_of(thread_, simulation_, {.size = small, .quality = render::Quality::low});
-  const Image high = picture_of(thread_, simulation_, {.size = small, .quality = render::Quality::high});
+  const Image low = picture_of(thread_, simulation_, {.size = tiny, .quality = render::Quality::low});
+  const Image high = picture_of(thread_, simulation_, {.size = tiny, .quality = render::Quality::high});
   EXPECT_NE(low.bytes, high.bytes);
   EXPECT_LT(difference(low, high), 10);
 }
@@ -98,12 +98,12 @@ TEST_F(FilmTest, FilmHasAFramePerCall) {
 }
 
 TEST_F(FilmTest, FramesArePicturesOfTheirMoment) {
-  Film film(thread_, simulation_, path("frames/"), {.size = small});
+  Film film(thread_, simulation_, path("frames/"), {.size = tiny});
   std::vector<Image> pictures;
   for (int frame = 0; frame < 6; ++frame, simulation_.step(200)) {
     film.add_frame();
     // Pictures and other films between frames change nothing.
-    pictures.push_back(picture_of(thread_, simulation_, {.size = small}));
+    pictures.push_back(picture_of(thread_, simulation_, {.size = tiny}));
   }
   film.finish();
   const auto frames = listing("frames");
@@ -120,11 +120,11 @@ TEST_F(FilmTest, FramesArePicturesOfTheirMoment) {
 
 TEST_F(FilmTest, TwoFilmsAtOnceDoNotMix) {
   Simulation other({.device = {.kind = DeviceKind::cpu}}, random_voxel_robots({}, 7, 3));
-  Film alone(thread_, simulation_, path("alone/"), {.size = small});
+  Film alone(thread_, simulation_, path("alone/"), {.size = tiny});
   for (int frame = 0; frame < 4; ++frame, simulation_.step(50)) alone.add_frame();
   alone.finish();
   simulation_.reset();
-  Film one(thread_, simulation_, path("one/"), {.size = small});
+  Film one(thread_, simulation_, path("one/"), {.size = tiny});
   Film two(thread_, other, path("two/"), {.size = {90, 160}, .quality = render::Quality::medium});
   for (int frame = 0; frame < 4; ++frame, simulation_.step(50)) {
     one.add_frame();
@@ -137,14 +137,14 @@ TEST_F(FilmTest, TwoFilmsAtOnceDoNotMix) {
 }
 
 TEST_F(FilmTest, FilmShowsRobotsThatAreAddedAndKept) {
-  Film film(thread_, simulation_, path("frames/"), {.size = small});
+  Film film(thread_, simulation_, path("frames/"), {.size = tiny});
   film.add_frame();
   simulation_.add(random_voxel_robots({}, 9, 3));
   film.add_frame();
   const std::vector<std::size_t> last{4};
   simulation_.keep(last);
   film.add_frame();
-  const Image one = picture_of(thread_, simulation_, {.size = small});
+  const Image one = picture_of(thread_, simulation_, {.size = tiny});
   film.finish();
   EXPECT_EQ(render::read_png(path("frames/frame-00002.png")).bytes, one.bytes);
 }
@@ -181,7 +181,7 @@ TEST_F(FilmTest, DyingEncoderIsReported) {
                        path("b.mp4"), dying, 5),
                VideoError);
   EXPECT_EQ(listing(), std::vector<std::string>{"dying"});
-  EXPECT_EQ(picture_of(thread_, simulation_, {.size = small}).width, small.width) << "the thread goes on";
+  EXPECT_EQ(picture_of(thread_, simulation_, {.size = tiny}).width, tiny.width) << "the thread goes on";
 }
 
 // An encoder that reads nothing and never ends: a few of these frames fill its pipe.
@@ -232,7 +232,7 @@ TEST_F(FilmTest, BadOptionsAreRefusedByName) {
   EXPECT_EQ(refused([&] { Film(thread_, simulation_, path("a.mp4"), options(-1)); }), "fps");
   ViewSettings pressure{.color = &color_quantity("pressure")};
   Simulation land({.environment = Land{}, .device = {.kind = DeviceKind::cpu}}, random_voxel_robots({}, 1, 1));
-  EXPECT_EQ(refused([&] { picture_of(thread_, land, {.size = small, .view = pressure}); }), "color");
+  EXPECT_EQ(refused([&] { picture_of(thread_, land, {.size = tiny, .view = pressure}); }), "color");
   EXPECT_EQ(refused([&] { film_of(thread_, std::move(land), path("a.mp4"), options(), NAN); }), "seconds");
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
@@ -246,7 +246,7 @@ TEST_F(FilmTest, ForkedProcessGetsAnErrorAndLeavesTheFilmAlone) {
     if (child == 0) {
       int refusals = 0;
       try {
-        picture_of(thread_, simulation_, {.size = small});
+        picture_of(thread_, simulation_, {.size = tiny});
       } catch (const DeviceError&) {
         ++refusals;
       }
@@ -273,7 +273,7 @@ TEST_F(FilmTest, NothingIsDrawnAfterTheEnd) {
   Film film(thread_, simulation_, path("a.mp4"), options());
   film.add_frame();
   thread_.end();
-  EXPECT_THROW(picture_of(thread_, simulation_, {.size = small}), DeviceError);
+  EXPECT_THROW(picture_of(thread_, simulation_, {.size = tiny}), DeviceError);
   EXPECT_THROW(film.add_frame(), DeviceError);
   film.discard();
   EXPECT_EQ(listing(), std::vector<std::string>{});

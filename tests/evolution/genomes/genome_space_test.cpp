@@ -14,20 +14,12 @@
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "mercury/voxel.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
 
 using testing::HasSubstr;
-
-std::string refusal(const auto& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 // A kind and what may change. "given" = the muscles of given robots.
 struct Case {

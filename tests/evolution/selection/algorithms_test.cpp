@@ -58,7 +58,7 @@ std::vector<Individual> random_pool(std::size_t count, std::size_t objectives, s
   return pool;
 }
 
-AlgorithmSettings settings_of(std::string_view name, std::size_t population) {
+AlgorithmSettings algorithm_settings(std::string_view name, std::size_t population) {
   AlgorithmSettings settings{.name = std::string(name), .population = population};
   if (name == "map-elites")
     settings.axes = {{.quantity = "size", .lowest = 0, .highest = 1, .cells = 4},
@@ -79,15 +79,15 @@ bool scores_before(const Individual& a, const Individual& b) {
 class EveryAlgorithm : public testing::TestWithParam<std::string_view> {
  protected:
   std::unique_ptr<Algorithm> make(std::size_t population) const {
-    return make_algorithm(settings_of(GetParam(), population));
+    return make_algorithm(algorithm_settings(GetParam(), population));
   }
 };
 
-std::string suite_name(const testing::TestParamInfo<std::string_view>& test) {
+std::string algorithm_name(const testing::TestParamInfo<std::string_view>& test) {
   return test.param == "map-elites" ? "map_elites" : std::string(test.param);
 }
 INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithm, testing::Values("ga", "afpo", "nsga2", "map-elites", "random"),
-                         suite_name);
+                         algorithm_name);
 
 TEST_P(EveryAlgorithm, SurvivorsAreDifferentMembersOfThePoolTheBestFirst) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
@@ -160,11 +160,11 @@ TEST_P(EveryAlgorithm, PlansDependOnTheirArgumentsAlone) {
 
 // Algorithms whose children have parents.
 class Parents : public EveryAlgorithm {};
-INSTANTIATE_TEST_SUITE_P(Algorithms, Parents, testing::Values("ga", "afpo", "nsga2", "map-elites"), suite_name);
+INSTANTIATE_TEST_SUITE_P(Algorithms, Parents, testing::Values("ga", "afpo", "nsga2", "map-elites"), algorithm_name);
 
 TEST_P(Parents, AreTwoForTheShareOfChildrenThatIsSet) {
   const std::vector<Individual> living = random_pool(30, 1, 1);
-  AlgorithmSettings settings = settings_of(GetParam(), 30);
+  AlgorithmSettings settings = algorithm_settings(GetParam(), 30);
   for (const double share : {0.0, 0.3, 1.0}) {
     settings.crossover = share;
     Random random(1);
@@ -184,7 +184,7 @@ TEST_P(Parents, AreTwoForTheShareOfChildrenThatIsSet) {
 
 TEST_P(Parents, OneIsEnough) {
   const std::vector<Individual> living = random_pool(1, 1, 1);
-  AlgorithmSettings settings = settings_of(GetParam(), 30);
+  AlgorithmSettings settings = algorithm_settings(GetParam(), 30);
   settings.crossover = 1;
   Random random(1);
   for (const ChildPlan& plan : make_algorithm(settings)->plan(living, 10, random)) EXPECT_LE(plan.parents.size(), 1u);
@@ -318,7 +318,7 @@ TEST(Nsga2, EndsOfTheFirstFrontAreParentsMoreOftenThanTheRest) {
 }
 
 TEST(MapElites, KeepsTheBestOfEachCell) {
-  const AlgorithmSettings settings = settings_of("map-elites", 10);
+  const AlgorithmSettings settings = algorithm_settings("map-elites", 10);
   const std::size_t size = find_quantity("size").value(), symmetry = find_quantity("symmetry").value();
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const std::vector<Individual> pool = random_pool(80, 1, seed);
@@ -357,7 +357,7 @@ TEST(MapElites, CellsAreCountedWithTheFirstAxisFastestAndEndAtTheLastOne) {
 
 TEST(MapElites, EveryEliteIsAsLikelyAParent) {
   const std::vector<Individual> living = random_pool(10, 1, 1);
-  AlgorithmSettings settings = settings_of("map-elites", 10);
+  AlgorithmSettings settings = algorithm_settings("map-elites", 10);
   settings.crossover = 0;
   Random random(1);
   std::vector<int> count(10);

@@ -19,7 +19,7 @@
 namespace mercury {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // As evosoro's sample robots have it, with voxels of 1 cm.
 constexpr BeamModel soft{.elastic_modulus = 1e5, .density = 1200, .edge = 0.01};

@@ -10,7 +10,7 @@
 namespace mercury {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Substance muscle(double amplitude, double phase, bool half_wave = false) {
   return {.stiffness = 50, .amplitude = amplitude, .frequency = 3, .phase = phase, .half_wave = half_wave};

@@ -17,7 +17,7 @@
 namespace mercury {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Vxa, BecomesAVoxelRobotWithThePaletteAsMaterials) {
   const Import import = import_of({});

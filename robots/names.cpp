@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/base/suggestion.h"
+#include "robots/names.h"
 
 #include <algorithm>
 #include <numeric>
@@ -28,6 +28,13 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::string list_of(const std::vector<std::string>& names, const char* last) {
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    list += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
+  return list;
+}
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
   if (word.size() > longest_word) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/base/suggestion.h"
+#include "robots/names.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +17,13 @@ TEST(Suggestion, NamesTheNearestOption) {
 TEST(Suggestion, IsEmptyWhenNothingIsNear) {
   EXPECT_EQ(suggestion("--frobnicate", names), "");
   EXPECT_EQ(suggestion("x", {}), "");
+}
+
+TEST(Names, AreListed) {
+  EXPECT_EQ(list_of({}), "");
+  EXPECT_EQ(list_of({"a"}, " or "), "a");
+  EXPECT_EQ(list_of({"a", "b", "c"}), "a, b, c");
+  EXPECT_EQ(list_of({"a", "b", "c"}, " or "), "a, b or c");
 }
 
 }  // namespace
