@@ -6,8 +6,8 @@
 #include "evolution/selection/registry.h"
 #include "mercury/error.h"
 #include "mercury/evolution.h"
+#include "mercury/names.h"
 #include "mercury/quantity.h"
-#include "robots/names.h"
 #include "robots/number_text.h"
 
 namespace mercury {

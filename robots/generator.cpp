@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "mercury/error.h"
+#include "mercury/names.h"
 #include "mercury/origin.h"
 #include "robots/make_all.h"
-#include "robots/names.h"
 #include "robots/number_text.h"
 
 namespace mercury {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/names.h"
+#include "mercury/names.h"
 
 #include <algorithm>
 #include <numeric>
@@ -31,8 +31,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 std::string list_of(const std::vector<std::string>& names, const char* last) {
   std::string list;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    list += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
+  for (std::size_t i = 0; i < names.size(); ++i) list += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
   return list;
 }
 

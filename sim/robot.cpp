@@ -2,16 +2,14 @@
 #include "mercury/robot.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "mercury/error.h"
 #include "mercury/fnv.h"
 #include "sim/actuators.h"
+#include "sim/physics/integration.h"
 
 namespace mercury {
 namespace {
-
-constexpr float farthest = 1e6f;  // [m]
 
 std::string place(const char* list, std::size_t index) { return std::string(list) + std::to_string(index); }
 
@@ -20,14 +18,12 @@ std::string place(const char* list, std::size_t index) { return std::string(list
       where, "mass " + std::to_string(mass) + " is out of range, the robot has " + std::to_string(robot.masses.size()));
 }
 
-bool in_reach(Vec3 x) { return std::abs(x.x) <= farthest && std::abs(x.y) <= farthest && std::abs(x.z) <= farthest; }
-
 void validate_masses(const Robot& robot) {
   if (robot.masses.empty()) throw InputError("/masses", "a robot needs at least one mass");
   if (robot.masses.size() > max_masses)
     throw InputError("/masses", std::to_string(robot.masses.size()) + " masses, at most 65535 are accepted");
   for (std::size_t i = 0; i < robot.masses.size(); ++i)
-    if (!in_reach(robot.masses[i]))
+    if (!within_reach(robot.masses[i]))
       throw InputError(place("/masses/", i), "a position must be finite and within 1e6 m of the origin");
 }
 

@@ -7,7 +7,7 @@
 
 #include "app/base/messages.h"
 #include "mercury/error.h"
-#include "robots/names.h"
+#include "mercury/names.h"
 
 namespace mercury {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "app/commands/command_list.h"
-#include "robots/names.h"
+#include "mercury/names.h"
 
 namespace mercury {
 

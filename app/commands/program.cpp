@@ -25,7 +25,7 @@
 #include "app/options/scene_file.h"
 #include "evolution/distribution/launcher.h"
 #include "mercury/error.h"
-#include "robots/names.h"
+#include "mercury/names.h"
 
 namespace mercury {
 namespace {

@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SaveResult failed(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
-
 constexpr double frame_rate = 30;  // of motions, per second of simulated time
 
 // As pictures show it: with its colors, its name and its materials as they are in the window.
@@ -100,14 +98,14 @@ std::int64_t record(const Exported& exported, const Configuration& configuration
 
 SaveResult LiveScene::save(RobotId robot, const fs::path& path, bool overwrite) {
   const DocumentRobot* found = parts_->document.find(robot);
-  if (!found) return failed("the robot is no longer there");
+  if (!found) return not_saved("the robot is no longer there");
   try {
     const SaveResult result =
         save_files({{path, serialize_robot(whole_robot(*found), robot_format_of(path))}}, overwrite);
     if (result.ok()) parts_->saved.note(found->body, path.string());
     return result;
   } catch (const std::exception& error) {
-    return failed(error.what());
+    return not_saved(error.what());
   }
 }
 
@@ -128,9 +126,9 @@ SaveResult LiveScene::save_all(const std::vector<RobotId>& robots, const fs::pat
       saved_robots.push_back(robot);
     }
   } catch (const std::exception& error) {
-    return failed(error.what());
+    return not_saved(error.what());
   }
-  if (files.empty()) return failed("there is no robot to save");
+  if (files.empty()) return not_saved("there is no robot to save");
   const SaveResult result = save_files(files, overwrite);
   for (std::size_t i = 0; i < saved_robots.size() && result.ok(); ++i)
     parts_->saved.note(saved_robots[i]->body, files[i].path.string());
@@ -142,7 +140,7 @@ SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
   std::vector<SceneRobot> robots;
   for (const DocumentRobot& robot : parts.document.robots)
     robots.push_back({&robot, parts.saved.holds(robot.body) ? *parts.saved.file_of(robot.body.id) : ""});
-  if (robots.empty()) return failed("there is no robot to save in a scene");
+  if (robots.empty()) return not_saved("there is no robot to save in a scene");
   try {
     const SceneFiles wanted =
         scene_files(path, robots, parts.document.configuration, parts.view, attached_in(parts.document));
@@ -152,7 +150,7 @@ SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
     }
     return result;
   } catch (const std::exception& error) {
-    return failed(error.what());
+    return not_saved(error.what());
   }
 }
 
@@ -234,20 +232,20 @@ std::unique_ptr<GroupVideo> LiveScene::export_video(const GroupVideoOptions& opt
 
 SaveResult LiveScene::save_repro(RobotId robot, const fs::path& folder, bool overwrite) {
   const DocumentRobot* found = parts_->document.find(robot);
-  if (!found) return failed("the robot is no longer there");
+  if (!found) return not_saved("the robot is no longer there");
   try {
     const std::optional<Repro> repro = parts_->physics.repro(robot);
-    if (!repro) return failed(found->body.name + " has not exploded since the last reset");
+    if (!repro) return not_saved(found->body.name + " has not exploded since the last reset");
     return save_files({{folder / (file_name_of(found->body.name) + ".repro"), serialize_repro(*repro)}}, overwrite);
   } catch (const std::exception& error) {
-    return failed(error.what());
+    return not_saved(error.what());
   }
 }
 
 SaveResult LiveScene::export_pose(RobotId robot, const fs::path& path, bool overwrite) {
   const DocumentRobot* found = parts_->document.find(robot);
   const auto index = parts_->snapshot->robots->index_of(robot);
-  if (!found || !index) return failed("the robot is no longer there");
+  if (!found || !index) return not_saved("the robot is no longer there");
   const Snapshot& snapshot = *parts_->snapshot;
   try {
     const ExportFormat& format = format_for(path, "");
@@ -256,22 +254,22 @@ SaveResult LiveScene::export_pose(RobotId robot, const fs::path& path, bool over
     const Pose pose{.time = snapshot.time,
                     .positions = snapshot.positions_of(*index),
                     .velocities = snapshot.velocities_of(*index)};
-    if (!is_finite(pose.positions)) return failed(found->body.name + " has exploded: its positions are no numbers");
+    if (!is_finite(pose.positions)) return not_saved(found->body.name + " has exploded: its positions are no numbers");
     if (const auto files = existing_outputs(format, path); !overwrite && !files.empty())
       return {SaveResult::Outcome::exists, files, ""};
     make_folder_of(path);
     format.pose(exported.in(snapshot.configuration.environment), pose, path, {});
     return {SaveResult::Outcome::saved, {path}, ""};
   } catch (const std::exception& error) {
-    return failed(error.what());
+    return not_saved(error.what());
   }
 }
 
 SaveResult LiveScene::export_motion(RobotId robot, const fs::path& path, double seconds, bool overwrite) {
   const DocumentRobot* found = parts_->document.find(robot);
-  if (!found) return failed("the robot is no longer there");
+  if (!found) return not_saved("the robot is no longer there");
   const Configuration configuration = parts_->document.configuration;
-  if (!(seconds > 0 && seconds / configuration.dt < 1e9)) return failed("give a number of seconds above 0");
+  if (!(seconds > 0 && seconds / configuration.dt < 1e9)) return not_saved("give a number of seconds above 0");
   try {
     const ExportFormat& format = format_for(path, "");
     const auto exported = std::make_shared<const Exported>(found->body);
@@ -300,7 +298,7 @@ SaveResult LiveScene::export_motion(RobotId robot, const fs::path& path, double 
         });
     return {SaveResult::Outcome::saved, {path}, ""};
   } catch (const std::exception& error) {
-    return failed(error.what());
+    return not_saved(error.what());
   }
 }
 

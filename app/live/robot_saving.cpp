@@ -11,16 +11,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SaveResult failed(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
-
 }  // namespace
 
 SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite) {
   SaveResult result;
   try {
     for (const FileToSave& file : files) {
-      if (file.path.filename().empty()) return failed("give a file name");
-      if (fs::is_directory(file.path)) return failed(file.path.string() + " is a folder");
+      if (file.path.filename().empty()) return not_saved("give a file name");
+      if (fs::is_directory(file.path)) return not_saved(file.path.string() + " is a folder");
       if (!overwrite && fs::exists(fs::symlink_status(file.path))) result.files.push_back(file.path);
     }
     if (!result.files.empty()) {
@@ -33,9 +31,9 @@ SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite) {
       result.files.push_back(file.path);
     }
   } catch (const fs::filesystem_error& error) {
-    return failed(error.path1().string() + ": " + error.code().message());
+    return not_saved(error.path1().string() + ": " + error.code().message());
   } catch (const std::exception& error) {
-    return failed(error.what());
+    return not_saved(error.what());
   }
   return result;
 }

@@ -22,6 +22,8 @@ struct FileToSave {
   std::string content;
 };
 
+inline SaveResult not_saved(const std::string& message) { return {SaveResult::Outcome::failed, {}, message}; }
+
 // Writes all files, each whole or not at all, and makes missing folders. Writes nothing if a file exists and
 // `overwrite` is false.
 SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite);

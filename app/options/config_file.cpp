@@ -15,7 +15,7 @@
 #include <toml++/toml.h>
 
 #include "mercury/error.h"
-#include "robots/names.h"
+#include "mercury/names.h"
 
 namespace mercury {
 namespace {

@@ -31,7 +31,8 @@ struct BoardPlane {
   Vector3 toward_eye() const { return axes.right.cross(axes.up); }
 };
 
-BoardPlane plane_for(const Grid& grid, std::span<const render::Bounds> robots, const render::Orbit& view, float aspect) {
+BoardPlane plane_for(const Grid& grid, std::span<const render::Bounds> robots, const render::Orbit& view,
+                     float aspect) {
   BoardPlane plane{.axes = picture_axes(view), .cell_width = 1e-3f, .cell_height = 1e-3f};
   for (const render::Bounds& robot : robots) {
     plane.cell_width = std::max(plane.cell_width, spacing * extent_along(robot, plane.axes.right));

@@ -14,8 +14,8 @@
 
 #include "mercury/error.h"
 #include "mercury/individual.h"
+#include "mercury/names.h"
 #include "mercury/quantity.h"
-#include "robots/names.h"
 
 namespace mercury {
 namespace {

@@ -6,7 +6,7 @@
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 #include "mercury/error.h"
-#include "robots/names.h"
+#include "mercury/names.h"
 
 namespace mercury {
 

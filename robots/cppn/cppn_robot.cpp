@@ -9,10 +9,10 @@
 
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
+#include "mercury/names.h"
 #include "mercury/origin.h"
 #include "robots/cppn/cppn_graph.h"
 #include "robots/file/document.h"
-#include "robots/names.h"
 #include "robots/origin_json.h"
 #include "robots/portable_math.h"
 

@@ -9,7 +9,6 @@
 namespace mercury::render {
 namespace {
 
-
 // CIE lightness from linear sRGB's luminance.
 float lightness(Color color) {
   const auto c = linear_of(color);
@@ -86,7 +85,8 @@ TEST(Colormap, NamesRoundTrip) {
 TEST(MuscleColor, PhasesDifferWithAndWithoutGreenCones) {
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < a; ++b) {
-      const Color first = muscle_color(float(a) * std::numbers::pi_v<float> / 2, 0.5f), second = muscle_color(float(b) * std::numbers::pi_v<float> / 2, 0.5f);
+      const Color first = muscle_color(float(a) * std::numbers::pi_v<float> / 2, 0.5f),
+                  second = muscle_color(float(b) * std::numbers::pi_v<float> / 2, 0.5f);
       EXPECT_GT(distance(lab(linear_of(first)), lab(linear_of(second))), 30);
       EXPECT_GT(distance(lab(deuteranope(first)), lab(deuteranope(second))), 14);
     }
@@ -94,7 +94,8 @@ TEST(MuscleColor, PhasesDifferWithAndWithoutGreenCones) {
 
 TEST(MuscleColor, FasterIsDarker) {
   for (int phase = 0; phase < 4; ++phase)
-    EXPECT_GT(lightness(muscle_color(float(phase) * std::numbers::pi_v<float> / 2, 0)), lightness(muscle_color(float(phase) * std::numbers::pi_v<float> / 2, 1)) + 8);
+    EXPECT_GT(lightness(muscle_color(float(phase) * std::numbers::pi_v<float> / 2, 0)),
+              lightness(muscle_color(float(phase) * std::numbers::pi_v<float> / 2, 1)) + 8);
 }
 
 TEST(MuscleColor, HueTurnsWithThePhase) {

@@ -33,7 +33,8 @@ Rgb middle_of(const Image& image) {
 int largest_change(const Image& a, const Image& b) {
   int largest = 0;
   for (int y = 0; y < ghost_height; ++y)
-    for (int x = 0; x < ghost_width; ++x) largest = std::max(largest, largest_difference(pixel(a, x, y), pixel(b, x, y)));
+    for (int x = 0; x < ghost_width; ++x)
+      largest = std::max(largest, largest_difference(pixel(a, x, y), pixel(b, x, y)));
   return largest;
 }
 

@@ -62,7 +62,8 @@ TEST(Ancestry, ReplacesTheOneBefore) {
 TEST(Ancestry, ThatCannotBeUsedIsRefusedWithItsPlace) {
   EXPECT_EQ(refusal_of_origin(R"({"ancestry":3})"), "/origin/ancestry: a JSON object is expected");
   EXPECT_EQ(refusal_of_origin(R"({"ancestry":{}})"), "/origin/ancestry/parents: is missing");
-  EXPECT_EQ(refusal_of_origin(R"({"ancestry":{"parents":"a"}})"), "/origin/ancestry/parents: an array of names is expected");
+  EXPECT_EQ(refusal_of_origin(R"({"ancestry":{"parents":"a"}})"),
+            "/origin/ancestry/parents: an array of names is expected");
   EXPECT_EQ(refusal_of_origin(R"({"ancestry":{"parents":["a",3]}})"), "/origin/ancestry/parents/1: a name is expected");
   EXPECT_EQ(refusal_of_origin(with_ancestry("", {.parents = std::vector<std::string>(17, "a")})),
             "/origin/ancestry/parents: at most 16 names are accepted");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/names.h"
+#include "mercury/names.h"
 
 #include <gtest/gtest.h>
 

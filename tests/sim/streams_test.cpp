@@ -21,7 +21,7 @@ void* const legacy_stream = nullptr;
 void* const stream_of_thread = reinterpret_cast<void*>(std::uintptr_t{2});
 
 // Of several sizes, so that CUDA puts them into several classes.
-std::vector<Robot> crowd() {
+std::vector<Robot> streamed_robots() {
   return {bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 1), bodies::random_voxels({.x = 5, .y = 4, .z = 3}, 2),
           bodies::random_voxels({.x = 1, .y = 2, .z = 1}, 3), bodies::pair({50, 0.3f, 4, 1})};
 }
@@ -30,7 +30,7 @@ class StepsInAStream : public EveryPair {};
 INSTANTIATE_TEST_SUITE_P(All, StepsInAStream, every_pair, EveryPair::name);
 
 TEST_P(StepsInAStream, GiveTheHashesOfSteps) {
-  const std::vector<Robot> robots = crowd();
+  const std::vector<Robot> robots = streamed_robots();
   Simulation expected(configuration(), robots), legacy(configuration(), robots), own(configuration(), robots);
   expected.step(200);
   for (int call = 0; call < 10; ++call) {
@@ -48,7 +48,7 @@ class Streams : public test::SharedBatchTest {
   // Two batches do the same, one in steps, the other in steps in a stream.
   void expect_same(const std::function<void(Simulation&)>& change) const {
     for (void* const stream : {legacy_stream, stream_of_thread}) {
-      const std::vector<Robot> robots = crowd();
+      const std::vector<Robot> robots = streamed_robots();
       SharedBatch expected = batch({}, robots), actual = batch({}, robots);
       expected->step(40);
       actual->step_in_stream(40, stream);
@@ -63,7 +63,7 @@ class Streams : public test::SharedBatchTest {
 INSTANTIATE_TEST_SUITE_P(All, Streams, test::every_backend, test::SharedBatchTest::name);
 
 TEST_P(Streams, EveryFunctionThatReadsSeesTheSteps) {
-  const std::vector<Robot> robots = crowd();
+  const std::vector<Robot> robots = streamed_robots();
   SharedBatch expected = batch({}, robots), actual = batch({}, robots);
   const auto step = [&] {
     expected->step(15);
@@ -123,7 +123,7 @@ TEST_P(Streams, EveryChangeComesAfterTheSteps) {
 }
 
 TEST_P(Streams, AnExplosionOnTheWayIsReported) {
-  const std::vector<Robot> robots = crowd();
+  const std::vector<Robot> robots = streamed_robots();
   SharedBatch batch = this->batch({.environment = empty_space()}, robots);
   State far = batch->state(1);
   far.positions[0].x = 2e6f;
@@ -135,7 +135,7 @@ TEST_P(Streams, AnExplosionOnTheWayIsReported) {
 }
 
 TEST_P(Streams, SeveralThreadsStepBatchesOfTheirOwn) {
-  const std::vector<Robot> robots = crowd();
+  const std::vector<Robot> robots = streamed_robots();
   SharedBatch expected = batch({}, robots);
   expected->step(200);
   std::array<std::vector<std::uint64_t>, 3> hashes;
@@ -153,7 +153,7 @@ TEST_P(Streams, SeveralThreadsStepBatchesOfTheirOwn) {
 }
 
 TEST_P(Streams, AreRefusedANegativeNumberOfSteps) {
-  SharedBatch batch = this->batch({}, crowd());
+  SharedBatch batch = this->batch({}, streamed_robots());
   EXPECT_THROW(batch->step_in_stream(-1, nullptr), std::invalid_argument);
 }
 

@@ -7,8 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "robots/names.h"
-
+#include "mercury/names.h"
 
 namespace mercury::window {
 namespace {

@@ -155,8 +155,9 @@ class ItemSets {
   }
 
  private:
-  static void append_items(const RobotItems& items, std::uint32_t robot, bool with_springs, std::vector<KeyedItem>& cells,
-                           std::vector<KeyedItem>& springs, std::vector<KeyedItem>& pairs) {
+  static void append_items(const RobotItems& items, std::uint32_t robot, bool with_springs,
+                           std::vector<KeyedItem>& cells, std::vector<KeyedItem>& springs,
+                           std::vector<KeyedItem>& pairs) {
     const auto index = [&](std::uint16_t mass) { return std::uint64_t{index_of(items.cells[mass])}; };
     for (const LatticeCell c : items.cells) cells.push_back({index_of(c), robot});
     if (with_springs)
