@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/base/interrupt.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <stdexcept>
 
 #include "app/base/child_process.h"
-#include "app/base/output_files.h"
+#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {
@@ -31,6 +35,17 @@ void on_signal(int number) {
   _exit(128 + number);
 }
 
+// Returns false if there is a file of that name. Throws std::filesystem::filesystem_error.
+bool rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno == EEXIST) return false;
+  // Some file systems cannot rename this way; some of them cannot link, either.
+  if (link(from.c_str(), to.c_str()) == 0) return unlink(from.c_str()) == 0;
+  if (errno == EEXIST) return false;
+  std::filesystem::rename(from, to);
+  return true;
+}
+
 }  // namespace
 
 void catch_interrupts() {
@@ -43,6 +58,10 @@ void catch_interrupts() {
     sigaction(number, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);
   }
+  // A write beyond `ulimit -f` fails with EFBIG and is reported like a full disk. Children get the signal as before,
+  // since handlers, unlike SIG_IGN, are not inherited.
+  action.sa_handler = [](int) {};
+  sigaction(SIGXFSZ, &action, nullptr);
 }
 
 bool interrupted() { return stop_signal() != 0; }
@@ -53,7 +72,8 @@ void throw_if_interrupted() {
   if (interrupted()) throw Interrupted();
 }
 
-UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) : target_(follow_links(target)), path_(target_) {
+UnfinishedFile::UnfinishedFile(const std::filesystem::path& target)
+    : target_(follow_links(target)), path_(target_), replaces_(std::filesystem::exists(target_)) {
   path_ += fmt::format(".{}-{}.part", getpid(), file_count.fetch_add(1));
   for (int slot = 0; slot < slots && slot_ < 0; ++slot) {
     const char* empty = nullptr;
@@ -67,10 +87,19 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::keep() {
-  std::filesystem::rename(path_, target_);
+  const std::filesystem::path wanted = target_;
+  if (replaces_)
+    std::filesystem::rename(path_, target_);
+  else
+    for (int number = 2; !rename_to_new(path_, target_); ++number)
+      target_ =
+          wanted.parent_path() / fmt::format("{}-{}{}", wanted.stem().string(), number, wanted.extension().string());
   if (slot_ >= 0) unfinished[static_cast<std::size_t>(slot_)] = nullptr;
   slot_ = -1;
   path_.clear();
+  if (target_ != wanted)
+    throw std::runtime_error(fmt::format("{} was written by another program in the meantime; this one is {}",
+                                         wanted.string(), target_.string()));
 }
 
 }  // namespace mercury

@@ -38,11 +38,14 @@ class UnfinishedFile {
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // Renames the file to `target` and replaces a file of that name. Throws std::filesystem::filesystem_error.
+  // Renames the file to `target` and replaces the file that had this name from the beginning. If another program has
+  // written one since, both are kept: this one gets a free name, as in a-2.h5, and std::runtime_error says so. Throws
+  // std::filesystem::filesystem_error.
   void keep();
 
  private:
   std::filesystem::path target_, path_;
+  bool replaces_;  // the target existed from the beginning
   int slot_ = -1;
 };
 

@@ -13,6 +13,7 @@
 
 #include "app/base/terminal_question.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {
@@ -69,25 +70,6 @@ void require_writable_folder(const std::string& option, const std::string& name,
 }  // namespace
 
 bool is_standard_output(std::string_view file) { return file == "-" || file == "/dev/stdout"; }
-
-bool is_device_or_pipe(const fs::path& path) {
-  // An open file of some process, such as /dev/stderr: it may be a regular file, which somebody else writes.
-  const std::string name = path.string();
-  if (name.starts_with("/dev/fd/") || name.starts_with("/dev/std") || name.starts_with("/proc/")) return true;
-  const auto status = status_of(path);
-  return status && !S_ISREG(status->st_mode) && !S_ISDIR(status->st_mode);
-}
-
-fs::path follow_links(fs::path path) {
-  constexpr int longest_chain = 40;  // as the system's own limit
-  std::error_code error;
-  for (int i = 0; i < longest_chain && fs::is_symlink(path, error); ++i) {
-    const fs::path next = fs::read_symlink(path, error);
-    if (error) break;
-    path = path.parent_path() / next;
-  }
-  return path;
-}
 
 void OutputFiles::add_stream(const std::string& option, const std::string& file) { add(option, file, Kind::stream); }
 void OutputFiles::add_file(const std::string& option, const std::string& file) { add(option, file, Kind::file); }

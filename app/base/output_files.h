@@ -18,12 +18,6 @@ namespace mercury {
 // "-" and "/dev/stdout" stand for standard output.
 bool is_standard_output(std::string_view file);
 
-// A device, a pipe or a socket: it takes what is written, and must not be replaced by a file.
-bool is_device_or_pipe(const std::filesystem::path& path);
-
-// The end of a chain of links, even if no file exists there yet.
-std::filesystem::path follow_links(std::filesystem::path path);
-
 class OutputFiles {
  public:
   // `force`: existing files may be replaced. `may_ask`: otherwise the user is asked, if there is a terminal.

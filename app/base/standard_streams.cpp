@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "mercury/error.h"
+
 namespace mercury {
 namespace {
 
@@ -41,7 +43,7 @@ void flush_results_so_far() {
 void flush_standard_output() {
   flush_results_so_far();
   if (flush_error == 0 && !std::ferror(stdout)) return;
-  const std::string reason = flush_error != 0 ? std::string(": ") + std::strerror(flush_error) : "";
+  const std::string reason = flush_error != 0 ? ": " + reason_of(flush_error) : "";
   throw std::runtime_error("standard output cannot be written" + reason);
 }
 

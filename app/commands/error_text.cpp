@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "app/commands/command_list.h"
+#include "mercury/error.h"
 #include "mercury/names.h"
 
 namespace mercury {
@@ -17,7 +18,7 @@ std::string error_text(const std::exception& error) {
     return "not enough memory";
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
     const std::string path = (file->path2().empty() ? file->path1() : file->path2()).string();
-    return (path.empty() ? "" : path + ": ") + file->code().message();
+    return (path.empty() ? "" : path + ": ") + reason_of(file->code().value());
   }
   const std::string_view text = error.what();
   // "[json.exception.type_error.302] type must be number"

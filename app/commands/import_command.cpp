@@ -20,6 +20,7 @@
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 #include "mercury/import.h"
 #include "mercury/robot_file.h"
 
@@ -254,7 +255,10 @@ int import_files(ImportCommandOptions options) {
         {{"files", fmt::to_string(imports.size())}, {"robots", fmt::to_string(robots)}, {"write", options.output}});
   outputs.make_folders();
   for (const ImportedFile& file : imports) {
-    for (std::size_t i = 0; i < file.robot_files.size(); ++i) save_robot(file.robot_files[i], file.import.robots[i]);
+    for (std::size_t i = 0; i < file.robot_files.size(); ++i) {
+      require_inside(options.output, file.robot_files[i]);
+      save_robot(file.robot_files[i], file.import.robots[i]);
+    }
     if (!file.configuration_file.empty())
       write_results(file.configuration_file, to_toml(file.import.settings, file.import.report));
     if (file.robot_files.empty())

@@ -108,7 +108,7 @@ class Program {
       return stopped_status();
     } catch (const std::system_error& error) {
       // A result that was longer than the buffer fails while it is printed.
-      print_message(std::ferror(stdout) ? "standard output cannot be written: " + error.code().message()
+      print_message(std::ferror(stdout) ? "standard output cannot be written: " + reason_of(error.code().value())
                                         : error_text(error));
       return interrupted() ? stopped_status() : status_failed;
     } catch (const std::exception& error) {

@@ -30,6 +30,7 @@ void Checkpoints::write(const Simulation& simulation, const TrialProgress& progr
     notes_.sampled = progress.sampled;
     notes_.measures.clear();
     for (const TrialMeasures& measures : progress.measures) notes_.measures.push_back(measures.sums());
+    if (!recorder) notes_.recording.reset();  // what a full disk ended is not continued
     if (recorder && notes_.recording) {
       recorder->flush();
       notes_.recording->unfinished = std::filesystem::absolute(recorder->unfinished_path()).string();

@@ -209,7 +209,7 @@ int run_watched(const RunOptions& options, std::unique_ptr<Recorder> recorder, s
   try {
     report = work(StepObservers{.recorder = recorder.get(), .checkpoints = checkpoints ? &*checkpoints : nullptr});
   } catch (const DeviceError&) {
-    if (recorder) {
+    if (recorder && !recorder->failed()) {
       recorder->finish_without_device();
       warn(fmt::format("{} holds the {} frames so far", options.record, recorder->frames()));
     }
@@ -220,13 +220,14 @@ int run_watched(const RunOptions& options, std::unique_ptr<Recorder> recorder, s
   // fails.
   std::exception_ptr problem;
   try {
-    if (recorder) recorder->finish();
+    if (recorder && !recorder->failed()) recorder->finish();
   } catch (const std::exception&) {
     problem = std::current_exception();
   }
   const int status = report_results(options, report);
   if (problem) std::rethrow_exception(problem);
-  return checkpoints && checkpoints->failed() ? std::max(status, 1) : status;
+  const bool incomplete = (recorder && recorder->failed()) || (checkpoints && checkpoints->failed());
+  return incomplete ? std::max(status, 1) : status;
 }
 
 std::optional<Checkpoints> checkpoints_of(const RunOptions& options, CheckpointNotes notes) {

@@ -24,6 +24,11 @@
 namespace mercury {
 namespace {
 
+// The recorder, unless there is none or a write failed.
+Recorder* working_recorder(const StepObservers& observers) {
+  return observers.recorder && !observers.recorder->failed() ? observers.recorder : nullptr;
+}
+
 // Steps a simulation to a step, with those who take part. Returns false once the user interrupts.
 class Advance {
  public:
@@ -34,16 +39,18 @@ class Advance {
         stride_(stride), progress_("simulating", "steps", end - first_) {}
 
   bool to(std::int64_t target) {
-    const auto& [recorder, changes, checkpoints] = observers_;
+    ReproChanges* const changes = observers_.changes;
+    Checkpoints* const checkpoints = observers_.checkpoints;
     while (simulation_.steps() < target) {
+      Recorder* recorder = working_recorder(observers_);
       if (changes) changes->apply(simulation_);
       std::int64_t stop = changes ? std::min(target, changes->next_step()) : target;
       if (recorder) stop = std::min(stop, recorder->next_step());
       if (checkpoints) stop = std::min(stop, simulation_.steps() + stride_);
       const bool goes_on = stepper_.advance_to(stop);
-      if (goes_on && recorder) recorder->observe();
+      if (goes_on && recorder) observe(*recorder);
       if (!goes_on) return false;
-      if (checkpoints && checkpoints->due()) checkpoints->write(simulation_, trial_, recorder);
+      if (checkpoints && checkpoints->due()) checkpoints->write(simulation_, trial_, working_recorder(observers_));
       progress_.update(simulation_.steps() - first_);
     }
     return true;
@@ -52,6 +59,15 @@ class Advance {
   double wall_seconds() const { return stepper_.wall_seconds(); }
 
  private:
+  // The run may have taken hours: it goes on.
+  static void observe(Recorder& recorder) {
+    try {
+      recorder.observe();
+    } catch (const RecordingFailure& failure) {
+      warn(fmt::format("{}; the run goes on without a recording", failure.what()));
+    }
+  }
+
   Simulation& simulation_;
   const StepObservers observers_;
   const TrialProgress& trial_;
@@ -105,7 +121,8 @@ RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities,
   const EvaluationRequest request = trial_request(trials, simulation.configuration());
   const std::int64_t start = first + request.settling, end = start + request.steps;
   Advance advance(simulation, observers, trial, end, request.sample_every);
-  RunReport report{.settle = trials.settle, .interrupted = trial.sampled < 0 && !advance.to(start)};
+  RunReport report{
+      .settle = trials.settle, .resumed = simulation.steps(), .interrupted = trial.sampled < 0 && !advance.to(start)};
   if (trial.sampled < 0 && !report.interrupted) {
     for (const Telemetry& telemetry : simulation.telemetry()) trial.measures.emplace_back(telemetry);
     trial.sampled = simulation.steps();
@@ -122,7 +139,7 @@ RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities,
     report.interrupted = !advance.to(std::min(end, next));
     if (!report.interrupted && simulation.steps() == next) add_sample();
   }
-  if (observers.checkpoints) observers.checkpoints->write(simulation, trial, observers.recorder);
+  if (observers.checkpoints) observers.checkpoints->write(simulation, trial, working_recorder(observers));
   if (trial.sampled >= 0) {
     if (trial.sampled < simulation.steps()) add_sample();
     for (const Evaluation& robot : evaluations_of(simulation, trial.measures, simulation.steps() - start))

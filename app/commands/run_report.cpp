@@ -65,7 +65,7 @@ std::size_t RunReport::springs() const {
 }
 
 double RunReport::springs_per_second() const {
-  return wall_seconds > 0 ? static_cast<double>(springs()) * static_cast<double>(steps) / wall_seconds : 0;
+  return wall_seconds > 0 ? static_cast<double>(springs()) * static_cast<double>(steps - resumed) / wall_seconds : 0;
 }
 
 std::string table_of(const RunReport& report) {

@@ -17,7 +17,8 @@ struct RunReport {
   std::string device;  // device name, for people
   std::int64_t steps = 0;
   double seconds = 0;        // simulated
-  double wall_seconds = 0;   // during which robots were stepped, on any device
+  std::int64_t resumed = 0;  // of the steps: those before a checkpoint or repro
+  double wall_seconds = 0;   // during which the others were stepped, on any device
   bool interrupted = false;  // it ended early: the user stopped it, or the device failed
   std::string problem;       // of the device; empty = none
   std::size_t missing = 0;   // robots that are not in an interrupted report, as they have not come so far

@@ -4,6 +4,7 @@
 #include <exception>
 #include <system_error>
 
+#include "mercury/error.h"
 #include "robots/file/whole_file.h"
 
 namespace mercury {
@@ -31,7 +32,7 @@ SaveResult save_files(const std::vector<FileToSave>& files, bool overwrite) {
       result.files.push_back(file.path);
     }
   } catch (const fs::filesystem_error& error) {
-    return not_saved(error.path1().string() + ": " + error.code().message());
+    return not_saved(error.path1().string() + ": " + reason_of(error.code().value()));
   } catch (const std::exception& error) {
     return not_saved(error.what());
   }

@@ -14,6 +14,7 @@
 #include "app/base/progress.h"
 #include "app/options/option_values.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {
@@ -115,6 +116,7 @@ void RobotFiles::write(const Robot& robot) {
     fmt::print("{}", serialize_robot(robot, format_));
     return;
   }
+  if (!is_file_) require_inside(path_, file);
   if (is_device_or_pipe(file)) return save_robot(file, robot, format_);
   if (!may_replace_ && !written_.contains(file) && fs::exists(file))
     throw InputError(file.string(), "exists already; use --force to replace it, or give another name");

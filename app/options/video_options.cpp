@@ -104,7 +104,9 @@ std::string VideoOptions::output_of(const std::string& name) const {
   if (name.empty()) return output_;
   std::filesystem::path path(output_);
   if (path.filename().empty()) path = path.parent_path();
-  return (path.parent_path() / fmt::format("{}-{}{}", path.stem().string(), name, path.extension().string())).string();
+  const bool is_folder = !single_picture() && video_kind_of(output_) == VideoKind::png_folder;
+  const std::string extension = is_folder ? "/" : path.extension().string();  // a robot called v1.2 is no file type
+  return (path.parent_path() / (path.stem().string() + "-" + name + extension)).string();
 }
 
 void VideoOptions::add_output_to(OutputFiles& outputs, const std::string& name) const {

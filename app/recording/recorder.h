@@ -37,7 +37,8 @@ class Recorder {
 
   // The step at which the next frame is due.
   std::int64_t next_step() const { return next_; }
-  // Takes a frame if one is due. Call it when the simulation is at next_step(). Throws like TrajectoryWriter.
+  // Takes a frame if one is due. Call it when the simulation is at next_step(). Throws like TrajectoryWriter; after a
+  // RecordingFailure only failed() and frames() may be called.
   void observe();
   // Writes all frames so far, so that they survive the program. Throws like TrajectoryWriter.
   void flush() { writer_.flush(); }
@@ -48,6 +49,8 @@ class Recorder {
   void finish_without_device();
 
   std::int64_t frames() const { return writer_.frames(); }
+  // Whether a frame could not be written.
+  bool failed() const { return writer_.failed(); }
 
  private:
   void take();

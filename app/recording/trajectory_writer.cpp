@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/recording/trajectory_writer.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <pwd.h>
 #include <unistd.h>
 
@@ -64,12 +66,20 @@ Handle create_file(const std::filesystem::path& path, bool survives_kill) {
   return Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation, access));
 }
 
-std::runtime_error write_failure(const std::filesystem::path& path, const Error& error) {
-  const std::string reason = error.number() == ENOSPC   ? "the disk is full"
-                             : error.number() == EDQUOT ? "the disk quota is used up"
-                             : error.number() != 0      ? std::strerror(error.number())
-                                                        : error.what();
-  return std::runtime_error(path.string() + ": " + reason + "; nothing was kept");
+// When HDF5 closes a file, it writes what is left, and marks the file as complete even if that fails. A file that
+// cannot be written shall stay as it is, or be gone at once, so HDF5 goes on with another one.
+void write_to_nowhere(hid_t file) {
+  void* handle = nullptr;
+  const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0 && nowhere >= 0)
+    dup3(nowhere, *static_cast<int*>(handle), O_CLOEXEC);
+  if (nowhere >= 0) close(nowhere);
+}
+
+std::string text_of(const Error& error) { return error.number() != 0 ? reason_of(error.number()) : error.what(); }
+
+RecordingFailure write_failure(const std::filesystem::path& path, const std::string& reason, const std::string& kept) {
+  return RecordingFailure(path.string() + ": " + reason + "; " + kept);
 }
 
 }  // namespace
@@ -82,16 +92,25 @@ bool flush_is_due(double since_flush, double last_frame_took, double period) {
   return since_flush >= period || since_flush + last_frame_took >= 2 * period;
 }
 
-// Runs work that writes. If it fails, the file would take space on a full disk until the program ends, so it is
-// truncated.
+// Runs work that writes.
 template <class Work>
 void TrajectoryWriter::guarded(const Work& work) {
   try {
     work();
   } catch (const Error& error) {
-    [[maybe_unused]] const int ignored = truncate(unfinished_.path().c_str(), 0);
-    throw write_failure(path_, error);
+    give_up(text_of(error));
   }
+}
+
+// The file has the frames of the last flush, as after a kill.
+void TrajectoryWriter::give_up(const std::string& reason) {
+  failed_ = true;
+  write_to_nowhere(file_);
+  if (flushed_ == 0 || !survives_kill()) throw write_failure(path_, reason, "nothing was kept");
+  unfinished_.keep();
+  throw write_failure(
+      path_, reason,
+      flushed_ == 1 ? "the first frame was kept" : fmt::format("the first {} frames were kept", flushed_));
 }
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
@@ -117,9 +136,8 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
   try {
     file_ = create_file(unfinished_.path(), survives_kill());
   } catch (const Error& error) {
-    if (error.number() == ENOSPC || error.number() == EDQUOT) throw write_failure(path_, error);
-    const char* reason = error.number() != 0 ? std::strerror(error.number()) : error.what();
-    throw InputError(option, path.string() + " cannot be written: " + reason);
+    if (is_fault_of_machine(error.number())) throw write_failure(path_, text_of(error), "nothing was kept");
+    throw InputError(option, path.string() + " cannot be written: " + text_of(error));
   }
   frames_per_block_ = block_length(std::max<std::size_t>(1, offsets_.back()), largest, header.expected_frames);
   positions_.resize(frames_per_block_ * offsets_.back());

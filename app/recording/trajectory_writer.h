@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,12 +39,20 @@ struct TrajectoryHeader {
   std::function<void(hdf5::Id file)> more;  // writes what else the file has, before the frames; throws hdf5::Error
 };
 
+// A recording could not be written to its end: the disk is full, say. what() names the file, the reason and how many
+// frames were kept.
+class RecordingFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // Whether to flush now, so that at most two periods pass between flushes: the next frame may take as long as the last.
 // All in seconds of wall time.
 bool flush_is_due(double since_flush, double last_frame_took, double period);
 
 // Streams: holds a few frames (at most 64 MB, or one frame if that is more) and keeps no HDF5 object open per robot.
-// The file has a temporary name until finish(); without finish() nothing is left behind.
+// The file has a temporary name until finish(); without finish() nothing is left behind, unless a write failed: then
+// the frames of the last flush are kept under the file's name.
 //
 // A program that is killed leaves a file that opens with the frames of the last flush. This is HDF5's mode for a single
 // writer and multiple readers (SWMR): metadata reaches the file after what it points to. The file announces frames in
@@ -58,7 +67,7 @@ class TrajectoryWriter {
  public:
   // `materials` has robots.size() * max_materials elements, as Simulation::materials(). Robots may share a name;
   // numbers distinguish their groups. Throws InputError that begins with `option` if the file cannot be created, and
-  // std::runtime_error if the disk is full.
+  // RecordingFailure if the disk is full.
   TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
                    std::span<const Robot* const> robots, std::span<const Material> materials, const char* option);
   ~TrajectoryWriter();
@@ -69,7 +78,8 @@ class TrajectoryWriter {
   };
   // The next frame. Fill it, then call commit(); without that it does not count. Steps increase from frame to frame.
   Frame add(std::int64_t step, double time);
-  // Writes and flushes what is due. Throws std::runtime_error, as in "run.h5: the disk is full; nothing was kept".
+  // Writes and flushes what is due. Throws RecordingFailure, as in "run.h5: the disk is full; the first 120 frames were
+  // kept"; after that, only failed(), frames() and the destructor may be called.
   void commit();
 
   // Writes all frames so far, so that they survive the program. Throws like commit().
@@ -82,6 +92,8 @@ class TrajectoryWriter {
   void finish(std::span<const Telemetry> telemetry);
 
   std::int64_t frames() const { return frames_; }
+  // Whether a write failed.
+  bool failed() const { return failed_; }
 
  private:
   void write_header(const TrajectoryHeader& header);
@@ -97,6 +109,7 @@ class TrajectoryWriter {
   bool survives_kill() const;  // otherwise the file can be read only once it is complete
   template <class Work>
   void guarded(const Work& work);
+  [[noreturn]] void give_up(const std::string& reason);
 
   std::filesystem::path path_;
   UnfinishedFile unfinished_;
@@ -110,7 +123,8 @@ class TrajectoryWriter {
   double next_time_ = 0;        // [s]
   std::size_t frames_per_block_ = 1;
   std::int64_t frames_ = 0, written_ = 0, flushed_ = 0;  // written_: in the file; flushed_: announced by step
-  bool started_ = false;                                 // the datasets of the frames exist
+  bool failed_ = false;
+  bool started_ = false;  // the datasets of the frames exist
   int deflate_ = 0;
   double flush_period_;  // [s]
   double (*clock_)();

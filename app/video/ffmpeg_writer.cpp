@@ -11,8 +11,8 @@
 #include <csignal>
 #include <cstring>
 
-#include "app/base/output_files.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {
@@ -143,9 +143,9 @@ void FfmpegWriter::abandon() { encoder_->signal(SIGKILL); }
 void FfmpegWriter::fail(int status) {
   const std::string messages = encoder_->messages();
   if (messages.find("No space left on device") != std::string::npos)
-    throw VideoError(output_ + ": the disk is full; nothing was kept");
+    throw VideoError(output_ + ": " + reason_of(ENOSPC) + "; nothing was kept");
   if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) || messages.find("File too large") != std::string::npos)
-    throw VideoError(output_ + ": the file grew beyond the size allowed here (ulimit -f); nothing was kept");
+    throw VideoError(output_ + ": " + reason_of(EFBIG) + "; nothing was kept");
   const std::string end = status == 0 ? "wrote nothing" : describe_exit(status);
   const std::string line = failure_line(messages);
   throw VideoError(output_ + ": the encoder " + program_ + " " + end + (line.empty() ? "" : ": " + line));

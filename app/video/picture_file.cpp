@@ -9,8 +9,9 @@
 #include <span>
 
 #include "app/base/interrupt.h"
-#include "app/base/output_files.h"
 #include "app/video/frame_writer.h"
+#include "mercury/error.h"
+#include "mercury/file_links.h"
 #include "render/png.h"
 
 namespace mercury {
@@ -18,10 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& file, int error) {
-  const char* reason = error == ENOSPC ? "the disk is full" : std::strerror(error);
-  throw VideoError(file.string() + ": " + reason);
-}
+[[noreturn]] void fail(const fs::path& file, int error) { throw VideoError(file.string() + ": " + reason_of(error)); }
 
 // Returns 0, or the error.
 int write_all(int descriptor, std::span<const std::uint8_t> bytes) {

@@ -12,6 +12,7 @@
 #include "evolution/run_folder/new_folder.h"
 #include "evolution/run_folder/run_history.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 #include "mercury/quantity.h"
 #include "robots/bytes.h"
 #include "robots/file/whole_file.h"
@@ -82,6 +83,8 @@ RunFolder RunFolder::create(const std::filesystem::path& folder, const RunSettin
 
 RunFolder RunFolder::open(const std::filesystem::path& folder, GenomeSpaceMaker make_space) {
   check_run_folder(folder);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_symlink()) require_inside(folder, entry.path());
   auto parts = std::make_unique<Parts>(folder, JournalWriter::open(folder / journal_name), std::move(make_space));
   parts->history.space();
   parts->writer.cut(parts->history.parts_->journal.end());

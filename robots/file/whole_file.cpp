@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {
@@ -50,24 +51,6 @@ int write_all(int descriptor, std::string_view content) {
   return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
 }
 
-// The end of a chain of links, even if no file exists there yet.
-std::filesystem::path follow_links(std::filesystem::path path) {
-  constexpr int longest_chain = 40;  // as the system's own limit
-  std::error_code error;
-  for (int i = 0; i < longest_chain && std::filesystem::is_symlink(path, error); ++i)
-    path = path.parent_path() / std::filesystem::read_symlink(path);
-  return path;
-}
-
-// A device, a pipe or a socket: it takes what is written, and must not be replaced by a file.
-bool is_special(const std::filesystem::path& path) {
-  // An open file of some process, such as /dev/stderr: it may be a regular file, which somebody else writes.
-  const std::string name = path.string();
-  if (name.starts_with("/dev/fd/") || name.starts_with("/dev/std") || name.starts_with("/proc/")) return true;
-  struct stat status {};
-  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
-}
-
 void write_into(const std::filesystem::path& path, std::string_view content) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
   if (!file.is_open()) fail(path, errno);
@@ -97,10 +80,8 @@ int open_regular_file(const std::filesystem::path& path) {
 }  // namespace
 
 void fail(const std::filesystem::path& path, int error) {
-  const std::string reason = std::generic_category().message(error);
-  for (const int machine : {ENOSPC, EDQUOT, EIO, ENOMEM, EMFILE, ENFILE})
-    if (error == machine) throw std::runtime_error(path.string() + ": " + reason);
-  throw InputError(path.string(), reason);
+  if (is_fault_of_machine(error)) throw std::runtime_error(path.string() + ": " + reason_of(error));
+  throw InputError(path.string(), reason_of(error));
 }
 
 std::string read_whole_file(const std::filesystem::path& path) {
@@ -122,7 +103,7 @@ std::string read_whole_file(const std::filesystem::path& path) {
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view content) {
-  if (is_special(path)) return write_into(path, content);
+  if (is_device_or_pipe(path)) return write_into(path, content);
   const std::filesystem::path target = follow_links(path);
   std::filesystem::path temporary;
   int descriptor = -1;

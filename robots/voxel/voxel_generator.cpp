@@ -222,6 +222,7 @@ const ParameterTable<RandomVoxelOptions>& table() {
                                  .help = "Side of a voxel",
                                  .unit = "m",
                                  .lowest = 0.001,
+                                 .highest = 1000,
                                  .usual_highest = 0.5,
                                  .advanced = true}),
       parameter(&Options::air, {.name = "air",

@@ -37,4 +37,10 @@ class DeviceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Why the system could not use a file, by its error number (errno): "the disk is full".
+std::string reason_of(int error);
+// Whether such an error is one of the machine (a full disk, no memory, a device that fails) and not of what the user
+// gave.
+bool is_fault_of_machine(int error);
+
 }  // namespace mercury

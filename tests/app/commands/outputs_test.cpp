@@ -67,13 +67,13 @@ TEST_F(Outputs, FullDeviceIsAFailureInOneLine) {
         {"bench", "--size", "1x1x1", "--count", "1", "--least-seconds", "0.001", "--csv", "/dev/full"}}) {
     const Outcome outcome = mercury(command);
     EXPECT_EQ(outcome.status, 1);
-    EXPECT_EQ(outcome.messages, "mercury: /dev/full: No space left on device\n");
+    EXPECT_EQ(outcome.messages, "mercury: /dev/full: the disk is full\n");
     EXPECT_NE(outcome.output, "");  // the table is not lost
   }
   const Outcome printed =
       run_program("sh", {"-c", "exec \"$0\" run \"$1\" --seconds 0.01 >/dev/full", MERCURY_PROGRAM, path("eel.json")});
   EXPECT_EQ(printed.status, 1);
-  EXPECT_EQ(printed.messages, "mercury: standard output cannot be written: No space left on device\n");
+  EXPECT_EQ(printed.messages, "mercury: standard output cannot be written: the disk is full\n");
 }
 
 TEST_F(Outputs, CsvGoesThroughAPipe) {
@@ -177,6 +177,15 @@ TEST_F(Outputs, RobotsGoThroughLinksAndToStandardOutput) {
 }
 
 // A name in a file is no path.
+TEST_F(Outputs, RobotsInAFolderAreNotWrittenThroughLinksOutOfIt) {
+  std::filesystem::create_directory(path("folder"));
+  write("mine", "mine");
+  std::filesystem::create_symlink(path("mine"), path("folder/voxel-1-0.json"));
+  const std::vector<std::string> command{"new", "voxel", "--count", "1", "--force", "-o", path("folder")};
+  EXPECT_THAT(refusal(command), HasSubstr("voxel-1-0.json: is a link out of " + path("folder")));
+  EXPECT_EQ(read("mine"), "mine");
+}
+
 TEST_F(Outputs, NamesOfRobotsLeadToNoOtherFolder) {
   Robot robot = eel_;
   robot.name = "../outside\n";

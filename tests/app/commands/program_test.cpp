@@ -302,7 +302,7 @@ TEST(Program, OutputThatCannotBeWrittenIsAnError) {
   const Outcome outcome =
       run_program("sh", {"-c", std::string(MERCURY_PROGRAM) + " run --random voxel --seconds 0.01 >/dev/full"});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages, "mercury: standard output cannot be written: No space left on device\n");
+  EXPECT_EQ(outcome.messages, "mercury: standard output cannot be written: the disk is full\n");
 }
 
 class ConfigFileTest : public FolderTest {

@@ -17,6 +17,7 @@
 #include "tests/app/program.h"
 #include "tests/app/recording/file_operations.h"
 #include "tests/app/recording/recording_bodies.h"
+#include "tests/size_limit.h"
 
 namespace mercury::test {
 namespace {
@@ -224,6 +225,48 @@ TEST_F(KilledRecording, HoldsAtLeastTheFramesOfTenSecondsBefore) {
 }
 
 // A child writes frames as fast as it can, and flushes each. It is killed while it is somewhere in the next ones.
+TEST_F(KilledRecording, AFullDiskKeepsTheFramesOfTheLastFlush) {
+  const Source source(2);
+  std::set<std::size_t> kept;
+  for (rlim_t limit = 0; limit < 200'000; limit += 9'001) {
+    SCOPED_TRACE(limit);
+    std::filesystem::remove(path("a.h5"));
+    std::string message;
+    {
+      const SizeLimit limited(limit);
+      try {
+        TrajectoryWriter writer = source.writer(path("a.h5"), {.flush_period = 3});
+        try {
+          source.add(writer, 400, 1);
+          source.finish(writer);
+        } catch (const RecordingFailure&) {
+          EXPECT_TRUE(writer.failed());
+          throw;
+        }
+      } catch (const RecordingFailure& failure) {
+        message = failure.what();
+      }
+    }
+    ASSERT_THAT(message,
+                testing::StartsWith(path("a.h5") + ": the file grew beyond the size allowed here (ulimit -f); "));
+    EXPECT_EQ(part(), "");
+    if (message.ends_with("nothing was kept")) {
+      EXPECT_FALSE(std::filesystem::exists(path("a.h5")));
+      kept.insert(0);
+      continue;
+    }
+    write("copy.h5", read("a.h5"));  // another file for HDF5, which has not let go of the first
+    TrajectoryReader reader(path("copy.h5"));
+    const std::size_t found = expect_frames(reader);
+    // A flush that fails at its very end may have announced its frames already.
+    const std::size_t stated = std::stoul(message.substr(message.rfind("first ") + 6));
+    EXPECT_GE(found, stated);
+    EXPECT_LE(found, stated + 4);
+    kept.insert(found);
+  }
+  EXPECT_GT(kept.size(), 5u);
+}
+
 TEST_F(KilledRecording, OpensAfterAKillAtAnyMoment) {
   const Source source(3);
   Random random(1);

@@ -2,7 +2,9 @@
 // mercury run --record: the file, also when the run ends early or the disk is full.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <thread>
 
 #include "app/recording/trajectory_reader.h"
@@ -87,12 +89,49 @@ TEST_P(FullDisk, IsReportedInOneLine) {
                           MERCURY_PROGRAM, "run", "--random", "voxel:4", "--seconds", "0.2", "--record", file(),
                           "--every", "1", "--quiet", "--force"});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages, "mercury: " + file() + ": the disk is full; nothing was kept\n");
+  EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + file() + ": the disk is full; nothing was kept"));
+  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+  // Once it has begun, the run goes on, and its results are printed.
+  const bool went_on = outcome.messages.ends_with("the run goes on without a recording\n");
+  EXPECT_EQ(went_on, GetParam() > 60'000 && GetParam() < 2'300'000) << outcome.messages;
+  EXPECT_EQ(outcome.output.empty(), GetParam() <= 60'000);
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
   EXPECT_TRUE(read("a.h5") == "as it was");
 }
 
 INSTANTIATE_TEST_SUITE_P(After, FullDisk, testing::Values(0, 2000, 60'000, 500'000, 1'500'000, 2'300'000));
+
+// Both begin with a name that is new.
+TEST_F(RunRecord, TwoRunsWithOneNewNameKeepBothRecordings) {
+  const auto started = [&](const char* seed) {
+    auto child = std::make_unique<ChildProcess>(
+        MERCURY_PROGRAM, std::vector<std::string>{"run", "--random", "voxel", "--seed", seed, "--seconds", "1e6",
+                                                  "--record", file(), "--every", "10"});
+    while (child->messages().empty()) std::this_thread::yield();
+    return child;
+  };
+  const auto first = started("1"), second = started("2");
+  first->signal(SIGINT);
+  EXPECT_EQ(outcome_of(*first).status, 128 + SIGINT);
+  second->signal(SIGINT);
+  EXPECT_THAT(outcome_of(*second).messages,
+              HasSubstr(file() + " was written by another program in the meantime; this one is " + path("a-2.h5")));
+  EXPECT_THAT(listing(), ElementsAre("a-2.h5", "a.h5"));
+  EXPECT_EQ(TrajectoryReader(file()).seed(), 1u);
+  EXPECT_EQ(TrajectoryReader(path("a-2.h5")).seed(), 2u);
+}
+
+TEST_F(RunRecord, ALimitOfTheSizeOfFilesIsReportedInOneLine) {
+  const Outcome outcome = run_program("sh", {"-c",
+                                             "ulimit -f 16; exec \"$0\" run --random voxel:4 --seconds 0.2 --every 1 "
+                                             "--quiet --record \"$1\"",
+                                             MERCURY_PROGRAM, file()});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + file() +
+                                                    ": the file grew beyond the size allowed here "
+                                                    "(ulimit -f); nothing was kept"));
+  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+}
 
 TEST_F(RunRecord, BadOptionsAreReportedInOneLine) {
   const auto messages = [&](const std::vector<std::string>& more) {

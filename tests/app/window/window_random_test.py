@@ -11,7 +11,7 @@ from window_case import PROGRAM, SAMPLES, WindowCase, main
 from window_driver import Display, Window, scratch
 
 SEEDS = [int(seed) for seed in os.environ.get("MERCURY_WINDOW_SEEDS", "4").split(",")]
-PRESSES = int(os.environ.get("MERCURY_WINDOW_PRESSES", "10000"))
+PRESSES = int(os.environ.get("MERCURY_WINDOW_PRESSES", "3000"))
 
 
 class RandomInputTest(WindowCase):
@@ -29,7 +29,7 @@ class RandomInputTest(WindowCase):
         since = window.mark()
         window.key("space")  # robots that hold still
         x, y = window.frame(lambda frame: not frame["playing"] and frame["where"], since)["where"][0]
-        for trial, key in zip(range(40), itertools.cycle(["ctrl+o", "ctrl+s", "F1"])):
+        for trial, key in zip(range(15), itertools.cycle(["ctrl+o", "ctrl+s", "F1"])):
             user.input.move(round(x) + trial % 2, round(y))
             user.input.key(key, after=user.chance.randrange(210, 330))
             user.input.key("Escape", after=200)

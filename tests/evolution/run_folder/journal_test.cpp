@@ -2,12 +2,11 @@
 // The journal `genomes`: what is written is read; what is cut off or damaged is noticed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include "evolution/run_folder/generation_record.h"
 #include "robots/bytes.h"
 #include "tests/evolution/run_folder/test_run.h"
+#include "tests/size_limit.h"
 
 namespace mercury {
 namespace {
@@ -199,16 +198,12 @@ TEST_F(Journal, AFailedAppendLeavesItAsItWas) {
   RunFolder run = create("run", test_settings(4));
   evolve(run, 2);
   const std::string journal = read("run/genomes");
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  rlimit limited = before;
-  limited.rlim_cur = journal.size() + 500;
-  const auto handler = signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limited), 0);
-  const std::string error = error_of([&] { evolve(run, 1); });
-  setrlimit(RLIMIT_FSIZE, &before);
-  signal(SIGXFSZ, handler);
-  EXPECT_THAT(error, HasSubstr("File too large"));
+  std::string error;
+  {
+    const SizeLimit limited(journal.size() + 500);
+    error = error_of([&] { evolve(run, 1); });
+  }
+  EXPECT_THAT(error, HasSubstr("ulimit -f"));
   EXPECT_EQ(read("run/genomes"), journal);
   evolve(run);
   make_run("other", test_settings(4));

@@ -294,6 +294,31 @@ TEST_F(RunFolders, HostileOnesGiveOneLineAndLoseNothing) {
   EXPECT_THAT(error_of([&] { history("file"); }), EndsWith("file: is not a folder"));
 }
 
+// A received folder might have them.
+TEST_F(RunFolders, LinksOutOfThemAreNotFollowed) {
+  make_run("run", test_settings(2));
+  std::filesystem::create_directory(path("outside"));
+  write("outside/mine.csv", "mine");
+  for (const char* name : {"lineage.csv", "generations.csv", "progress.svg", "genomes", "run.toml", "best"}) {
+    SCOPED_TRACE(name);
+    const std::filesystem::path file = path("run/" + std::string(name)), aside = path("aside");
+    std::filesystem::rename(file, aside);
+    const bool is_folder = std::filesystem::is_directory(aside);
+    std::filesystem::create_symlink(is_folder ? path("outside") : path("outside/mine.csv"), file);
+    if (!is_folder && (std::string(name) == "genomes" || std::string(name) == "run.toml"))
+      std::filesystem::copy_file(aside, path("outside/mine.csv"), std::filesystem::copy_options::overwrite_existing);
+    const std::string before = read("outside/mine.csv");
+    EXPECT_THAT(error_of([&] { open("run"); }),
+                HasSubstr(std::string(name) + ": is a link out of " + path("run").string()));
+    EXPECT_EQ(read("outside/mine.csv"), before);
+    std::filesystem::remove(file);
+    std::filesystem::rename(aside, file);
+  }
+  std::filesystem::rename(path("run/lineage.csv"), path("run/kept.csv"));
+  std::filesystem::create_symlink("kept.csv", path("run/lineage.csv"));  // stays inside
+  open("run");
+}
+
 TEST_F(RunFolders, ReadOnlyOnesCanBeReadAndNotWritten) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   make_run("run");

@@ -124,7 +124,7 @@ template <class Action>
 std::string error_of(const Action& action) {
   try {
     action();
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     return error.what();
   }
   return "";
