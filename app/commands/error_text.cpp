@@ -21,6 +21,10 @@ std::string error_text(const std::exception& error) {
     return (path.empty() ? "" : path + ": ") + reason_of(file->code().value());
   }
   const std::string_view text = error.what();
+  // Of the standard library, and of oneTBB: "pthread_create has failed: ...".
+  if (text == "Resource temporarily unavailable" || text.starts_with("pthread_create has failed"))
+    return "no thread could be started: the memory or the number of processes is limited (ulimit -v, ulimit -u); give "
+           "more, or fewer --threads";
   // "[json.exception.type_error.302] type must be number"
   if (const std::size_t end = text.find("] "); text.starts_with("[json.exception.") && end != text.npos)
     return std::string(text.substr(end + 2));

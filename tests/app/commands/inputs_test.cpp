@@ -67,6 +67,13 @@ TEST_F(Inputs, StandardInputHoldsRobots) {
   EXPECT_THAT(listing("grown"), ElementsAre("voxel-7-0.json", "voxel-7-1.json"));
 }
 
+TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
+  const Outcome outcome = limited(400'000, "render --random voxel --still 0 --gl osmesa --quiet -o " + path("a.png"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.messages, HasSubstr("needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+}
+
 TEST_F(Inputs, BadFilesAreLeftOutWithKeepGoing) {
   write("r/1.JSON", "{}");
   const std::string bad = path("r/1.JSON");
