@@ -158,7 +158,8 @@ TEST(RandomVoxels, RefusesOptionsThatCannotBeUsed) {
             "voxels: 3 to 2 is not accepted; the first size must not be above the second");
   EXPECT_EQ(message({.air = 1}), "air: 1 is not accepted; give at least 0 and below 1");
   EXPECT_EQ(message({.patch = 0}), "patch: 0 is not accepted; give 1 voxels or more");
-  EXPECT_EQ(message({.edge = 0}), "edge: 0 is not accepted; give 0.001 m or more");
+  EXPECT_EQ(message({.edge = 0}), "edge: 0 is not accepted; give 0.001 to 1000 m");
+  EXPECT_EQ(message({.edge = 4294967296}), "edge: 4294967296 is not accepted; give 0.001 to 1000 m");
   EXPECT_EQ(message({.muscle = 0, .tissue = 0, .bone = 0}),
             "muscle, tissue, bone: all are 0; give at least one share above 0");
   EXPECT_EQ(message({.frequencies = 6}), "frequencies: 6 is not accepted; give 1 to 5");
