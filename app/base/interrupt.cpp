@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <stdexcept>
+#include <string_view>
 
 #include "app/base/child_process.h"
 #include "mercury/file_links.h"
@@ -18,21 +20,44 @@
 namespace mercury {
 namespace {
 
+constexpr itimerval time_to_stop{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_usec = 500'000}};
 constexpr int slots = 64;  // unfinished files that a second signal removes, at most
 
 std::atomic<int> first_signal = 0;
+std::atomic<int> unsaved_results = 0;
+std::atomic<bool> waits_for_work = false;
 // The signal handler reads these. It may use only lock-free atomics and async-signal-safe functions such as unlink().
 std::array<std::atomic<const char*>, slots> unfinished{};
 std::atomic<unsigned> file_count = 0;  // for unique names
 
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-void on_signal(int number) {
-  if (int none = 0; first_signal.compare_exchange_strong(none, number)) return;
+// On a line of its own, since a progress bar may stand on the current one.
+void write_message(std::string_view text) {
+  if (!isatty(STDERR_FILENO)) text.remove_prefix(1);
+  const ssize_t ignored = ::write(STDERR_FILENO, text.data(), text.size());
+  static_cast<void>(ignored);
+}
+
+[[noreturn]] void end_at_once(int number) {
   kill_children();
   for (auto& slot : unfinished)
     if (const char* path = slot.load()) unlink(path);
   _exit(128 + number);
+}
+
+void on_signal(int number) {
+  if (int none = 0; !first_signal.compare_exchange_strong(none, number)) end_at_once(number);
+  if (!waits_for_work) setitimer(ITIMER_REAL, &time_to_stop, nullptr);
+}
+
+void on_time_over(int) {
+  if (unsaved_results > 0) {
+    write_message("\nmercury: stopping, to keep the results so far; another signal drops them\n");
+  } else {
+    write_message("\nmercury: stopped\n");
+    end_at_once(first_signal);
+  }
 }
 
 // Returns false if there is a file of that name. Throws std::filesystem::filesystem_error.
@@ -48,7 +73,8 @@ bool rename_to_new(const std::filesystem::path& from, const std::filesystem::pat
 
 }  // namespace
 
-void catch_interrupts() {
+void catch_interrupts(bool patient) {
+  waits_for_work = patient;
   struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;
@@ -58,6 +84,8 @@ void catch_interrupts() {
     sigaction(number, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);
   }
+  action.sa_handler = on_time_over;
+  sigaction(SIGALRM, &action, nullptr);
   // A write beyond `ulimit -f` fails with EFBIG and is reported like a full disk. Children get the signal as before,
   // since handlers, unlike SIG_IGN, are not inherited.
   action.sa_handler = [](int) {};
@@ -70,6 +98,15 @@ int stop_signal() { return first_signal.load(std::memory_order_relaxed); }
 
 void throw_if_interrupted() {
   if (interrupted()) throw Interrupted();
+}
+
+void UnsavedResults::begin() {
+  if (!begun_) ++unsaved_results;
+  begun_ = true;
+}
+
+UnsavedResults::~UnsavedResults() {
+  if (begun_) --unsaved_results;
 }
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& target)

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ctrl-C, kill and a closed terminal: work in progress ends in an orderly way.
 //
-//   first signal    sets a flag; loops that ask interrupted() stop and finish their files
-//   second signal   kills child processes, removes unfinished files, and ends the program at once
+//   first signal    sets a flag; loops that ask interrupted() stop and finish their files. Work that has not stopped
+//                   after half a second is ended, unless there are UnsavedResults.
+//   second signal   ends the program at once
+//
+// Where the program is ended, child processes are killed and unfinished files are removed.
 #pragma once
 
 #include <exception>
@@ -11,8 +14,8 @@
 namespace mercury {
 
 // Installs the handlers of SIGINT, SIGTERM and SIGHUP. A signal that was ignored when the program started (nohup) stays
-// ignored.
-void catch_interrupts();
+// ignored. With `patient`, work is never ended after a first signal: for processes that somebody else ends.
+void catch_interrupts(bool patient = false);
 
 // True once a signal has arrived.
 bool interrupted();
@@ -25,6 +28,19 @@ struct Interrupted : std::exception {
 };
 // Throws Interrupted once a signal has arrived: for work that leaves nothing to finish.
 void throw_if_interrupted();
+
+// Results that an end would lose. From begin() to the destructor, a first signal waits for the work to stop by itself.
+class UnsavedResults {
+ public:
+  UnsavedResults() = default;
+  ~UnsavedResults();
+  UnsavedResults(const UnsavedResults&) = delete;
+  UnsavedResults& operator=(const UnsavedResults&) = delete;
+  void begin();  // may be called again
+
+ private:
+  bool begun_ = false;
+};
 
 // A file under a temporary name until it is complete. It is removed if the program ends earlier, by an exception or by
 // a second signal.

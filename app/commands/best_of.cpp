@@ -29,7 +29,7 @@ std::uint64_t ContestResult::tried() const {
   return sum;
 }
 
-ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64_t count) {
+ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64_t count, UnsavedResults& results) {
   const EvaluationRequest request = trial_request(contest.trials, contest.configuration);
   const RandomRobots robots{.kind = contest.kind, .count = contest.candidates, .seed = contest.seed};
   const RobotSource source = [&](std::size_t index) {
@@ -39,7 +39,7 @@ ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64
   Progress progress("searching", "robots", static_cast<std::int64_t>(contest.candidates));
   ContestResult found;
   found.interrupted =
-      !take_results(evaluator, progress, request.settling + request.steps, [&](const Evaluation& robot) {
+      !take_results(evaluator, progress, request.settling + request.steps, results, [&](const Evaluation& robot) {
         RobotResult result =
             result_of(identity_of(robots, robot.index, robot.index), robot, request, contest.trials.strain_limit);
         ++found.fates[result.fate];

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/base/interrupt.h"
 #include "app/commands/robot_results.h"
 #include "app/options/robot_output.h"
 #include "mercury/assessor.h"
@@ -40,7 +41,7 @@ struct ContestResult {
 
 // Keeps the `count` robots that move farthest. Only sound ones count, so none that cannot be made, explodes or is
 // strained beyond the limit. If the user interrupts, these are the best of those that were tried. The result does not
-// depend on how many robots are simulated at once.
-ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64_t count);
+// depend on how many robots are simulated at once. `results` begin with the first step.
+ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64_t count, UnsavedResults& results);
 
 }  // namespace mercury

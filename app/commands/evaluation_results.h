@@ -14,9 +14,10 @@
 namespace mercury {
 
 // Calls take(evaluation) for each result. After an interrupt, these are what Evaluator::stop() leaves, and it returns
-// false. `steps` = of each robot, settling included.
+// false. `steps` = of each robot, settling included. `results` begin with the first step.
 template <class Take>
-bool take_results(Evaluator& evaluator, Progress& progress, std::int64_t steps, const Take& take) {
+bool take_results(Evaluator& evaluator, Progress& progress, std::int64_t steps, UnsavedResults& results,
+                  const Take& take) {
   constexpr std::chrono::milliseconds period{100};
   bool stopped = false;
   for (std::uint64_t turn = 0;; ++turn) {
@@ -25,9 +26,11 @@ bool take_results(Evaluator& evaluator, Progress& progress, std::int64_t steps, 
       evaluator.stop();
     }
     const bool is_ready = evaluator.wait_for(period);
-    if (!is_ready || turn % 1024 == 0)
-      progress.update_with_fraction(static_cast<double>(evaluator.progress().robot_steps) /
-                                    static_cast<double>(std::max<std::int64_t>(1, steps)));
+    if (!is_ready || turn % 1024 == 0) {
+      const std::int64_t made = evaluator.progress().robot_steps;
+      if (made > 0) results.begin();
+      progress.update_with_fraction(static_cast<double>(made) / static_cast<double>(std::max<std::int64_t>(1, steps)));
+    }
     if (!is_ready) continue;
     const std::optional<Evaluation> result = evaluator.next();
     if (!result) return !stopped;

@@ -130,7 +130,8 @@ int keep_best(const NewOptions& options, const std::string& kind, const MakeRobo
   const RobotOutput& output = options.output;
   RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), options.best_of));
   if (output.dry_run()) return describe_work(options, kind);
-  const ContestResult found = best_of(contest, make, options.output.count());
+  UnsavedResults results;
+  const ContestResult found = best_of(contest, make, options.output.count(), results);
   publish(found, options, std::move(files), csv);
   return found.interrupted || found.winners.size() < options.output.count() ? 1 : 0;
 }

@@ -298,7 +298,7 @@ class Program {
 
 int run_program(const std::vector<std::string>& arguments) {
   replace_closed_streams();
-  catch_interrupts();
+  catch_interrupts(launched_by_mpi());  // the launcher ends those that do not stop
   try {
     return Program().run(arguments);
   } catch (const std::exception& error) {

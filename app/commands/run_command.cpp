@@ -205,6 +205,8 @@ CheckpointNotes notes_of(const RunOptions& options, const Configuration& configu
 template <class Work>
 int run_watched(const RunOptions& options, std::unique_ptr<Recorder> recorder, std::optional<Checkpoints> checkpoints,
                 std::vector<RobotResult> failed, const Work& work) {
+  UnsavedResults results;
+  results.begin();
   RunReport report;
   try {
     report = work(StepObservers{.recorder = recorder.get(), .checkpoints = checkpoints ? &*checkpoints : nullptr});
@@ -333,7 +335,8 @@ int run(const RunOptions& options) {
   if (options.output.dry_run())
     return describe_work(options, configuration, options.simulation.steps(), size_text(robots));
   if (!options.record.empty() || !options.checkpoint.empty()) return run_in_one(options, robots, configuration, trials);
-  const RunReport report = evaluate(robots, configuration, trials);
+  UnsavedResults results;
+  const RunReport report = evaluate(robots, configuration, trials, results);
   print_notes(report.notes);
   return report_results(options, report);
 }

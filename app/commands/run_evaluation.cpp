@@ -167,7 +167,8 @@ RobotIdentity identity_of(const RobotSequence& robots, std::size_t index) {
   return {.index = index};
 }
 
-RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials) {
+RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials,
+                   UnsavedResults& results) {
   const EvaluationRequest request = trial_request(trials, configuration);
   Evaluator evaluator(request, robots.source, robots.count);
   RunReport report{.configuration = configuration, .settle = trials.settle};
@@ -184,7 +185,7 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   {
     Progress progress("simulating", "robots", static_cast<std::int64_t>(robots.count));
     try {
-      stopped = !take_results(evaluator, progress, request.settling + request.steps, take);
+      stopped = !take_results(evaluator, progress, request.settling + request.steps, results, take);
     } catch (const DeviceError& error) {
       if (report.robots.empty()) throw;
       report.problem = error.what();

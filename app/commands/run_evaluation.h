@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/base/interrupt.h"
 #include "app/commands/run_checkpoints.h"
 #include "app/commands/run_report.h"
 #include "app/options/robot_options.h"
@@ -22,8 +23,9 @@ RobotIdentity identity_of(const RobotSequence& robots, std::size_t index);
 
 // Simulates the robots, with a progress bar. If the user interrupts, the report holds those robots that
 // have made all steps; if there is none yet, those that have come as far as the first. Robots that cannot be made are
-// in the report, too. Throws InputError if all robots of a request cannot be made.
-RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials);
+// in the report, too. `results` begin with the first step. Throws InputError if all robots of a request cannot be made.
+RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials,
+                   UnsavedResults& results);
 
 // All robots of a sequence at once.
 struct GatheredRobots {

@@ -125,6 +125,7 @@ FfmpegWriter::FfmpegWriter(const std::string& output, VideoKind kind, const Vide
 
 void FfmpegWriter::write(const render::Image& frame) {
   if (!encoder_->write(frame.bytes)) fail(encoder_->finish());
+  frames_.begin();
 }
 
 void FfmpegWriter::finish() {

@@ -27,6 +27,7 @@ class FfmpegWriter final : public FrameWriter {
   VideoKind kind_;
   std::string program_;
   UnfinishedFile file_;
+  UnsavedResults frames_;
   std::optional<ChildProcess> encoder_;
 };
 

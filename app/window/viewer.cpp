@@ -71,6 +71,7 @@ class Viewer {
   bool leaves_gpu_to_steps() const;
 
   FrameReport report_;  // first member, since it measures the time from the start
+  UnsavedResults session_;
   ViewerOptions options_;
   std::filesystem::path folder_;  // of settings; empty = neither loaded nor saved
   Preferences preferences_;
@@ -145,6 +146,7 @@ void Viewer::fill_scene() {
 }
 
 int Viewer::run() {
+  session_.begin();
   auto last = Clock::now();
   while (!interrupted() && !panels_.quit_confirmed()) {
     if (window_.close_requested()) {

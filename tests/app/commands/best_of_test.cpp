@@ -28,13 +28,16 @@ Contest contest_of(std::uint64_t candidates, double seconds, const Configuration
           .trials = {.seconds = seconds}};
 }
 
-class BestOf : public BackendTest {};
+class BestOf : public BackendTest {
+ protected:
+  UnsavedResults results;
+};
 
 TEST_P(BestOf, DistanceIsMeasuredFromTheSettledPlace) {
   const Configuration configuration{.environment = Land{}, .device = device()};
   Contest contest = contest_of(1, 0.9, configuration);
   contest.trials.settle = 0.5;
-  const auto winners = best_of(contest, make, 1).winners;
+  const auto winners = best_of(contest, make, 1, results).winners;
   ASSERT_EQ(winners.size(), 1u);
   Simulation simulation(configuration, std::vector<Robot>{make(3, 0)});
   simulation.step(500);
@@ -54,12 +57,12 @@ TEST_P(BestOf, ResultsAreThoseOfRun) {
   contest.trials = trials;
   std::vector<std::string> searched;
   contest.watch = [&](const RobotResult& robot) { searched.push_back(csv_line(robot)); };
-  best_of(contest, make, 1);
+  best_of(contest, make, 1, results);
 
   const RobotSequence robots{.source = [](std::size_t i) { return std::make_shared<const Robot>(make(3, i)); },
                              .count = 5,
                              .random = {{.kind = "voxel", .count = 5, .seed = 3}}};
-  const RunReport evaluated = evaluate(robots, configuration, trials);
+  const RunReport evaluated = evaluate(robots, configuration, trials, results);
   GatheredRobots gathered = gather(robots);
   Simulation simulation(configuration, gathered.robots);
   RunReport simulated = simulate(simulation, std::move(gathered.identities), trials, {});
@@ -76,7 +79,7 @@ TEST_P(BestOf, ResultsAreThoseOfRun) {
 }
 
 TEST_P(BestOf, LeavesOutFailedRobotsAndSortsTheOthers) {
-  const ContestResult found = best_of(contest_of(5, 0.3, {.device = device()}), make, 5);
+  const ContestResult found = best_of(contest_of(5, 0.3, {.device = device()}), make, 5, results);
   ASSERT_EQ(found.winners.size(), 4u);
   for (std::size_t i = 1; i < 4; ++i) EXPECT_GE(found.winners[i - 1].result.distance, found.winners[i].result.distance);
   EXPECT_EQ(found.fates, (std::map<Fate, std::uint64_t>{{Fate::sound, 4}, {Fate::failed, 1}}));
@@ -91,11 +94,11 @@ TEST_P(BestOf, IgnoresOverstretchedRobots) {
   contest.watch = [&](const RobotResult& robot) {
     if (robot.was_stepped()) strains.push_back(robot.largest_strain);
   };
-  EXPECT_EQ(best_of(contest, make, 9).winners.size(), 8u);
+  EXPECT_EQ(best_of(contest, make, 9, results).winners.size(), 8u);
   std::ranges::sort(strains);
   contest.watch = {};
   contest.trials.strain_limit = (strains[3] + strains[4]) / 2;
-  const ContestResult found = best_of(contest, make, 9);
+  const ContestResult found = best_of(contest, make, 9, results);
   EXPECT_EQ(found.winners.size(), 4u);
   for (const Winner& winner : found.winners) EXPECT_LE(winner.result.largest_strain, contest.trials.strain_limit);
   EXPECT_EQ(found.fates.at(Fate::overstretched), 4u);
@@ -116,7 +119,7 @@ TEST_P(BestOf, ExplodedRobotsNeverWin) {
     EXPECT_EQ(std::isnan(robot.exploded_at), !robot.exploded());
     if (robot.exploded()) exploded.push_back(robot.identity.index);
   };
-  const ContestResult found = best_of(contest, mixed, 6);
+  const ContestResult found = best_of(contest, mixed, 6, results);
   EXPECT_EQ(exploded, (std::vector<std::size_t>{0, 2, 4}));
   ASSERT_EQ(found.winners.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(found.winners[i].result.identity.index, 2 * i + 1);
