@@ -73,7 +73,7 @@ class Renderer {
   // Draws the picture.
   void draw(const Scene& scene, const Camera& camera);
 
-  // GPU time of each part of a recent picture, in drawing order; empty at first.
+  // GPU time of each part of a recent frame, in drawing order; empty at first.
   const std::vector<PassTime>& times() const;
 
   // The finished picture: an sRGB8_ALPHA8 texture, lower row first as usual in OpenGL. resize() replaces it.

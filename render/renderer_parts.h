@@ -16,7 +16,7 @@
 // 1. What costs much per pixel is computed once per pixel, before the 4 samples are drawn.
 // 2. No pass waits for an answer from the GPU. What depends on the positions stays there, in FrameBlock. Only labels
 //    need the boxes on the CPU; they are read last, when the GPU has other work.
-// 3. The CPU is at most two pictures ahead of the GPU (Pace). Until then, what it wrote stays (StreamBuffer).
+// 3. The CPU is at most two frames ahead of the GPU (Pace). Until then, what it wrote stays (StreamBuffer).
 #pragma once
 
 #include <optional>
@@ -84,7 +84,7 @@ struct Renderer::Parts {
   GhostPass ghosts;
   PassTimer timer;
   Pace pace;
-  std::string variant;  // lines of #define for this picture
+  std::string variant;  // lines of #define for this frame
 
   void prepare(const Scene& scene, const Camera& camera, const Style& style);
   template <typename Draw>

@@ -55,7 +55,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
 // parsed: the weights of a network are many, and they keep every digit this way.
 bool take_out_ancestry(std::string& object) {
   int depth = 0;
-  std::size_t member = 0;  // where the present member of the outermost object begins, with the comma before it
+  std::size_t member = 0;  // where the current member of the outermost object begins, with the comma before it
   bool is_ancestry = false, at_key = false;
   for (std::size_t i = 0; i < object.size(); ++i) {
     const char c = object[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bodies' buffers, the scene's placements and materials (render/passes/scene_buffers.h), and the records that compute
-// passes write for each picture.
+// passes write for each frame.
 #define NO_FACE 0xffffffffu
 
 struct Placement {

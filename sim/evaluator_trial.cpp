@@ -172,7 +172,7 @@ void PortionTrial::remove_losers() {
   keep(kept);
 }
 
-// By their present indices, ascending.
+// By their current indices, ascending.
 void PortionTrial::keep(std::span<const std::size_t> robots) {
   simulation_.keep(robots);
   size_ = 1;

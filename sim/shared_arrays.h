@@ -25,7 +25,7 @@ class SharedState {
   SharedArray<std::uint8_t> exploded(const Backend& backend, std::span<const std::size_t> mass_offsets);
 
   PublishedArrays targets() const;
-  // Writes the present state into them.
+  // Writes the current state into them.
   void publish(const Backend& backend, std::span<const std::size_t> mass_offsets) const;
   void forget();
 

@@ -19,7 +19,7 @@ class EvolutionProgress {
   EvolutionProgress(const EvolutionProgress&) = delete;
   EvolutionProgress& operator=(const EvolutionProgress&) = delete;
 
-  // `done` of `all` trials of the present generation.
+  // `done` of `all` trials of the current generation.
   void update(std::size_t done, std::size_t all);
   // A generation is complete.
   void finish_generation(std::size_t trials, double best, double median);
@@ -33,8 +33,8 @@ class EvolutionProgress {
   const int first_, last_;
   const bool terminal_;
   int generation_;
-  double share_ = 0;                     // of the present generation that is done
-  std::size_t trials_ = 0, partly_ = 0;  // of all generations that are done, of the present one
+  double share_ = 0;                     // of the current generation that is done
+  std::size_t trials_ = 0, partly_ = 0;  // of all generations that are done, of the current one
   bool is_known_ = false, shown_ = false;
   double best_ = 0, median_ = 0;
   const Clock::time_point start_;

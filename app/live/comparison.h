@@ -35,12 +35,12 @@ class Companion {
     std::vector<LivePerturbation> perturbations;
   };
 
-  // Begins at the first batch's present moment. `number`: of the companions so far. Pictures know by it that it is
+  // Begins at the first batch's current moment. `number`: of the companions so far. Pictures know by it that it is
   // another one.
   Companion(const LiveBatch& first, const Robots& wanted, Measurements& measurements, Messages& messages,
             std::uint64_t number);
 
-  // Begins again, at the first batch's present moment.
+  // Begins again, at the first batch's current moment.
   void begin(const Robots& wanted);
   // Follows changes of robots, parameters, materials and perturbations.
   void follow(const Robots& wanted);

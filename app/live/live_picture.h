@@ -25,7 +25,7 @@ class LivePicture {
   ~LivePicture();
 
   // Updates the scene from a snapshot and keeps the snapshot until the next call. In slow motion the scene shows the
-  // robots between two snapshots (SlowMotion); `wall` is the present wall time [s]. `held`: the robot at which the
+  // robots between two snapshots (SlowMotion); `wall` is the current wall time [s]. `held`: the robot at which the
   // mouse pulls.
   void update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
               const std::set<RobotId>& selected, const std::set<RobotId>& hidden, std::optional<RobotId> held,
@@ -60,7 +60,7 @@ class LivePicture {
   std::unique_ptr<Parts> parts_;
 };
 
-// Pictures between two steps. In slow motion a step lasts many pictures, and robots would move in jerks.
+// Pictures between two steps. In slow motion a step lasts many frames, and robots would move in jerks.
 //
 //   wall time  ---|--------|--------|--------|---->
 //   snapshots     A        B        C
@@ -71,7 +71,7 @@ class LivePicture {
 // While physics pauses or makes more than `most_rate` steps per second, shows the newest snapshot as it is.
 class SlowMotion {
  public:
-  static constexpr double most_rate = 250;    // steps per second of wall time, up to which pictures are interpolated
+  static constexpr double most_rate = 250;    // steps per second of wall time, up to which frames are interpolated
   static constexpr double allowance = 0.035;  // time to compute, publish and fetch a step [s]
 
   // Adds the newest snapshot.
@@ -90,7 +90,7 @@ class SlowMotion {
   double wanted(double wall) const;
 
   std::deque<std::shared_ptr<const Snapshot>> snapshots_;  // of the same robots, oldest first
-  double shown_ = 0;                                       // time of the last picture; it never goes back
+  double shown_ = 0;                                       // time of the last frame; it never goes back
   std::vector<Vec3> positions_;
   std::vector<Telemetry> telemetry_;
 };

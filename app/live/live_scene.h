@@ -140,7 +140,7 @@ class LiveScene {
   // Shows these robots alone, in this configuration (but on the same device), as one edit. They need no saving.
   void show(std::vector<Robot> robots, const Configuration& configuration, const std::string& edit);
   // Opens robot files, folders of them, or one recording, repro or scene, in the background. Those three take the place
-  // of the present scene; of several recordings, the robots are opened at rest.
+  // of the current scene; of several recordings, the robots are opened at rest.
   void open(const std::vector<std::filesystem::path>& paths);
   // Makes random robots in the background. `replace`: they replace all robots.
   void generate(const RandomRobots& generation, bool replace = false);
@@ -245,7 +245,7 @@ class LiveScene {
   SaveResult save_scene(const std::filesystem::path& path, bool overwrite = false);
   // The camera of a scene that was opened since the last call.
   std::optional<CameraPlan> take_camera();
-  // Writes a robot's present pose for other programs; the file's extension says the format (app/export).
+  // Writes a robot's current pose for other programs; the file's extension says the format (app/export).
   SaveResult export_pose(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
   // The same for its motion from time 0 to `seconds`, which is simulated in the background. Returns once it has
   // begun, with the file; a message says when it is there.

@@ -152,7 +152,7 @@ void ScenePulls::send() {
   for (const Attachment& attachment : document_.attachments) {
     if (is_pin(attachment) && pins_wait_) continue;
     all.push_back(attachment.spring);
-    // Stable at the present time step, which may have grown.
+    // Stable at the current time step, which may have grown.
     all.back().stiffness = std::min(all.back().stiffness, stiffest_pin(document_.configuration));
   }
   if (by_mouse_) all.push_back(*by_mouse_);

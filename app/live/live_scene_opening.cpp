@@ -112,7 +112,7 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
   }
   if (is_scene_name(file)) {
     auto scene = std::make_shared<const SceneFile>(file);
-    if (!alone) throw InputError(file.string(), "is a scene, which takes the place of the present one; open it alone");
+    if (!alone) throw InputError(file.string(), "is a scene, which takes the place of the current one; open it alone");
     std::vector<OpenedRobot> robots;
     for (const std::string& robot : scene->robots()) {
       const ImportFormat* format = import_format_of(robot);

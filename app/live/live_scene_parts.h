@@ -76,6 +76,27 @@ class ScenePulls {
   std::optional<std::uint64_t> pins_wait_;  // pins are off until a snapshot of the present has more resets than this
 };
 
+// What the user marks on the timeline. Times in s; those that differ by less than a step of any run are one.
+class TimelineMarks {
+ public:
+  const std::vector<double>& bookmarks() const { return bookmarks_; }  // ascending
+  bool toggle_bookmark(double now);                                    // returns whether there is one now
+  std::optional<double> next_bookmark(double now, int direction) const;
+  void forget_bookmarks_after(double time);
+
+  // A loop that has its begin, but not its end.
+  const std::optional<double>& loop_begin() const { return loop_begin_; }
+  // Begins a loop, or returns its times.
+  std::optional<std::pair<double, double>> mark_loop(double now);
+  void forget_loop() { loop_begin_.reset(); }
+  // The times in ascending order, if there is a loop between them.
+  static std::optional<std::pair<double, double>> loop_between(double a, double b);
+
+ private:
+  std::vector<double> bookmarks_;
+  std::optional<double> loop_begin_;
+};
+
 // The robots that are selected, in the order of selection.
 class SceneSelection {
  public:
@@ -121,9 +142,8 @@ struct LiveScene::Parts {
   double speed = 1;
   std::optional<CameraPlan> camera;  // of a scene that was opened
   ScenePulls pulls{document, physics};
-  std::vector<double> bookmarks;     // ascending [s]
-  std::optional<double> loop_begin;  // of a loop that is not closed yet [s]
-  bool goes_on = false;              // the moment shown becomes the present; physics has not done so yet
+  TimelineMarks marks;
+  bool goes_on = false;  // the moment shown becomes the present; physics has not done so yet
   std::uint64_t last_surroundings = 0;
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 

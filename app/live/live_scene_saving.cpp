@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the window's scene writes: robot files, commands, tables, videos, repros of explosions, and present poses and
+// What the window's scene writes: robot files, commands, tables, videos, repros of explosions, and current poses and
 // motions for other programs.
 #include <fmt/format.h>
 #include <unistd.h>

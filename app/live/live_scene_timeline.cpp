@@ -15,6 +15,41 @@ constexpr double same_moment = 1e-9;  // [s]
 
 }  // namespace
 
+bool TimelineMarks::toggle_bookmark(double now) {
+  const auto there = std::ranges::find_if(bookmarks_, [&](double time) { return std::abs(time - now) <= same_moment; });
+  if (there != bookmarks_.end()) {
+    bookmarks_.erase(there);
+    return false;
+  }
+  bookmarks_.insert(std::ranges::upper_bound(bookmarks_, now), now);
+  return true;
+}
+
+std::optional<double> TimelineMarks::next_bookmark(double now, int direction) const {
+  if (direction > 0) {
+    const auto next = std::ranges::upper_bound(bookmarks_, now + same_moment);
+    return next == bookmarks_.end() ? std::nullopt : std::optional(*next);
+  }
+  const auto next = std::ranges::lower_bound(bookmarks_, now - same_moment);
+  return next == bookmarks_.begin() ? std::nullopt : std::optional(*std::prev(next));
+}
+
+void TimelineMarks::forget_bookmarks_after(double moment) {
+  std::erase_if(bookmarks_, [&](double time) { return time > moment + same_moment; });
+}
+
+std::optional<std::pair<double, double>> TimelineMarks::mark_loop(double now) {
+  if (loop_begin_)
+    if (const auto loop = loop_between(*loop_begin_, now)) return loop;
+  loop_begin_ = now;
+  return std::nullopt;
+}
+
+std::optional<std::pair<double, double>> TimelineMarks::loop_between(double a, double b) {
+  if (!(std::isfinite(std::min(a, b)) && std::abs(b - a) > same_moment)) return std::nullopt;
+  return std::minmax(a, b);
+}
+
 // The document takes the robots and parameters of the moment that is shown, as an edit if they differ. Call it before
 // an edit: what the user changes then is what the picture shows.
 void LiveScene::Parts::adopt_moment() {
@@ -45,8 +80,7 @@ void LiveScene::Parts::adopt_moment() {
 }
 
 void LiveScene::Parts::forget_later_bookmarks() {
-  if (!snapshot->timeline.recording)
-    std::erase_if(bookmarks, [&](double time) { return time > snapshot->time + same_moment; });
+  if (!snapshot->timeline.recording) marks.forget_bookmarks_after(snapshot->time);
 }
 
 void LiveScene::seek(double time) {
@@ -81,51 +115,32 @@ std::vector<RobotId> LiveScene::fork(const std::vector<RobotId>& robots) {
 }
 
 void LiveScene::set_loop(std::optional<std::pair<double, double>> times) {
-  if (times && times->second < times->first) std::swap(times->first, times->second);
-  if (times && !(std::isfinite(times->first) && times->second - times->first > same_moment)) return;
-  parts_->loop_begin.reset();
+  if (times && !(times = TimelineMarks::loop_between(times->first, times->second))) return;
+  parts_->marks.forget_loop();
   parts_->physics.set_loop(times);
 }
 
 LoopMark LiveScene::mark_loop() {
-  Parts& parts = *parts_;
-  const double now = parts.snapshot->time;
-  if (parts.snapshot->timeline.looping) {
+  if (parts_->snapshot->timeline.looping) {
     set_loop({});
     return LoopMark::ended;
   }
-  if (!parts.loop_begin || std::abs(*parts.loop_begin - now) <= same_moment) {
-    parts.loop_begin = now;
-    return LoopMark::begun;
-  }
-  set_loop(std::pair{*parts.loop_begin, now});
+  const auto loop = parts_->marks.mark_loop(parts_->snapshot->time);
+  if (!loop) return LoopMark::begun;
+  set_loop(loop);
   return LoopMark::closed;
 }
-std::optional<double> LiveScene::loop_begin() const { return parts_->loop_begin; }
+std::optional<double> LiveScene::loop_begin() const { return parts_->marks.loop_begin(); }
 
-const std::vector<double>& LiveScene::bookmarks() const { return parts_->bookmarks; }
+const std::vector<double>& LiveScene::bookmarks() const { return parts_->marks.bookmarks(); }
 
-bool LiveScene::toggle_bookmark() {
-  std::vector<double>& marks = parts_->bookmarks;
-  const double now = parts_->snapshot->time;
-  const auto there = std::ranges::find_if(marks, [&](double time) { return std::abs(time - now) <= same_moment; });
-  if (there != marks.end()) {
-    marks.erase(there);
-    return false;
-  }
-  marks.insert(std::ranges::upper_bound(marks, now), now);
-  return true;
-}
+bool LiveScene::toggle_bookmark() { return parts_->marks.toggle_bookmark(parts_->snapshot->time); }
 
 bool LiveScene::seek_bookmark(int direction) {
-  const std::vector<double>& marks = parts_->bookmarks;
   const TimelineState& timeline = parts_->snapshot->timeline;
-  const double now = timeline.seeking ? timeline.target : parts_->snapshot->time;
-  auto next = direction > 0 ? std::ranges::upper_bound(marks, now + same_moment)
-                            : std::ranges::lower_bound(marks, now - same_moment);
-  if (direction > 0 ? next == marks.end() : next == marks.begin()) return false;
-  seek(direction > 0 ? *next : *std::prev(next));
-  return true;
+  const auto next = parts_->marks.next_bookmark(timeline.seeking ? timeline.target : parts_->snapshot->time, direction);
+  if (next) seek(*next);
+  return next.has_value();
 }
 
 void LiveScene::set_timeline_budget(std::size_t bytes) { parts_->physics.set_timeline_budget(bytes); }
@@ -133,8 +148,7 @@ void LiveScene::set_timeline_budget(std::size_t bytes) { parts_->physics.set_tim
 void LiveScene::Parts::play_recording(const std::shared_ptr<TrajectoryReader>& recording,
                                       const std::filesystem::path& file) {
   edit("open " + file.filename().string());
-  bookmarks.clear();
-  loop_begin.reset();
+  marks = {};
   document.robots.clear();
   const Device device = document.configuration.device;
   document.configuration = recording->configuration();

@@ -310,7 +310,7 @@ void Physics::Parts::run() {
   }
 }
 
-// Waits for commands or for the time of the next step; on a GPU that the window watches, for that of its next picture.
+// Waits for commands or for the time of the next step; on a GPU that the window watches, for that of its next frame.
 PendingCommands Physics::Parts::wait_for_commands() {
   const bool wanted = exchange.is_wanted();
   double due = std::numeric_limits<double>::infinity();

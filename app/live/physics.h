@@ -23,8 +23,8 @@
 //
 // Why it is built this way:
 // 1. The window never waits for physics. A slice of steps takes several milliseconds, in a large scene much longer, but
-//    a click must take effect in the next picture. Only wait_until_done() waits; tests use it.
-// 2. Commands replace each other. A slider sends a value per picture; only the latest counts. Commands that must not be
+//    a click must take effect in the next frame. Only wait_until_done() waits; tests use it.
+// 2. Commands replace each other. A slider sends a value per frame; only the latest counts. Commands that must not be
 //    lost, such as step(), add up.
 // 3. A snapshot is made only after newest() was called. Reading positions from a GPU interrupts the steps, so physics
 //    reads them as often as the window draws and no more. At unlimited speed snapshots take at most a
@@ -62,7 +62,7 @@ class Physics {
 
   // Replaces the robots and the configuration. The robots must be valid, and the device must be that of the
   // constructor. A robot that is already simulated keeps its state. A robot that was removed and comes back continues
-  // from its last state, unless reset() was called in between. A new robot starts at rest at the present time. If the
+  // from its last state, unless reset() was called in between. A new robot starts at rest at the current time. If the
   // robots cannot be simulated, for example for lack of memory, a message says so and no robot is simulated until the
   // next call.
   // `surroundings` names what the robots live in. With a new number, robots that come to land are set down at rest;

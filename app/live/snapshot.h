@@ -137,7 +137,7 @@ struct Snapshot {
   std::span<const Vec3> velocities_of(std::size_t robot) const;  // empty if the snapshot has none
 };
 
-// Memory of snapshots, used again: a snapshot of a large scene is tens of megabytes, too much to allocate per picture.
+// Memory of snapshots, used again: a snapshot of a large scene is tens of megabytes, too much to allocate per frame.
 // Whoever drops the last reference to a snapshot, on whatever thread, gives its memory back to the pool. The pool may
 // be destroyed before its snapshots.
 class SnapshotPool {

@@ -65,7 +65,7 @@ void Stepping::follow_time_step() {
   if (batch_.configuration().dt != dt_) start();
 }
 
-// A GPU that also draws switches to the steps and back in about 2 ms, so they come once per picture: when the window
+// A GPU that also draws switches to the steps and back in about 2 ms, so they come once per frame: when the window
 // wants a snapshot, else after this many.
 std::int64_t Stepping::at_once() const {
   constexpr double launch_period = 0.05;  // wall time [s]

@@ -68,7 +68,7 @@ class Stepping {
   void drop() { left_ = 0; }
   void stop();  // for an explosion, a failure, or the end of a recording
 
-  // Begins to count at the present moment: after a jump in time, or when speed or time step changed.
+  // Begins to count at the current moment: after a jump in time, or when speed or time step changed.
   void start();
   void follow_time_step();  // starts if that changed
   // Wall time at which the next steps are due [s]. `watched`: the window waits for a picture.

@@ -32,7 +32,7 @@ class TimelinePlayer {
   // The past.
   void clear();                                          // forgets it
   void restart();                                        // the same, and begins at the present
-  void forget_states() { replay_log_.forget_states(); }  // the steps before do not lead to the present ones
+  void forget_states() { replay_log_.forget_states(); }  // the steps before do not lead to the current ones
   // Call it after the robots, their parameters or what acts on them may have changed.
   void follow_changes(bool robots_changed);
   void stepped(double seconds);                     // of wall time, in the present

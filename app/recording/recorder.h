@@ -31,7 +31,7 @@ class Recorder {
   Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options);
 
   // Copies the frames of the start instead, and goes on after them, as the simulation does. Throws InputError if they
-  // are not frames of this simulation, up to its present step.
+  // are not frames of this simulation, up to its current step.
   Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options,
            const RecordingStart& start);
 

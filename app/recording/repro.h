@@ -57,7 +57,7 @@ class ReproChanges {
   std::int64_t next_step() const {
     return next_ < repro_.changes.size() ? repro_.changes[next_].step : std::numeric_limits<std::int64_t>::max();
   }
-  // Applies the changes due at the present step of the simulation.
+  // Applies the changes due at the current step of the simulation.
   void apply(Simulation& simulation);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of GroupScene that changes with every picture.
+// The part of GroupScene that changes with every frame.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -31,14 +31,14 @@ class Trail {
 
   // Where the robot is now. Places that are not finite are ignored. Keep it up to date also while no path is shown.
   void pass(Vec3 place);
-  // It is `time` [s]. Appends the present place to the path if it is at least `step` from the last point [m]. If time
+  // It is `time` [s]. Appends the current place to the path if it is at least `step` from the last point [m]. If time
   // went back, the path ends where the robot was then.
   void lengthen(float step, double time, Later later = Later::forget);
 
   // The path up to the present: points, 3 numbers each [m], the oldest first; and its length up to each of them [m].
   std::span<const float> points() const { return std::span(points_).first(3 * shown_); }
   std::span<const float> lengths() const { return std::span(lengths_).first(shown_); }
-  // The newest points, back to the first one that is farther than `reach` from the present place [m].
+  // The newest points, back to the first one that is farther than `reach` from the current place [m].
   std::span<const float> wake(float reach) const;
 
  private:

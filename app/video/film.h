@@ -30,7 +30,7 @@ struct PictureOptions {
   render::Quality quality = render::Quality::automatic;
 };
 
-// The simulation's present state as a picture of 3 bytes per pixel, upper row first. The same state and options give
+// The simulation's current state as a picture of 3 bytes per pixel, upper row first. The same state and options give
 // the same bytes. Throws InputError for options that cannot be used, ParameterError("size", ...) for a size that cannot
 // be drawn, DeviceError if there is no OpenGL.
 render::Image picture_of(DrawingThread& thread, const Simulation& simulation, const PictureOptions& options = {});
@@ -56,7 +56,7 @@ class Film {
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
 
-  // The simulation's present state is the next frame. Drawing and encoding go on in the background; waits while several
+  // The simulation's current state is the next frame. Drawing and encoding go on in the background; waits while several
   // frames are behind. After robots were added or removed, the group is laid out again. Throws what an earlier frame
   // threw, InputError when the film has ended.
   void add_frame();

@@ -38,7 +38,7 @@ class GroupDrawing {
   // Gives the robots to a renderer. Call it before draw(), and again when the renderer has drawn others.
   void set_bodies(render::Renderer& renderer) const { scene_.set_bodies(renderer); }
 
-  // The simulation's present state.
+  // The simulation's current state.
   FrameSnapshot take(PositionBridge& bridge);
   // Draws it. `bridge`: that of take(). `elapsed`: since the previous picture, for the camera [s of video].
   void draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed);

@@ -36,7 +36,7 @@ class PositionSnapshot {
 class PositionBridge {
  public:
   virtual ~PositionBridge() = default;
-  // Copies the present positions.
+  // Copies the current positions.
   virtual std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) = 0;
   // Makes the renderer draw them next: sets scene.positions, which then refers to the snapshot, or writes into the
   // renderer's buffer.

@@ -101,7 +101,7 @@ class Viewer {
   float titles_ = 0;                          // height of the titles of two sides [pixels]
   EventLog no_log_;                           // for what the second side shows again
   std::uint64_t bodies_revision_ = 0;         // of the bodies that the renderer has
-  bool camera_moved_ = false;                 // between the last two pictures
+  bool camera_moved_ = false;                 // between the last two frames
   bool camera_placed_ = false;                // the camera has been placed before the first robots
   int redraws_ = 3;                           // pictures to draw even if nothing changes
 

@@ -54,7 +54,7 @@ def robot_of(cache):
 
 
 def box_of(robot):
-    """Middle and half size of the robot at the present frame."""
+    """Middle and half size of the robot at the current frame."""
     shape = robot.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
     points = [robot.matrix_world @ vertex.co for vertex in shape.vertices]
     low = Vector(min(p[i] for p in points) for i in range(3))

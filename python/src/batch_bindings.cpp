@@ -263,7 +263,7 @@ void bind_batch(nb::module_& module) {
       .def("reset", &Batch::reset, nb::arg("mask") = nb::none(), nb::arg("stream") = nb::none(), reset_description)
       .def(
           "add", [](Batch& self, nb::handle robots) { return self.add(robots_of(robots)); }, nb::arg("robots").none(),
-          "Adds a Robot or a sequence of them, at rest at the present time. Returns the index of the first.")
+          "Adds a Robot or a sequence of them, at rest at the current time. Returns the index of the first.")
       .def("keep", &Batch::keep, nb::arg("indices").none(),
            "Keeps the robots of these indices, in this order, with their states, and removes the others.")
       .def("set_state", &set_state, nb::arg("robot"), nb::arg("positions").none(), nb::arg("velocities") = nb::none(),

@@ -9,7 +9,7 @@
 namespace mercury::render {
 namespace {
 
-constexpr GLuint64 patience = 20'000'000'000;  // [ns] per picture; after that the GPU counts as dead
+constexpr GLuint64 patience = 20'000'000'000;  // [ns] per frame; after that the GPU counts as dead
 
 }  // namespace
 

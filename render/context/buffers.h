@@ -42,9 +42,9 @@ class HostBuffer {
   GLsync fence_ = nullptr;
 };
 
-// Memory of the host that the GPU reads, for large data of each picture. The CPU only copies; the transfer happens when
+// Memory of the host that the GPU reads, for large data of each frame. The CPU only copies; the transfer happens when
 // the GPU gets there. glNamedBufferSubData would make one wait for the other.
-// At most two pictures may be under way (Pace).
+// At most two frames may be under way (Pace).
 class UploadRing {
  public:
   void write(const Buffer& to, std::span<const std::byte> data);

@@ -91,9 +91,9 @@ class Buffer {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-// A buffer whose contents are replaced at most twice per picture. It is a ring of four, because pictures that the GPU
+// A buffer whose contents are replaced at most twice per frame. It is a ring of four, because pictures that the GPU
 // has not finished must keep their contents: NVIDIA's driver has been observed to write into a storage buffer that an
-// earlier picture had not read yet. Before drawing, make sure that the picture before the last is finished (Pace).
+// earlier frame had not read yet. Before drawing, make sure that the picture before the last is finished (Pace).
 class StreamBuffer {
  public:
   template <typename Values>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GPU times of the parts of a picture. They are read some pictures later, so that nothing waits.
+// GPU times of the parts of a picture. They are read some frames later, so that nothing waits.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -25,7 +25,7 @@ class PassTimer {
   void begin();
   void mark(const char* name);
   void end();
-  // Of the last picture whose times are known; empty until there is one.
+  // Of the last frame whose times are known; empty until there is one.
   const std::vector<PassTime>& times() const { return times_; }
 
  private:
@@ -43,7 +43,7 @@ class PassTimer {
   std::vector<PassTime> times_;
 };
 
-// Keeps the CPU at most two pictures ahead of the GPU, as StreamBuffer requires.
+// Keeps the CPU at most two frames ahead of the GPU, as StreamBuffer requires.
 class Pace {
  public:
   ~Pace() {

@@ -20,7 +20,7 @@ class SkinPass {
   // Call when the bodies have been replaced.
   void attach(const Bodies& bodies);
   // Computes from the positions and the frame block: normals of faces, and at masses if `smooth`; the lists of faces to
-  // draw, and a SeenFace for each that is seen. `cut`: a plane cuts the bodies of this picture.
+  // draw, and a SeenFace for each that is seen. `cut`: a plane cuts the bodies of this frame.
   void deform(const Bodies& bodies, bool smooth, bool cut);
 
   enum class ColorBy { materials, face_values, mass_values };

@@ -92,7 +92,7 @@ class JsonWriter : public DocumentEvents {
   int depth_ = 0;
   bool first_ = true;  // no element yet in the array or object that is open
   bool after_key_ = false;
-  std::size_t line_ = 0;  // where the present line begins in out_
+  std::size_t line_ = 0;  // where the current line begins in out_
 };
 
 // Writes events as CBOR (RFC 8949): floats where they hold the number exactly, else doubles.

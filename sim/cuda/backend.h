@@ -77,7 +77,7 @@ class CudaBackend final : public Backend {
   void set_status(std::size_t robot, const RobotStatus& status) override;
 
  private:
-  // What must be released while the device is the present one.
+  // What must be released while the device is the current one.
   struct Owned {
     SizeClasses classes;
     Event start{Event::timed}, end{Event::timed}, sleepy_end{Event::sleepy}, forked;
@@ -85,7 +85,7 @@ class CudaBackend final : public Backend {
     DeviceArray<RobotView> views;          // [robot], if views_valid_
     DeviceArray<float> rest;               // [mass][3], positions at rest, if rest_valid_
     Actuators actuators;                   // none are driven if it is empty
-    MappedArray<DeviceTelemetry> reports;  // of the present state if report_valid_
+    MappedArray<DeviceTelemetry> reports;  // of the current state if report_valid_
     DeviceArray<DeviceTelemetry> samples;  // of step_and_report()
   };
 
@@ -136,7 +136,7 @@ class CudaBackend final : public Backend {
   std::vector<std::uint32_t> launch_order_;  // classes that have robots, the largest robots first
   mutable bool report_valid_ = false, report_expected_ = false;
   mutable std::shared_ptr<float> positions_copy_;  // where steps leave the positions; nullptr = nowhere
-  mutable bool copy_valid_ = false;                // it holds those of the present state
+  mutable bool copy_valid_ = false;                // it holds those of the current state
   mutable bool queued_ = false;                    // something in a caller's stream that may not be done
   mutable bool views_valid_ = false;
   bool rest_valid_ = false;

@@ -39,7 +39,7 @@
 
 namespace mercury::cuda {
 
-// The parameters of a material's springs in the present step.
+// The parameters of a material's springs in the current step.
 template <Solver solver>
 struct SpringParameters;
 template <>

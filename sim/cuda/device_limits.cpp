@@ -9,7 +9,7 @@ namespace {
 
 int attribute(cudaDeviceAttr which) {
   int device = 0, value = 0;
-  check(cudaGetDevice(&device), "querying the present device");
+  check(cudaGetDevice(&device), "querying the current device");
   check(cudaDeviceGetAttribute(&value, which, device), "querying the device's limits");
   return value;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the present CUDA device offers.
+// What the current CUDA device offers.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,7 @@ std::size_t free_cuda_memory(int index) {
 
 void synchronize_cuda_device(int index) {
   int callers = 0;
-  check(cudaGetDevice(&callers), "querying the present device");
+  check(cudaGetDevice(&callers), "querying the current device");
   check(cudaSetDevice(index), "choosing the device");
   const cudaError_t error = cudaDeviceSynchronize();
   check(cudaSetDevice(callers), "choosing the device");

@@ -45,7 +45,7 @@ constexpr std::uint32_t tiles_per_warp(std::uint32_t tiles) {
   return divide_up(tiles, even_warps(tiles, resident_warps / 2));
 }
 
-// The configuration that keeps most robots in flight on the present device, beside the rest of `batch_size` robots.
+// The configuration that keeps most robots in flight on the current device, beside the rest of `batch_size` robots.
 // Springs name materials below 32 `table_chunks`.
 LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,
                                                 bool same_materials, std::size_t batch_size,

@@ -73,7 +73,7 @@ struct BatchView {
   // [robot][slot]: the reactions that a slot receives per step, one for each entry of the schedule whose partner it is.
   const std::uint32_t* incoming_counts;
   const Material* materials;  // [robot][max_materials]
-  MusclePhase* phases;        // [robot][max_materials], for the present clock base
+  MusclePhase* phases;        // [robot][max_materials], for the current clock base
   const DevicePerturbation* perturbations;
   char* workspace;  // [robot], what does not fit on the chip: contact lists, working memory
   std::uint32_t robot_count, tile_stride, row_stride, face_stride, perturbation_count;

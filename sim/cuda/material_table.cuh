@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The material table of a block: the parameters of every material's springs in the present step.
+// The material table of a block: the parameters of every material's springs in the current step.
 //
 // Copies are interleaved: the parameters of material m in copy c are at index m * copies + c. With 16 copies, lane i of
 // a half-warp reads copy i and no bank twice, whatever its material is (block_layout.h).

@@ -70,10 +70,10 @@ void let_pool_keep_memory(cudaMemPool_t pool) {
   check(cudaFreeAsync(data, cudaStreamPerThread), "setting up device memory");
 }
 
-// Of this thread, for the present device.
+// Of this thread, for the current device.
 cudaStream_t urgent_stream() {
   int device = 0;
-  check(cudaGetDevice(&device), "querying the present device");
+  check(cudaGetDevice(&device), "querying the current device");
   thread_local std::map<int, Stream> streams;
   return streams.try_emplace(device, true).first->second.get();
 }
@@ -81,7 +81,7 @@ cudaStream_t urgent_stream() {
 cudaMemPool_t present_pool() {
   int device = 0;
   cudaMemPool_t pool = nullptr;
-  check(cudaGetDevice(&device), "querying the present device");
+  check(cudaGetDevice(&device), "querying the current device");
   check(cudaDeviceGetDefaultMemPool(&pool, device), "setting up device memory");
   static std::mutex mutex;
   static std::map<int, bool> set_up;
@@ -121,7 +121,7 @@ void* allocate_on_device(std::size_t bytes) {
 
 std::shared_ptr<void> allocate_to_share(std::size_t bytes) {
   int device = 0;
-  check(cudaGetDevice(&device), "querying the present device");
+  check(cudaGetDevice(&device), "querying the current device");
   const auto free = [device](void* data) noexcept {
     int callers = 0;
     cudaGetDevice(&callers);

@@ -18,17 +18,17 @@
 
 namespace mercury::cuda {
 
-// Bytes of zeros on the present device, ready for use by all streams. Throws DeviceError if there is no room.
+// Bytes of zeros on the current device, ready for use by all streams. Throws DeviceError if there is no room.
 void* allocate_on_device(std::size_t bytes);
-// No stream may still use them. The device that holds them must be the present one.
+// No stream may still use them. The device that holds them must be the current one.
 void free_on_device(void* data) noexcept;
 
-// Bytes of zeros on the present device for programs and other libraries. They can be freed by any thread, after their
+// Bytes of zeros on the current device for programs and other libraries. They can be freed by any thread, after their
 // backend, and while kernels still use them: freeing waits for the device. They do not come from the pool, because
 // other devices and processes can map only what cudaMalloc() allocates.
 std::shared_ptr<void> allocate_to_share(std::size_t bytes);
 
-// What can be allocated on the present device [bytes].
+// What can be allocated on the current device [bytes].
 std::size_t free_device_memory();
 
 // An array in device memory.

@@ -23,7 +23,7 @@ struct StepArguments {
   DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
 };
 
-// Robots that the present device steps at the same time.
+// Robots that the current device steps at the same time.
 std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch);
 
 // Makes the kernel for this launch ready, once per device.

@@ -224,7 +224,7 @@ def problems_of(root, include):
 
 def cycle_in(graph):
     """A cycle of {node: [node]}, its first node repeated at the end, or None."""
-    state = {}  # absent = not seen, False = on the present path, True = done
+    state = {}  # absent = not seen, False = on the current path, True = done
 
     def visit(node, path):
         if state.get(node) is False:

@@ -28,6 +28,7 @@ WORDS = [
     (r"(one|two|three|four|a line|a task|a thread) an? (robot|mass|spring|face|step|core|thread|lane|warp|block|frame|file|line)",
      "per robot, per spring"),
     ("be it", "whether"),
+    (r"(the|its|their) present (device|step|state|values?|time|camera|place|positions?|rest|frame|moment|scene|keys?|ones?)", "current"),
     ("save (that|where|when|for)", "except"),
     ("nought|naught", "0"),
     # British spelling

@@ -41,7 +41,7 @@ class Reference {
   Vector center_of_mass() const;
   Vector center_velocity() const;
   double kinetic_energy() const;
-  double elastic_energy() const;  // at the springs' present rest lengths
+  double elastic_energy() const;  // at the springs' current rest lengths
   double muscle_power() const;
   double largest_strain() const;                     // against L0
   std::int64_t springs_beyond(double strain) const;  // stretched or pressed together by more

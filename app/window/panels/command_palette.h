@@ -15,7 +15,7 @@ namespace mercury::window {
 struct PaletteEntry {
   std::string name;    // "duplicate the selected robots"
   std::string group;   // "Robots", shown at the right
-  std::string detail;  // its key, or its present value; may be empty
+  std::string detail;  // its key, or its current value; may be empty
   std::function<void()> act;
 };
 

@@ -27,7 +27,7 @@ void save_with_confirmation(PanelContext& context, const std::string& what,
 void save_csv(PanelContext& context, const std::string& what, std::function<std::string()> make);
 
 // Exports a robot for other programs through the file dialog: the selected one, else the first.
-// Its present pose.
+// Its current pose.
 void export_pose(PanelContext& context);
 // Its motion from time 0: asks for how long, and where.
 void export_motion(PanelContext& context);

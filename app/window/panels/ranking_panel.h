@@ -29,7 +29,7 @@ class RankingPanel : public Panel {
 
   int column_ = 1;  // to sort by
   bool ascending_ = false;
-  bool logged_ = false;  // the present sort order is in the event log
+  bool logged_ = false;  // the current sort order is in the event log
   bool held_ = false;    // the mouse is over the table, so rows stay where they are
   std::vector<RobotId> order_;
   RowSelection selection_;

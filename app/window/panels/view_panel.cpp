@@ -131,7 +131,7 @@ void draw_bookmarks(PanelContext& context) {
       is_set && !ImGui::GetIO().KeyShift ? go_to_bookmark(context, i) : set_bookmark(context, i);
     ImGui::PopID();
     context.log.item("camera.bookmark." + std::to_string(i + 1));
-    tooltip(is_set ? "go there; with Shift: set it to the present camera" : "set it to the present camera");
+    tooltip(is_set ? "go there; with Shift: set it to the current camera" : "set it to the current camera");
   }
 }
 

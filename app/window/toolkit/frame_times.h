@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the window draws: how long it waits between two frames, which pictures it leaves out, and how long the last
+// When the window draws: how long it waits between two frames, which frames it leaves out, and how long the last
 // frames took.
 #pragma once
 
@@ -18,7 +18,7 @@ class Pacing {
   double wait(double spent, bool gpu_for_steps) const;
   // If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.
   bool leaves_out_frame(bool backlog) const;
-  // Whether the robots of the last picture stay: then pictures get a small share of the GPU's time.
+  // Whether the robots of the last frame stay: then pictures get a small share of the GPU's time.
   bool keeps_picture(bool gpu_for_steps, double draw_seconds) const;
 
   void drew_robots() { drawn_at_ = Clock::now(); }

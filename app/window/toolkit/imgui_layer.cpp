@@ -124,7 +124,7 @@ void ImGuiLayer::begin_frame(const std::vector<InputEvent>& events) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
 #if IMGUI_VERSION_NUM < 18700
-  // NewFrame() has read the pointer's present position from GLFW. Put back the position of this frame's events.
+  // NewFrame() has read the pointer's current position from GLFW. Put back the position of this frame's events.
   ImGuiIO& io = ImGui::GetIO();
   const bool held = std::find(pointer_.down.begin(), pointer_.down.end(), true) != pointer_.down.end();
   io.MousePos = pointer_.inside || held ? ImVec2(pointer_.x, pointer_.y) : ImVec2(-FLT_MAX, -FLT_MAX);

@@ -31,7 +31,7 @@ class KeyMap {
   std::optional<Action> command_of(const KeyPress& press) const;
   // For menus and help: "Right or ."; empty = none.
   std::string keys_of(Action action) const;
-  // All commands with their present keys, as read() takes them.
+  // All commands with their current keys, as read() takes them.
   std::string text() const;
 
  private:
@@ -52,7 +52,7 @@ std::string load_keys(KeyMap& keys, const std::filesystem::path& file);
 // such a file afterwards.
 bool write_keys_template(const std::filesystem::path& file);
 
-// A tooltip that names the present keys of a command: "reset to the start (key R)"; without keys, the text alone.
+// A tooltip that names the current keys of a command: "reset to the start (key R)"; without keys, the text alone.
 std::string with_keys(const KeyMap& keys, const std::string& text, Action action);
 
 }  // namespace mercury::window

@@ -90,7 +90,7 @@ std::pair<float, float> shares_within(const Frame& frame, ImVec2 a, ImVec2 b) {
 void draw_pieces(const Frame& frame, const std::vector<ImVec2>& points, ImU32 color, float thickness, float on,
                  float off) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  float along = 0;  // of the present piece and the gap after it
+  float along = 0;  // of the current piece and the gap after it
   for (std::size_t i = 1; i < points.size(); ++i) {
     const ImVec2 from = points[i - 1], to = points[i];
     const auto [enter, leave] = shares_within(frame, from, to);

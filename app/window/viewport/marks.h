@@ -19,7 +19,7 @@ namespace mercury::window {
 std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
                                     const render::Camera& camera);
 
-// The figures of a hit, as lines of the present ImGui window.
+// The figures of a hit, as lines of the current ImGui window.
 void write_figures(const LiveScene& scene, const Hit& hit);
 
 // How high a tooltip with all figures is [pixels].

@@ -32,7 +32,7 @@ class MouseController {
 
   void set_actions(MouseActions actions) { actions_ = std::move(actions); }
   // Handles the mouse where no panel uses it. Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the
-  // one the last picture was drawn with.
+  // one the last frame was drawn with.
   void update(const ViewportArea& area, const render::Camera& camera);
   // Draws the force of a pull and the details under the pointer.
   void draw(const ViewportArea& area, const render::Camera& camera, const Box& legend);

@@ -46,7 +46,7 @@ class OrbitController {
   // Begins as a plan says, `robot` being the one that it follows. Call start() before.
   void begin(const CameraPlan& plan, std::optional<std::size_t> robot);
 
-  // Advances the camera by `dt` seconds and returns it. Call once per picture. `robots`: one box per robot, which may
+  // Advances the camera by `dt` seconds and returns it. Call once per frame. `robots`: one box per robot, which may
   // be empty.
   render::Camera at(std::span<const render::Bounds> robots, float aspect, double dt);
   const render::Orbit& orbit() const { return orbit_; }

@@ -11,7 +11,7 @@
 namespace mercury::window {
 namespace {
 
-constexpr double slow = 0.045, fast = 0.015;  // time per picture [s]
+constexpr double slow = 0.045, fast = 0.015;  // time per frame [s]
 constexpr std::array<float, 3> shares{1, 0.75f, 0.5f};
 
 }  // namespace
@@ -33,7 +33,7 @@ void Viewport::place(int x, int y, int width, int height) {
   height_ = std::max(16, height);
 }
 
-// During motion, steps to a lower or higher resolution if the last picture was too slow or fast.
+// During motion, steps to a lower or higher resolution if the last frame was too slow or fast.
 void Viewport::adapt(bool moving) {
   if (!moving) {
     share_ = 1;

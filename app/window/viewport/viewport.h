@@ -42,16 +42,16 @@ class Viewport {
   void place(int x, int y, int width, int height);
   float aspect() const { return static_cast<float>(width_) / static_cast<float>(height_); }
 
-  // Draws the scene. `moving`: the next picture follows at once, so this one may be coarse.
+  // Draws the scene. `moving`: the next frame follows at once, so this one may be coarse.
   void draw(const render::Scene& scene, const render::Camera& camera, bool moving);
-  // Copies the last picture into the window's framebuffer, which has this height [pixels].
+  // Copies the last frame into the window's framebuffer, which has this height [pixels].
   void present(int framebuffer_height) const;
 
   render::Renderer& renderer() { return renderer_; }
   const render::Renderer& renderer() const { return renderer_; }
-  double draw_seconds() const { return draw_seconds_; }  // of the last picture, including the wait for the GPU
+  double draw_seconds() const { return draw_seconds_; }  // of the last frame, including the wait for the GPU
   float share() const { return share_; }                 // of the area's width and height that was drawn, 0.5 to 1
-  // True if the last picture had reduced resolution.
+  // True if the last frame had reduced resolution.
   bool coarse() const { return share_ < 1; }
 
  private:

@@ -36,7 +36,7 @@ template <class Start, class Visit>
 void number_items(const std::vector<Item>& items, const Start& start, const Visit& visit) {
   std::uint32_t numbers = 0;
   for (auto first = items.begin(); first != items.end();) {
-    std::uint32_t copy = 0, copies = 0;  // of the present member; at most of any member
+    std::uint32_t copy = 0, copies = 0;  // of the current member; at most of any member
     auto i = first;
     for (; i != items.end() && i->slots == first->slots; ++i) {
       copy = i != first && i->member == (i - 1)->member ? copy + 1 : 0;

@@ -132,7 +132,7 @@ class Backend {
   // which is done when the function returns. The defaults are right unless one CUDA device holds all robots.
   virtual std::shared_ptr<void> allocate_shared(std::size_t bytes) const;
   virtual void copy_shared(void* to, const void* from, std::size_t bytes) const;
-  // Writes the present state of all robots into shared arrays. Returns when it is done. `mass_offsets`: as
+  // Writes the current state of all robots into shared arrays. Returns when it is done. `mass_offsets`: as
   // Simulation::mass_offsets(). The default reads everything back.
   virtual void publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const;
   // From now on every step begins with reading these. They stay valid until the next call, load(), add() or keep(),

@@ -11,7 +11,7 @@ namespace mercury {
 // The instant at which a step begins: time = base_time + (step - base_step) dt.
 //
 // Time is not summed step by step, because every addition would round: after 1e9 steps of 1 ms the sum would be off by
-// milliseconds. When dt changes, the base moves to the present instant and counting goes on with the new dt.
+// milliseconds. When dt changes, the base moves to the current instant and counting goes on with the new dt.
 //
 //     base_time                        time
 //         |--dt--|--dt--|--dt--|--dt--|

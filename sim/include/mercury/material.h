@@ -9,7 +9,7 @@
 
 namespace mercury {
 
-// At time t a spring of rest length L0 has the present rest length L(t) = L0 (1 + amplitude sin(frequency t + phase)).
+// At time t a spring of rest length L0 has the current rest length L(t) = L0 (1 + amplitude sin(frequency t + phase)).
 // With half_wave only the negative half of the sine acts, L(t) = L0 (1 + amplitude min(0, sin(frequency t + phase))): a
 // muscle of a positive amplitude shortens from its rest length and comes back, and never gets longer.
 struct Material {

@@ -5,7 +5,7 @@
 //
 //                    |d|
 //     a o--/\/\/\/\/\/\/\/\--o b      d = x_b - x_a
-//       |<---- L ---->|               L = L0 (1 + dL0 sin(omega t + phi)), the present rest length
+//       |<---- L ---->|               L = L0 (1 + dL0 sin(omega t + phi)), the current rest length
 //       |<---- L0 ------>|            L0 = Spring::rest_length
 #pragma once
 

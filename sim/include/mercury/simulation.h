@@ -36,7 +36,7 @@ namespace mercury {
 // any batch, in any order and with any number of threads. The CPU and CUDA agree within rounding.
 //
 // Functions that take the index of a robot throw std::out_of_range if there is no such robot. One thread at a time may
-// use a simulation. Those of a simulation on a CUDA device make it the present device of the calling thread.
+// use a simulation. Those of a simulation on a CUDA device make it the current device of the calling thread.
 class Simulation {
  public:
   // Throws InputError for a configuration or robot that breaks a rule ("robot 3 (eel): /springs/7: ..."), and
@@ -52,7 +52,7 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  // Adds robots, at rest at the present time; the others keep their states, materials and perturbations. Returns the
+  // Adds robots, at rest at the current time; the others keep their states, materials and perturbations. Returns the
   // index of the first new robot. Throws InputError as the constructor does.
   std::size_t add(std::span<const Robot> robots);
   std::size_t add(const Robot& robot) { return add(std::span(&robot, 1)); }
@@ -163,7 +163,7 @@ class Simulation {
   // Of all robots, on all cores.
   std::vector<std::uint64_t> hashes() const;
 
-  // A robot's present material, without what actuation() changes. Throws std::out_of_range if the robot's table has no
+  // A robot's current material, without what actuation() changes. Throws std::out_of_range if the robot's table has no
   // such id.
   Material material(std::size_t robot, MaterialId id) const;
   // Applies to all springs of that material from the next step on. Throws InputError if the material is not valid.

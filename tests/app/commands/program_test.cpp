@@ -358,7 +358,7 @@ TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
                ":2: --density: land has no such parameter; it applies to ocean");
 }
 
-// A typo is reported even where the present command would not read it.
+// A typo is reported even where the current command would not read it.
 TEST_F(ConfigFileTest, TyposInTablesOfOtherCommandsAreReported) {
   const std::string file = path("a.toml");
   const auto expect_error = [&](const std::string& toml, const std::string& message) {

@@ -102,7 +102,7 @@ class PanelsTest(WindowCase):
         window.frame()
         window.do("click", "--repeat", 2, "--delay", 60, 1)
         again = window.frame(lambda frame: frame["scale"] != moved["scale"])["scale"]
-        # It fits the present values now; before, it fitted those of the last seconds too.
+        # It fits the current values now; before, it fitted those of the last seconds too.
         self.assertLessEqual(again[1], fitted["scale"][1])
         self.assertGreater(again[1], 1.2 * moved["scale"][1])
         window.click("color.log")
