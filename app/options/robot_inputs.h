@@ -29,8 +29,8 @@ class RobotInputs {
   // Adds --recursive and --keep-going alone.
   void add_options_to(const Command& command);
 
-  // As the user gave them.
-  std::vector<std::filesystem::path> paths() const { return {paths_.begin(), paths_.end()}; }
+  // As the user gave them, and the files of sample robots. Throws InputError for an unknown sample.
+  std::vector<std::filesystem::path> paths() const;
   bool empty() const { return paths_.empty(); }
 
   // Reads the robots of files and folders, and of standard input for "-". Shows the progress, and throws Interrupted
