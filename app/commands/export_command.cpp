@@ -221,13 +221,17 @@ void add_export_command(const Command& program, const Choose& choose) {
   add_text(command, "-o,--output", options->path,
            "A file, whose extension says the format, or a folder for one file per robot", "FILE|FOLDER")
       .required();
-  add_choice(command, "--format", options->format, format_words(),
-             "The format (default: that of the file's extension)");
-  add_text(command, "--robot", options->robot, "One robot of several: its name, or its number from 0", "NAME|N");
-  add_number(command, "--from", options->range.from, "First moment of a recording (default: its first frame)", "S");
-  add_number(command, "--to", options->range.to, "Last moment of a recording (default: its last frame)", "S");
+  add_choice(command, "--format", options->format, format_words(), "The format (default: that of the file's extension)")
+      .on_first_screen();
+  add_text(command, "--robot", options->robot, "One robot of several: its name, or its number from 0", "NAME|N")
+      .on_first_screen();
+  add_number(command, "--from", options->range.from, "First moment of a recording (default: its first frame)", "S")
+      .on_first_screen();
+  add_number(command, "--to", options->range.to, "Last moment of a recording (default: its last frame)", "S")
+      .on_first_screen();
   add_number(command, "--every", options->every, "Every N-th frame of a recording (default 1)", "N");
-  add_number(command, "--still", options->still, "The pose at this moment of a recording rather than a motion", "S");
+  add_number(command, "--still", options->still, "The pose at this moment of a recording rather than a motion", "S")
+      .on_first_screen();
   command.add_flag("--springs", options->springs,
                    fmt::format("Also the springs as lines, in {}", format_names([](const ExportFormat& format) {
                                  return format.springs == ExportFormat::Springs::if_asked;

@@ -132,7 +132,7 @@ class Program {
     add(command.add_version_option("-V,--version", program_version, "Print the version"));
     add(command.add_flag("-q,--quiet", quiet_, "Print only errors and warnings on standard error"));
     add(command.add_flag("-v,--verbose", verbose_, "Say in detail what is done, with times"));
-    const std::vector<Command> children = command.commands(true);
+    const std::vector<Command> children = command.commands();
     if (children.empty())
       add(add_text(command, "--config", config_path_,
                    "Read options from a TOML file; the command line overrides them (docs/command-line.md)",

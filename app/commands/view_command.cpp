@@ -155,8 +155,9 @@ void add_view_command(const Command& program, const Choose& choose) {
   add_value(command, "--speed", options->speed, "Simulated seconds per second, or max: as fast as possible (default 1)",
             "X|max", speed_from)
       .offering({"max"})
-      .in_group("Window");
-  command.add_flag("--paused", options->paused, "Start paused").in_group("Window");
+      .in_group("Window")
+      .on_first_screen();
+  command.add_flag("--paused", options->paused, "Start paused").in_group("Window").on_first_screen();
   command
       .add_flag("--no-interop", options->no_interop,
                 "Copy positions through the host even where CUDA and OpenGL can share them on the GPU")
