@@ -217,7 +217,7 @@ void add_export_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("export", "Write robots and motions as files of other programs");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor) and folders of them, or a recording (.h5) for motions");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), or a recording (.h5) for motions");
   add_text(command, "-o,--output", options->path,
            "A file, whose extension says the format, or a folder for one file per robot", "FILE|FOLDER")
       .required();
@@ -242,7 +242,7 @@ void add_export_command(const Command& program, const Choose& choose) {
       "A robot file gives the robot at rest. A motion comes from a recording of mercury run --record. All files have\n"
       "meters and z up; a .glb file turns the robot, since glTF has y up. The names of the files are printed.\n\n"
       "Examples:\n"
-      "  mercury export eel.json -o eel.glb\n"
+      "  mercury export sample:eel -o eel.glb\n"
       "  mercury export my-robots --format stl -o printed/\n"
       "  mercury export run.h5 --robot 0 -o swim.pvd          for ParaView\n"
       "  mercury export run.h5 --still 2 --format vtu -o moments/",

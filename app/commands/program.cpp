@@ -39,7 +39,7 @@ constexpr const char* footer =
     "  mercury run --random voxel:64 --seconds 2          simulate and print the results\n"
     "  mercury new voxel --count 10 -o my-robots          make robot files\n"
     "  mercury run my-robots --environment land           simulate them on land\n"
-    "  mercury export eel.json -o eel.glb                 a robot for other programs\n"
+    "  mercury export sample:eel -o eel.glb               a robot for other programs\n"
     "  mercury info                                       what this machine can do\n"
     "  mercury help render                                all options of a command\n\n"
     "Exit status: 0 = done; 1 = the work failed, or robots were left out; 2 = the input cannot be used;\n"

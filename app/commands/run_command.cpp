@@ -345,7 +345,7 @@ void add_run_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("run", "Simulate robots and print a table or JSON");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor) and folders of them, or an explosion that the window saved (.repro)");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), or an explosion that the window saved (.repro)");
   add_text(command, "--csv", options->csv,
            "Also write one line per robot to this file; - prints it instead of the table", "FILE")
       .on_first_screen();

@@ -146,8 +146,8 @@ void add_view_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("view", "Show robots in an interactive window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor) and folders of them, or a recording (.h5), an explosion (.repro) or the folder of a "
-      "run");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), or a recording (.h5), an explosion (.repro) or the "
+      "folder of a run");
   add_text(command, "--size", options->size, "Size of the window (default: last size, or 1280x720)", "WIDTHxHEIGHT")
       .in_group("Window");
   add_choice(command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")

@@ -25,7 +25,7 @@ class RobotInputs {
  public:
   // Adds the argument ROBOTS and the options below to a command. The object must outlive it.
   void add_to(const Command& command,
-              const std::string& description = "Robot files (.json, .cbor) and folders of them");
+              const std::string& description = "Robot files (.json, .cbor), folders, samples (sample:eel)");
   // Adds --recursive and --keep-going alone.
   void add_options_to(const Command& command);
 

@@ -58,7 +58,9 @@ std::optional<std::filesystem::path> RobotOptions::repro() const {
 }
 
 void RobotOptions::require_robots() const {
-  if (empty()) throw InputError("no robots given; name files or folders, or use --random " + generator_kinds(":12"));
+  if (empty())
+    throw InputError("no robots given; name files, folders or samples (sample:eel), or use --random " +
+                     generator_kinds(":12"));
 }
 
 std::vector<Robot> RobotOptions::random_robots(const RandomRobots& request) const {

@@ -55,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"NoValue", with({"--dt"}), "--dt: needs a value; see mercury run --help"},
         BadInput{"NoRobots",
                  {"run"},
-                 "no robots given; name files or folders, or use --random voxel:12, nn:12, shell:12 or cppn:12"},
+                 "no robots given; name files, folders or samples (sample:eel), or use --random voxel:12, nn:12, "
+                 "shell:12 or cppn:12"},
         BadInput{"UnknownKind",
                  {"run", "--random", "fish:2"},
                  "--random: \"fish\" is not a kind of robot; give voxel:N, nn:N, shell:N or cppn:N"},
