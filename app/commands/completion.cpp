@@ -239,8 +239,11 @@ _mercury_offers() {{
 }
 
 _mercury() {
-  local sample=
+  local sample= others
   _mercury_offers
+  # The colon of a sample would be escaped as in the name of a file.
+  others="${COMPREPLY[*]##sample:*}"
+  if [[ -z ${others// } ]]; then compopt +o filenames 2> /dev/null; fi
   if [[ $sample ]]; then COMPREPLY=("${COMPREPLY[@]#sample:}"); fi
 }
 complete -F _mercury mercury
