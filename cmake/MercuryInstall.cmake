@@ -10,16 +10,15 @@ if(TARGET mercury)
   target_link_options(mercury PRIVATE LINKER:--disable-new-dtags)
   install(TARGETS mercury RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
-# They are there once the target `all` was built.
-if(TARGET mercury_descriptions)
+if(TARGET mercury AND NOT CMAKE_CROSSCOMPILING)  # the program writes them when it is linked (app/commands)
   install(DIRECTORY ${PROJECT_BINARY_DIR}/descriptions/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
-    COMPONENT program OPTIONAL FILES_MATCHING PATTERN "*.1")
+    COMPONENT program FILES_MATCHING PATTERN "*.1")
   install(FILES ${PROJECT_BINARY_DIR}/descriptions/mercury
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program OPTIONAL)
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
   install(FILES ${PROJECT_BINARY_DIR}/descriptions/_mercury
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program OPTIONAL)
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program)
   install(FILES ${PROJECT_BINARY_DIR}/descriptions/mercury.fish
-    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program OPTIONAL)
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
 endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/robots/library)
   install(DIRECTORY robots/library/ DESTINATION ${CMAKE_INSTALL_DATADIR}/mercury/robots COMPONENT program

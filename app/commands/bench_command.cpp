@@ -307,17 +307,21 @@ void add_bench_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<BenchOptions>();
   const Command command = program.add_command("bench", "Measure springs evaluated per second");
   add_value(command, "--size", options->size, "Size of a robot in voxels; each voxel has a random material", "XxYxZ",
-            [](const std::string& name, const std::string& text) { return sizes_from(name, text, 3, "XxYxZ"); });
+            [](const std::string& name, const std::string& text) { return sizes_from(name, text, 3, "XxYxZ"); })
+      .on_first_screen();
   add_number(command, "--count", options->count,
-             "Number of robots (default: several times what the device steps at once)", "N");
+             "Number of robots (default: several times what the device steps at once)", "N")
+      .on_first_screen();
   add_number(command, "--seed", options->seed, "Seed of the robots", "S");
   add_number(command, "--least-seconds", options->least_seconds, "Shortest time to measure, after a warm-up",
              "SECONDS");
-  command.add_flag("--json", options->json, "Print JSON instead of a table");
-  command.add_flag(
-      "--sweep", options->sweep,
-      "Measure 1, 2, 4, ... robots, until a GPU is full, a quarter of a CPU's memory, or --count is reached");
-  add_text(command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)", "FILE");
+  command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
+  command
+      .add_flag("--sweep", options->sweep,
+                "Measure 1, 2, 4, ... robots, until a GPU is full, a quarter of a CPU's memory, or --count is reached")
+      .on_first_screen();
+  add_text(command, "--csv", options->csv, "Also write the measurements to this file (bench/plot.py draws it)", "FILE")
+      .on_first_screen();
   options->output.add_force_to(command);
   options->simulation.add_to(command);
   command.set_footer(

@@ -15,7 +15,7 @@ namespace {
 // An option of that name of a command or of one below it; no two of them differ in whether they take a value.
 std::optional<Option> find_option(const Command& command, const std::string& name) {
   if (const std::optional<Option> own = command.find_option(name)) return own;
-  for (const Command& child : command.commands(true))
+  for (const Command& child : command.commands())
     if (const std::optional<Option> found = find_option(child, name)) return found;
   return std::nullopt;
 }
@@ -32,7 +32,7 @@ class Reordering {
 
   CommandLine result() {
     Command command = program_;
-    while (!command.commands(true).empty()) {
+    while (!command.commands().empty()) {
       take_options();
       if (place_ == given_.size()) break;
       const std::optional<Command> child = command.find_command(given_[place_]);
@@ -40,7 +40,7 @@ class Reordering {
       words_.push_back(given_[place_++]);
       command = *child;
     }
-    if (!command.commands(true).empty() && !asks_for_help()) throw no_command(command);
+    if (!command.commands().empty() && !asks_for_help()) throw no_command(command);
     CommandLine line{.command = command, .words = words_.size(), .arguments = words_};
     line.arguments.insert(line.arguments.end(), before_.begin(), before_.end());
     line.arguments.insert(line.arguments.end(), given_.begin() + static_cast<std::ptrdiff_t>(place_), given_.end());
@@ -85,8 +85,10 @@ class Reordering {
 }  // namespace
 
 CommandLine command_line(const Command& program, std::vector<std::string> arguments) {
-  const bool asks_to_explain =
-      !arguments.empty() && arguments.front() == "help" && std::ranges::find(arguments, "--help") == arguments.end();
+  // But "help -h" and "help --help" are about the word itself.
+  const bool asks_to_explain = !arguments.empty() && arguments.front() == "help" &&
+                               !(arguments.size() > 1 && arguments[1] == "-h") &&
+                               std::ranges::find(arguments, "--help") == arguments.end();
   if (asks_to_explain) {
     arguments.erase(arguments.begin());
     arguments.emplace_back("--help");
@@ -108,7 +110,7 @@ std::vector<std::string> names_of_options(const Command& command, bool below) {
   for (const Option& option : command.options())
     for (const std::string& name : option.long_names()) names.push_back(name);
   if (below)
-    for (const Command& child : command.commands(true)) {
+    for (const Command& child : command.commands()) {
       const std::vector<std::string> more = names_of_options(child, true);
       names.insert(names.end(), more.begin(), more.end());
     }

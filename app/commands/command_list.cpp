@@ -86,6 +86,7 @@ OptionDescription description_of(const Option& option) {
   found.help = option.help();
   found.group = option.group();
   found.required = option.is_required();
+  found.first_screen = option.is_on_first_screen() || found.required;
   if (!option.takes_value()) {
     found.kind = "switch";
     return found;

@@ -20,8 +20,9 @@ struct OptionDescription {
   std::vector<std::string> extensions;  // ".json"; of files that are read or written. Empty = any
   std::string help, group;
   bool positional = false, required = false;
-  bool repeatable = false;  // each occurrence counts; otherwise the last one
-  bool many = false;        // takes several values: ROBOTS ...
+  bool repeatable = false;    // each occurrence counts; otherwise the last one
+  bool many = false;          // takes several values: ROBOTS ...
+  bool first_screen = false;  // -h shows it
 };
 
 struct CommandDescription {
@@ -36,7 +37,7 @@ struct CommandDescription {
 // The explanation and examples below the help of a command; CLI11 passes those of the program on to commands without.
 std::string footer_of(const Command& command);
 
-// The program, its commands and the kinds of each, parents first. Leaves out hidden commands.
+// The program, its commands and the kinds of each, parents first.
 std::vector<CommandDescription> command_list(const Command& program);
 
 OptionDescription description_of(const Option& option);

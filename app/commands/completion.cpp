@@ -133,7 +133,7 @@ std::string zsh_action(const OptionDescription& option) {
   if (option.kind == "folder") files = "_files -/";
   if (option.kind == "program") files = "_command_names -e";
   if (option.choices.empty()) return files.empty() ? " " : files;
-  const std::string words = fmt::format("{}", fmt::join(option.choices, " "));
+  const std::string words = replaced(fmt::format("{}", fmt::join(option.choices, " ")), ":", "\\:");
   return files.empty() ? "(" + words + ")" : "{compadd " + words + "; " + files + "}";
 }
 
@@ -207,7 +207,7 @@ _mercury_files() {{
   for ending; do COMPREPLY+=($(compgen -f -X "!*.$ending" -- "$cur")); done
 }}
 
-_mercury() {{
+_mercury_offers() {{
   local cur=${{COMP_WORDS[COMP_CWORD]}} option=${{COMP_WORDS[COMP_CWORD-1]}} command= word i
   COMPREPLY=()
   # The words of the command, of which values of options are none.
@@ -224,13 +224,30 @@ _mercury() {{
   if [[ $cur == = ]]; then cur=
   elif [[ $option == = ]]; then option=${{COMP_WORDS[COMP_CWORD-2]}}
   fi
+  # It splits sample:eel, too, and replaces what follows the colon.
+  if [[ $cur == : && $option == sample ]]; then cur=sample: sample=yes option=${{COMP_WORDS[COMP_CWORD-2]}}
+  elif [[ $option == : && ${{COMP_WORDS[COMP_CWORD-2]}} == sample ]]; then
+    cur=sample:$cur sample=yes option=${{COMP_WORDS[COMP_CWORD-3]}}
+  fi
   case "$command $option" in
 {}  esac
   case "$command" in
 )",
                   fmt::join(names_with_values(commands), " | "), word_patterns(commands), bash_values(commands));
   for (const CommandDescription& command : commands) text += bash_command(command, commands);
-  return text + "  esac\n}\ncomplete -F _mercury mercury\n";
+  return text + R"(  esac
+}
+
+_mercury() {
+  local sample= others
+  _mercury_offers
+  # The colon of a sample would be escaped as in the name of a file.
+  others="${COMPREPLY[*]##sample:*}"
+  if [[ -z ${others// } ]]; then compopt +o filenames 2> /dev/null; fi
+  if [[ $sample ]]; then COMPREPLY=("${COMPREPLY[@]#sample:}"); fi
+}
+complete -F _mercury mercury
+)";
 }
 
 std::string zsh_completion(const std::vector<CommandDescription>& commands) {

@@ -53,7 +53,8 @@ void add_cross_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("cross", "Make children of two robots of one kind");
   options->robots.add_to(command, "Two robot files (.json, .cbor)");
   options->output.add_to(command, "How many children (default 1)");
-  add_text(command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: FIRST-x0, ...)", "NAME");
+  add_text(command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: FIRST-x0, ...)", "NAME")
+      .on_first_screen();
   command.set_footer(
       "Body and muscles are mixed; size and environment are those of the first robot. A child differs from its "
       "parents\n"

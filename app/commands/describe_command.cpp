@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury describe-options: what the program accepts, for other programs and for the build, which makes man pages and
-// completion with it. The help does not show it.
+// completion with it.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -44,7 +44,6 @@ int describe(const DescribeOptions& options, const Command& program) {
 void add_describe_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<DescribeOptions>();
   const Command command = program.add_command("describe-options", "Print all commands and options, for other programs");
-  command.hide();
   add_choice(command, "FORM", options->form, {"json", "bash", "zsh", "fish", "man"},
              "A list, a completion script, or manual pages")
       .required();

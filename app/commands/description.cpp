@@ -9,17 +9,9 @@
 
 namespace mercury {
 
-namespace {
+void print_heading(const std::string& text) { fmt::print("{}\n", printable(text)); }
 
-constexpr std::size_t longest = 10'000;  // of a line [bytes]
-
-}  // namespace
-
-void print_heading(const std::string& text) { fmt::print("{}\n", printable(text, longest)); }
-
-void print_line(const std::string& what, const std::string& text) {
-  fmt::print("  {:<12}{}\n", what, printable(text, longest));
-}
+void print_line(const std::string& what, const std::string& text) { fmt::print("  {:<12}{}\n", what, printable(text)); }
 
 std::string environment_text(const Configuration& configuration) {
   std::string text(name_of(configuration.environment));

@@ -27,6 +27,7 @@
 #include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
+#include "mercury/quantity.h"
 #include "mercury/run_folder.h"
 #include "mercury/shards.h"
 
@@ -289,7 +290,7 @@ void add_evolve_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<EvolveOptions>();
   const Command command = program.add_command("evolve", "Evolve robots; every ancestor is kept, and a run can go on");
   add_text(command, "RUN", options->folder, "The folder of the run", "FOLDER").required();
-  command.add_flag("--resume", options->resume, "Go on with the run in the folder");
+  command.add_flag("--resume", options->resume, "Go on with the run in the folder").on_first_screen();
   command.add_flag("--prepare", options->prepare, "Make the folder of a run, for --shard").in_group("Several hosts");
   add_text(command, "--shard", options->shard, "Try part I of N of the next generation, into a file of the folder",
            "I/N")
@@ -298,6 +299,7 @@ void add_evolve_command(const Command& program, const Choose& choose) {
   options->output.add_to(command);
   options->run.add_to(command);
   command.set_footer(
+      fmt::format("Quantities of a trial, for formulas and axes: {}.\n\n", fmt::join(names_of_quantities(), ", ")) +
       "A run that was stopped, by Ctrl-C or by a power cut, goes on with --resume as if it had never stopped.\n"
       "docs/evolution.md explains algorithms, genomes and the files of the folder.\n\n"
       "Examples:\n"

@@ -217,17 +217,21 @@ void add_export_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("export", "Write robots and motions as files of other programs");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor) and folders of them, or a recording (.h5) for motions");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), or a recording (.h5) for motions");
   add_text(command, "-o,--output", options->path,
            "A file, whose extension says the format, or a folder for one file per robot", "FILE|FOLDER")
       .required();
-  add_choice(command, "--format", options->format, format_words(),
-             "The format (default: that of the file's extension)");
-  add_text(command, "--robot", options->robot, "One robot of several: its name, or its number from 0", "NAME|N");
-  add_number(command, "--from", options->range.from, "First moment of a recording (default: its first frame)", "S");
-  add_number(command, "--to", options->range.to, "Last moment of a recording (default: its last frame)", "S");
+  add_choice(command, "--format", options->format, format_words(), "The format (default: that of the file's extension)")
+      .on_first_screen();
+  add_text(command, "--robot", options->robot, "One robot of several: its name, or its number from 0", "NAME|N")
+      .on_first_screen();
+  add_number(command, "--from", options->range.from, "First moment of a recording (default: its first frame)", "S")
+      .on_first_screen();
+  add_number(command, "--to", options->range.to, "Last moment of a recording (default: its last frame)", "S")
+      .on_first_screen();
   add_number(command, "--every", options->every, "Every N-th frame of a recording (default 1)", "N");
-  add_number(command, "--still", options->still, "The pose at this moment of a recording rather than a motion", "S");
+  add_number(command, "--still", options->still, "The pose at this moment of a recording rather than a motion", "S")
+      .on_first_screen();
   command.add_flag("--springs", options->springs,
                    fmt::format("Also the springs as lines, in {}", format_names([](const ExportFormat& format) {
                                  return format.springs == ExportFormat::Springs::if_asked;
@@ -238,7 +242,7 @@ void add_export_command(const Command& program, const Choose& choose) {
       "A robot file gives the robot at rest. A motion comes from a recording of mercury run --record. All files have\n"
       "meters and z up; a .glb file turns the robot, since glTF has y up. The names of the files are printed.\n\n"
       "Examples:\n"
-      "  mercury export eel.json -o eel.glb\n"
+      "  mercury export sample:eel -o eel.glb\n"
       "  mercury export my-robots --format stl -o printed/\n"
       "  mercury export run.h5 --robot 0 -o swim.pvd          for ParaView\n"
       "  mercury export run.h5 --still 2 --format vtu -o moments/",

@@ -85,17 +85,6 @@ bool is_kind(const std::string& group) {
   return std::ranges::any_of(generators(), [&](const Generator& generator) { return generator.title == group; });
 }
 
-// Groups that a brief page leaves out: kinds of random robots, if the command takes all of them, and what is tuned
-// rarely.
-std::vector<std::string> rare_groups(const std::vector<std::string>& groups) {
-  std::vector<std::string> kinds, rare;
-  for (const Generator& generator : generators())
-    if (std::ranges::find(groups, generator.title) != groups.end()) kinds.emplace_back(generator.title);
-  if (kinds.size() > 1) rare = kinds;
-  rare.insert(rare.end(), {"Environment", "Several hosts"});
-  return rare;
-}
-
 }  // namespace
 
 std::vector<std::string> groups_of(const std::vector<OptionDescription>& options) {
@@ -142,20 +131,18 @@ std::string help_page(const Command& command, bool brief, int columns) {
     if (option.positional) page += entry(option, width);
   if (!commands.empty()) page += "\nCommands:\n";
   for (const std::string& child : commands) page += entry(child, command.find_command(child)->help(), width);
-  const std::vector<std::string> groups = groups_of(options), rare = rare_groups(groups);
-  std::size_t left_out = 0;
-  for (const std::string& group : groups) {
-    const bool shown = !brief || std::ranges::find(rare, group) == rare.end();
-    if (shown) page += "\n" + group + ":\n";
-    for (const OptionDescription& option : options) {
-      if (option.positional || option.group != group) continue;
-      if (shown)
-        page += entry(option, width);
-      else
-        ++left_out;
-    }
+  if (brief) {
+    std::string most_used;
+    for (const OptionDescription& option : options)
+      if (!option.positional && option.first_screen) most_used += entry(option, width);
+    if (!most_used.empty()) page += "\nMost used options:\n" + most_used;
+    return page + fmt::format("\n{} --help shows all\n", name);
   }
-  if (left_out > 0) page += fmt::format("\n{} more options: {} --help\n", left_out, name);
+  for (const std::string& group : groups_of(options)) {
+    page += "\n" + group + ":\n";
+    for (const OptionDescription& option : options)
+      if (!option.positional && option.group == group) page += entry(option, width);
+  }
   if (const std::string footer = command.footer(); !footer.empty()) page += "\n" + footer_page(footer, width);
   return page;
 }

@@ -11,7 +11,8 @@
 namespace mercury {
 
 // Usage, arguments, options by group, explanation and examples, in lines of at most `columns` letters; only words and
-// examples that are longer stand out. `brief` leaves out the groups that few need and says how to see them.
+// examples that are longer stand out. A `brief` page is one screen: usage, arguments, the options that are declared
+// on_first_screen(), and how to see the rest.
 std::string help_page(const Command& command, bool brief, int columns);
 
 // Titles of groups of options in the order of the page: what belongs to this command alone first, what all have last.

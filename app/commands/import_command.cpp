@@ -281,15 +281,17 @@ void add_import_command(const Command& program, const Choose& choose) {
       .required();
   add_choice(command, "--format", options->format, {"json", "cbor"}, "Of the robot files (default json)");
   add_text(command, "--base", options->base,
-           "File that a .vxd or .rsc builds on (default: base.vxa or env.rsc beside it)", "FILE");
+           "File that a .vxd or .rsc builds on (default: base.vxa or env.rsc beside it)", "FILE")
+      .on_first_screen();
   add_number(command, "--depth", options->reading.depth, "Thickness of flat robots of EvoGym in voxels (default 1)",
              "N");
   add_number(command, "--materials", options->reading.most_materials,
              "Most materials of a robot; with 22 or fewer its body can mutate and evolve (default 255)", "N");
-  command.add_flag("--recursive", options->recursive, "Also import the folders inside folders");
-  command.add_flag("--keep-going", options->keep_going, "Report files that cannot be used, and go on (exit status 1)");
+  command.add_flag("--recursive", options->recursive, "Also import the folders inside folders").on_first_screen();
+  command.add_flag("--keep-going", options->keep_going, "Report files that cannot be used, and go on (exit status 1)")
+      .on_first_screen();
   command.add_flag("--brief", options->brief, "Print no line per element");
-  command.add_flag("--json", options->json, "Print the report as JSON instead of a table");
+  command.add_flag("--json", options->json, "Print the report as JSON instead of a table").on_first_screen();
   options->outputs.add_to(command);
   command.set_footer(
       "Writes each robot as a robot file and, beside it, its world as a configuration (NAME.toml: environment, "

@@ -268,9 +268,10 @@ void add_info_command(const Command& program, const Choose& choose) {
   options->robots.add_to(command,
                          "Robot files (.json, .cbor), folders of them, recordings (.h5), explosions (.repro), scenes "
                          "(.toml), runs of mercury evolve");
-  command.add_flag("--json", options->json, "Print JSON instead of text");
+  command.add_flag("--json", options->json, "Print JSON instead of text").on_first_screen();
   add_text(command, "--ffmpeg", options->ffmpeg, "The video encoder to check (default: MERCURY_FFMPEG, else ffmpeg)",
-           "PROGRAM");
+           "PROGRAM")
+      .on_first_screen();
   command.when_chosen([options, choose] { choose([options] { return options->robots.status(info(*options)); }); });
 }
 

@@ -60,11 +60,13 @@ void add_mutate_command(const Command& program, const Choose& choose) {
   options->robots.add_to(command);
   options->output.add_to(command, "Children of each robot (default 1)");
   add_number(command, "--strength", options->mutation.strength,
-             "How much bodies change: 1 = a little, as in a search (default 1); 0 = not at all", "X");
+             "How much bodies change: 1 = a little, as in a search (default 1); 0 = not at all", "X")
+      .on_first_screen();
   add_number(command, "--muscles", options->mutation.muscles,
-             "How much amplitudes, frequencies and phases of muscles change (default 0)", "X");
-  add_text(command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: PARENT-m0, ...)",
-           "NAME");
+             "How much amplitudes, frequencies and phases of muscles change (default 0)", "X")
+      .on_first_screen();
+  add_text(command, "--name", options->name, "Children are named NAME-0, NAME-1, ... (default: PARENT-m0, ...)", "NAME")
+      .on_first_screen();
   command.set_footer(
       "A child differs from its parent and from the other children. The same files, options and seed give the same\n"
       "children on every machine. Their origin names the parent and the seed. The names of the files are printed.\n\n"

@@ -26,6 +26,7 @@
 #include "evolution/distribution/launcher.h"
 #include "mercury/error.h"
 #include "mercury/names.h"
+#include "robots/file/document.h"
 
 namespace mercury {
 namespace {
@@ -38,7 +39,7 @@ constexpr const char* footer =
     "  mercury run --random voxel:64 --seconds 2          simulate and print the results\n"
     "  mercury new voxel --count 10 -o my-robots          make robot files\n"
     "  mercury run my-robots --environment land           simulate them on land\n"
-    "  mercury export eel.json -o eel.glb                 a robot for other programs\n"
+    "  mercury export sample:eel -o eel.glb               a robot for other programs\n"
     "  mercury info                                       what this machine can do\n"
     "  mercury help render                                all options of a command\n\n"
     "Exit status: 0 = done; 1 = the work failed, or robots were left out; 2 = the input cannot be used;\n"
@@ -53,12 +54,17 @@ bool launcher_ends_all() {
   return interrupted();
 }
 
-// Among the processes of an MPI launcher, all come upon the same mistake of the user, and the first reports it.
-void print_message(const std::string& message) {
+// One line: "mercury: eel.json: ...", or as JSON {"error": {"message": "eel.json: ...", "exit": 2}}. Among the
+// processes of an MPI launcher, all come upon the same mistake of the user, and the first reports it.
+void print_error(const std::string& message, int status, bool as_json) {
   const int rank = rank_by_launcher();
   if (rank > 0 && launcher_ends_all()) return;
-  const std::string place = rank > 0 ? fmt::format("rank {}: ", rank) : "";
-  warn(place + message);
+  const std::string text = (rank > 0 ? fmt::format("rank {}: ", rank) : "") + message;
+  if (as_json)
+    write_to_standard_error(
+        fmt::format("{{\"error\": {{\"message\": {}, \"exit\": {}}}}}\n", json_text(printable(text)), status));
+  else
+    warn(text);
 }
 
 // Values of text options that may be empty. For all others an empty text is a mistake: a variable that a script did not
@@ -91,6 +97,7 @@ class Program {
 
   int run(std::vector<std::string> arguments) {
     const auto start = std::chrono::steady_clock::now();
+    errors_as_json_ = std::ranges::find(arguments, "--json") != arguments.end();
     try {
       parse(std::move(arguments));
       if (body_) say_detail(fmt::format("{}: {}", program_version, command_->full_name()));
@@ -104,16 +111,13 @@ class Program {
     } catch (const InputError& error) {
       return refuse(error.what());
     } catch (const Interrupted&) {
-      say("stopped");
-      return stopped_status();
+      return errors_as_json_ ? fail("stopped", stopped_status()) : (say("stopped"), stopped_status());
     } catch (const std::system_error& error) {
       // A result that was longer than the buffer fails while it is printed.
-      print_message(std::ferror(stdout) ? "standard output cannot be written: " + reason_of(error.code().value())
-                                        : error_text(error));
-      return interrupted() ? stopped_status() : status_failed;
+      return fail(std::ferror(stdout) ? "standard output cannot be written: " + reason_of(error.code().value())
+                                      : error_text(error));
     } catch (const std::exception& error) {
-      print_message(error_text(error));
-      return interrupted() ? stopped_status() : status_failed;
+      return fail(error_text(error));
     }
   }
 
@@ -132,7 +136,7 @@ class Program {
     add(command.add_version_option("-V,--version", program_version, "Print the version"));
     add(command.add_flag("-q,--quiet", quiet_, "Print only errors and warnings on standard error"));
     add(command.add_flag("-v,--verbose", verbose_, "Say in detail what is done, with times"));
-    const std::vector<Command> children = command.commands(true);
+    const std::vector<Command> children = command.commands();
     if (children.empty())
       add(add_text(command, "--config", config_path_,
                    "Read options from a TOML file; the command line overrides them (docs/command-line.md)",
@@ -142,8 +146,15 @@ class Program {
 
   int refuse(const std::string& message) const {
     const std::string helpful = command_ ? with_suggestion(message, *command_) : message;
-    print_message(located(config_ ? config_->located(helpful) : helpful));
-    return status_bad_input;
+    return fail(located(config_ ? config_->located(helpful) : helpful), status_bad_input);
+  }
+
+  int fail(const std::string& message) const { return fail(message, interrupted() ? stopped_status() : status_failed); }
+
+  // Reports an error and returns the exit status.
+  int fail(const std::string& message, int status) const {
+    print_error(message, status, errors_as_json_);
+    return status;
   }
 
   // With the line of the scene if the error names an option that came from there.
@@ -200,6 +211,7 @@ class Program {
       config_.emplace(path, tree_.root(), command, arguments);
       arguments.insert(arguments.begin() + static_cast<std::ptrdiff_t>(words), config_->arguments().begin(),
                        config_->arguments().end());
+      errors_as_json_ |= std::ranges::find(config_->arguments(), "--json") != config_->arguments().end();
     }
     expand_scene(command, words, arguments);
     require_values(command, arguments);
@@ -290,7 +302,8 @@ class Program {
   std::optional<SceneFile> scene_;
   std::vector<std::string> scene_options_;  // "--dt=0.002": those that the command took from the scene
   bool quiet_ = false, verbose_ = false;
-  std::string config_path_;  // config_path_in() reads it earlier
+  bool errors_as_json_ = false;  // --json was given
+  std::string config_path_;      // config_path_in() reads it earlier
   std::vector<std::string> words_of_help_;
 };
 
@@ -302,7 +315,7 @@ int run_program(const std::vector<std::string>& arguments) {
   try {
     return Program().run(arguments);
   } catch (const std::exception& error) {
-    print_message(error_text(error));
+    print_error(error_text(error), status_failed, false);
     return status_failed;
   }
 }

@@ -201,7 +201,7 @@ void add_render_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor) and folders of them, or a recording (.h5), or the folder of a run");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), a recording (.h5), or a run");
   options->video.add_to(command);
   options->view.add_to(command);
   options->film.add_to(command);

@@ -348,11 +348,13 @@ void add_run_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("run", "Simulate robots and print a table or JSON");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor) and folders of them, or an explosion that the window saved (.repro)");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), or an explosion that the window saved (.repro)");
   add_text(command, "--csv", options->csv,
-           "Also write one line per robot to this file; - prints it instead of the table", "FILE");
+           "Also write one line per robot to this file; - prints it instead of the table", "FILE")
+      .on_first_screen();
   add_text(command, "--record", options->record, "Record positions and velocities of all masses (HDF5, H5MD 1.1)",
-           "FILE.h5");
+           "FILE.h5")
+      .on_first_screen();
   add_number(command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
   add_text(command, "--checkpoint", options->checkpoint,
            "Save the run now and then, so that --resume goes on with it after a crash", "FILE.h5");
@@ -361,7 +363,7 @@ void add_run_command(const Command& program, const Choose& choose) {
   command.add_flag("--resume", options->goes_on, "Go on with the run that --checkpoint has saved, bit for bit");
   options->output.add_to(command);
   command.add_flag("--compress", options->compress, "Compress the recording (smaller, but slower)");
-  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
   command.add_flag("--strict", options->strict, "Exit with status 1 if a robot explodes");
   add_trial_options(command, options->trials);
   options->simulation.add_to(command);

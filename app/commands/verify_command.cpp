@@ -13,11 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
 #include "app/commands/commands.h"
 #include "app/options/option_values.h"
+#include "app/options/parameter_options.h"
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
 #include "mercury/simulation.h"
@@ -210,10 +212,7 @@ int run_verify(const VerifyOptions& options) {
   TrajectoryReader recording(options.file);
   if (recording.frames() == 0) throw InputError(options.file, "holds no frames");
   const Verification result = verify(recording, options.device);
-  if (result.frames.empty()) {
-    warn("stopped before the first frame");
-    return 1;
-  }
+  if (result.frames.empty()) throw Interrupted();
   options.json ? print_json(result, recording, options) : print_text(result, recording, options);
   if (result.stopped) warn(fmt::format("stopped at {:.6g} s", result.frames.back().time));
   return !result.stopped && result.same(options.tolerance) ? 0 : 1;
@@ -225,11 +224,22 @@ void add_verify_command(const Command& program, const Choose& choose) {
   auto options = std::make_shared<VerifyOptions>();
   const Command command = program.add_command("verify", "Run a recording again and compare");
   add_text(command, "FILE", options->file, "A recording (.h5)", "FILE.h5").required();
-  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
   add_number(command, "--tolerance", options->tolerance,
-             "Differences of positions that still count as the same (default 0: every bit)", "M");
-  add_value(command, "--device", options->device, "What computes (default: the kind that made the recording)",
-            "auto|cpu|cuda[:N]", [](const std::string&, const std::string& text) { return device_named(text); });
+             "Differences of positions that still count as the same (default 0: every bit)", "M")
+      .on_first_screen();
+  command
+      .add_option(
+          "--device",
+          [&device = options->device](const std::string& text) {
+            const Device named = device_named(text);
+            device.kind = named.kind;
+            device.index = named.index;
+          },
+          "What computes (default: the kind that made the recording)", "auto|cpu|cuda[:N]")
+      .on_first_screen();
+  add_parameters(command, options->device, "Options");
+  command.find_option("--threads")->on_first_screen();
   command.set_footer(
       "Starts at the first frame and compares positions and velocities at all others. On the kind of device that made\n"
       "the recording they are the same bit for bit; elsewhere the table says how far they part. What a program "

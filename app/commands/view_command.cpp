@@ -146,8 +146,8 @@ void add_view_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("view", "Show robots in an interactive window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor) and folders of them, or a recording (.h5), an explosion (.repro) or the folder of a "
-      "run");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), or a recording (.h5), an explosion (.repro) or the "
+      "folder of a run");
   add_text(command, "--size", options->size, "Size of the window (default: last size, or 1280x720)", "WIDTHxHEIGHT")
       .in_group("Window");
   add_choice(command, "--quality", options->quality, {"auto", "low", "medium", "high"}, "Quality of the drawing")
@@ -155,8 +155,9 @@ void add_view_command(const Command& program, const Choose& choose) {
   add_value(command, "--speed", options->speed, "Simulated seconds per second, or max: as fast as possible (default 1)",
             "X|max", speed_from)
       .offering({"max"})
-      .in_group("Window");
-  command.add_flag("--paused", options->paused, "Start paused").in_group("Window");
+      .in_group("Window")
+      .on_first_screen();
+  command.add_flag("--paused", options->paused, "Start paused").in_group("Window").on_first_screen();
   command
       .add_flag("--no-interop", options->no_interop,
                 "Copy positions through the host even where CUDA and OpenGL can share them on the GPU")

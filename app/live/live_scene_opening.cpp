@@ -15,6 +15,7 @@
 #include "mercury/origin.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
+#include "mercury/samples.h"
 
 namespace mercury {
 namespace {
@@ -35,10 +36,18 @@ struct Opened {
   fs::path file;                                // of the repro or recording
 };
 
-// Lists files, and the robot files of folders sorted by name. Reading them reports other kinds of files.
+// Lists files, those of sample robots, and the robot files of folders sorted by name. Reading them reports other kinds
+// of files.
 std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& messages) {
   std::vector<fs::path> files;
-  for (const fs::path& path : paths) {
+  for (const fs::path& given : paths) {
+    fs::path path;
+    try {
+      path = sample_or_path(given);
+    } catch (const InputError& unknown_sample) {
+      messages.add(Severity::error, unknown_sample.what());
+      continue;
+    }
     std::error_code error;
     if (!fs::is_directory(path, error)) {
       files.push_back(path);

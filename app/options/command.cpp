@@ -10,6 +10,24 @@
 #include "app/options/option_values.h"
 
 namespace mercury {
+namespace {
+
+// CLI11 has no place for notes of ours. Its "option text" is for its own help pages, which we do not use: it holds a
+// note per line.
+constexpr std::string_view offers = "offers ", first_screen = "first screen";
+
+void add_note(CLI::Option& option, std::string_view note) {
+  option.option_text(fmt::format("{}{}\n", option.get_option_text(), note));
+}
+
+// The rest of the note that begins so; none if there is no such note.
+std::optional<std::string> note_of(const CLI::Option& option, std::string_view beginning) {
+  for (const std::string_view note : split(option.get_option_text(), '\n'))
+    if (note.starts_with(beginning)) return std::string(note.substr(beginning.size()));
+  return std::nullopt;
+}
+
+}  // namespace
 
 Option Option::in_group(const std::string& heading) const {
   option_->group(heading);
@@ -36,14 +54,18 @@ Option Option::one_value_each() const {
   return *this;
 }
 
-// CLI11 has no place for notes of ours. Its "option text" is for its own help pages, which we do not use.
 Option Option::offering(const std::vector<std::string>& values) const {
-  option_->option_text(fmt::format("offers {}", fmt::join(values, " ")));
+  add_note(*option_, fmt::format("{}{}", offers, fmt::join(values, " ")));
   return *this;
 }
 
 Option Option::as_number(bool whole) const {
-  option_->option_text(whole ? "whole number" : "number");
+  add_note(*option_, whole ? "whole number" : "number");
+  return *this;
+}
+
+Option Option::on_first_screen() const {
+  add_note(*option_, first_screen);
   return *this;
 }
 
@@ -75,15 +97,18 @@ bool Option::takes_several() const {
 
 std::vector<std::string> Option::offered() const {
   std::vector<std::string> values;
-  if (option_->get_option_text().starts_with("offers "))
-    for (const std::string_view value : split(std::string_view(option_->get_option_text()).substr(7), ' '))
-      values.emplace_back(value);
+  if (const std::optional<std::string> words = note_of(*option_, offers))
+    for (const std::string_view value : split(*words, ' ')) values.emplace_back(value);
   return values;
 }
 
 std::string Option::number_kind() const {
-  return option_->get_option_text().ends_with("number") ? option_->get_option_text() : "";
+  for (const char* kind : {"number", "whole number"})
+    if (note_of(*option_, kind)) return kind;
+  return "";
 }
+
+bool Option::is_on_first_screen() const { return note_of(*option_, first_screen).has_value(); }
 
 bool Option::is_given() const { return option_->count() > 0; }
 std::vector<std::string> Option::values() const { return option_->results(); }
@@ -121,7 +146,6 @@ void Command::remove_option(const std::string& name) const { app_->remove_option
 void Command::set_footer(const std::string& text) const { app_->footer(text); }
 void Command::when_chosen(std::function<void()> action) const { app_->callback(std::move(action)); }
 void Command::require_command() const { app_->require_subcommand(1); }
-void Command::hide() const { app_->group(""); }
 
 std::string Command::name() const { return app_->get_name(); }
 
@@ -138,8 +162,6 @@ std::string Command::footer() const {
   return above && above->get_footer() == app_->get_footer() ? "" : app_->get_footer();
 }
 
-bool Command::is_hidden() const { return app_->get_group().empty(); }
-
 std::optional<Command> Command::parent() const {
   return app_->get_parent() ? std::optional(Command(*app_->get_parent())) : std::nullopt;
 }
@@ -150,15 +172,14 @@ bool Command::is_within(const Command& other) const {
   return false;
 }
 
-std::vector<Command> Command::commands(bool also_hidden) const {
+std::vector<Command> Command::commands() const {
   std::vector<Command> list;
-  for (CLI::App* child : app_->get_subcommands([](CLI::App*) { return true; }))
-    if (also_hidden || !child->get_group().empty()) list.emplace_back(*child);
+  for (CLI::App* child : app_->get_subcommands([](CLI::App*) { return true; })) list.emplace_back(*child);
   return list;
 }
 
 std::optional<Command> Command::find_command(const std::string& name) const {
-  for (const Command& child : commands(true))
+  for (const Command& child : commands())
     if (child.name() == name) return child;
   return std::nullopt;
 }

@@ -32,6 +32,8 @@ class Option {
   // beside those that its form names, or what kind of number it takes.
   Option offering(const std::vector<std::string>& values) const;
   Option as_number(bool whole) const;
+  // Most users need it: -h shows it. --help shows all options.
+  Option on_first_screen() const;
 
   bool is_positional() const;
   std::string name() const;                      // without dashes; the long one if there is one
@@ -46,6 +48,7 @@ class Option {
   bool takes_several() const;  // values, one after another
   std::vector<std::string> offered() const;
   std::string number_kind() const;  // "number", "whole number" or empty
+  bool is_on_first_screen() const;
 
   // What the parsed command line gave.
   bool is_given() const;
@@ -75,16 +78,14 @@ class Command {
   void set_footer(const std::string& text) const;
   void when_chosen(std::function<void()> action) const;
   void require_command() const;  // one of those below it must be given
-  void hide() const;             // from help
 
   std::string name() const;
   std::string full_name() const;  // "mercury new voxel"
   std::string help() const;
   std::string footer() const;  // of its own
-  bool is_hidden() const;
   std::optional<Command> parent() const;
   bool is_within(const Command& other) const;  // is it, or is below it
-  std::vector<Command> commands(bool also_hidden = false) const;
+  std::vector<Command> commands() const;
   std::optional<Command> find_command(const std::string& name) const;
   std::vector<Option> options() const;
   // By "--dt", "-o" or "ROBOTS".

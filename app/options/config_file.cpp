@@ -16,6 +16,7 @@
 
 #include "mercury/error.h"
 #include "mercury/names.h"
+#include "mercury/samples.h"
 
 namespace mercury {
 namespace {
@@ -25,7 +26,7 @@ void collect_keys(const Command& command, std::vector<std::string>& keys) {
   for (const Option& option : command.options())
     for (const std::string& name : option.long_names())
       if (name != "--config" && name != "--help" && name != "--version") keys.push_back(name.substr(2));
-  for (const Command& child : command.commands(true)) collect_keys(child, keys);
+  for (const Command& child : command.commands()) collect_keys(child, keys);
 }
 
 // A scalar as written on the command line; empty for other nodes.
@@ -124,7 +125,7 @@ void ConfigFile::take_scene(Table& table) {
       const auto name = file.value<std::string>();
       if (!name || name->empty() || name->find('\0') != std::string::npos)
         throw InputError(where(file), "robots must be a list of files, each a text that is not empty");
-      const std::string relative = (folder / *name).string();
+      const std::string relative = (folder / sample_or_path(*name)).string();
       robots_.push_back(relative.starts_with("-") ? "./" + relative : relative);
     }
   }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include "app/base/version.h"
@@ -14,6 +15,7 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
+#include "mercury/samples.h"
 
 namespace mercury {
 namespace {
@@ -24,6 +26,13 @@ std::vector<std::string> names_of_algorithms() {
   std::vector<std::string> names;
   for (const AlgorithmDescription& algorithm : algorithms()) names.emplace_back(algorithm.name);
   return names;
+}
+
+// What --from may begin with, beside paths.
+std::vector<std::string> words_of_from() {
+  std::vector<std::string> words = names_of_kinds();
+  std::ranges::copy(sample_names(), std::back_inserter(words));
+  return words;
 }
 
 // "masses", "masses:20:120" or "masses:20:120:8"
@@ -59,9 +68,10 @@ void EvolutionOptions::add_to(const Command& command) {
                 fmt::format("What evolves: a kind of robot ({}) and its size, or robot files and folders "
                             "to start from (default voxel)",
                             generator_kinds()))
-      .offering(names_of_kinds())
+      .offering(words_of_from())
       .with_form("KIND[:SIZE]|PATH...")
-      .in_group(search_group);
+      .in_group(search_group)
+      .on_first_screen();
   founder_files_.add_options_to(command);
   add_choice(command, "--genes", genes_, {"body", "muscles", "both"}, "What changes (default body)")
       .in_group(search_group);
@@ -69,16 +79,19 @@ void EvolutionOptions::add_to(const Command& command) {
             "Algorithm (default afpo; nsga2 with several objectives, map-elites with --axis)",
             fmt::format("{}", fmt::join(names_of_algorithms(), "|")),
             [](const std::string&, const std::string& text) { return text; })
-      .in_group(search_group);
-  repeated("--objective", objectives_,
-           fmt::format("Formula to maximize (default distance); several give a front. Quantities: {}",
-                       fmt::join(names_of_quantities(), ", ")),
-           "FORMULA")
-      .offering(names_of_quantities());
+      .in_group(search_group)
+      .on_first_screen();
+  repeated(
+      "--objective", objectives_,
+      "Formula of quantities to maximize, as in \"distance - 0.01 * work\" (default distance); several give a front",
+      "FORMULA")
+      .offering(names_of_quantities())
+      .on_first_screen();
   repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]")
       .offering(names_of_quantities());
   add_parameters(command, given_.algorithm, search_group);
   add_parameters(command, given_, search_group);
+  for (const char* name : {"--population", "--generations"}) command.find_option(name)->on_first_screen();
   add_trial_options(command, given_.trials);
   add_evolution_trial_options(command, given_.trials);
   simulation_.add_to(command);
@@ -113,7 +126,8 @@ GenomeSpaceRequest EvolutionOptions::space(std::vector<std::string>& paths) cons
 
 std::vector<Robot> EvolutionOptions::founders(const std::vector<std::string>& paths) const {
   std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path path : paths) {
+  for (const std::string& given : paths) {
+    const std::filesystem::path path = sample_or_path(given);
     if (path != standard_input && !std::filesystem::exists(path))
       throw InputError("--from", fmt::format("\"{}\" is neither a file or folder nor a kind of robot ({})",
                                              path.string(), generator_kinds()));

@@ -12,6 +12,7 @@ namespace mercury {
 
 std::string option_of(std::string_view parameter) {
   if (parameter == "output") return "-o";
+  if (parameter == "axes") return "--axis";  // given once per axis
   std::string option = "--";
   for (const char letter : parameter) {
     option += letter == '_' ? '-' : letter;

@@ -18,7 +18,7 @@
 namespace mercury {
 
 // The option of a parameter that a library names: "--drag-coefficient" of "drag_coefficient"; also of several, joined
-// with ", ". That of "output" is "-o".
+// with ", ". That of "output" is "-o", that of "axes" "--axis".
 std::string option_of(std::string_view parameter);
 // The option of a switch: "--no-self-collision" if it is on by default.
 std::string switch_of(std::string_view parameter, bool is_on_by_default);

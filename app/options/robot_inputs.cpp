@@ -18,6 +18,7 @@
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/robot_file.h"
+#include "mercury/samples.h"
 
 namespace mercury {
 namespace {
@@ -57,7 +58,9 @@ std::vector<Robot> robots_in(const fs::path& file) {
 }  // namespace
 
 void RobotInputs::add_to(const Command& command, const std::string& description) {
-  command.add_list("ROBOTS", paths_, description + "; - reads robots from standard input").with_form("PATH");
+  command.add_list("ROBOTS", paths_, description + "; - reads robots from standard input")
+      .with_form("PATH")
+      .offering(sample_names());
   add_options_to(command);
 }
 
@@ -65,6 +68,12 @@ void RobotInputs::add_options_to(const Command& command) {
   command.add_flag("--recursive", recursive_, "Also read the folders inside folders").in_group("Robots");
   command.add_flag("--keep-going", keep_going_, "Report files that cannot be used, and go on (exit status 1)")
       .in_group("Robots");
+}
+
+std::vector<fs::path> RobotInputs::paths() const {
+  std::vector<fs::path> paths;
+  for (const std::string& path : paths_) paths.push_back(sample_or_path(path));
+  return paths;
 }
 
 void RobotInputs::leave_out(const std::string& reason) const {

@@ -25,12 +25,12 @@ class RobotInputs {
  public:
   // Adds the argument ROBOTS and the options below to a command. The object must outlive it.
   void add_to(const Command& command,
-              const std::string& description = "Robot files (.json, .cbor) and folders of them");
+              const std::string& description = "Robot files (.json, .cbor), folders, samples (sample:eel)");
   // Adds --recursive and --keep-going alone.
   void add_options_to(const Command& command);
 
-  // As the user gave them.
-  std::vector<std::filesystem::path> paths() const { return {paths_.begin(), paths_.end()}; }
+  // As the user gave them, and the files of sample robots. Throws InputError for an unknown sample.
+  std::vector<std::filesystem::path> paths() const;
   bool empty() const { return paths_.empty(); }
 
   // Reads the robots of files and folders, and of standard input for "-". Shows the progress, and throws Interrupted

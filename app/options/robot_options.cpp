@@ -32,8 +32,11 @@ void RobotOptions::add_to(const Command& command) {
       .offering(names_of_kinds())
       .one_value_each()
       .with_form("KIND:N[:SEED[:FIRST]]")
-      .in_group("Robots");
-  add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N").in_group("Robots");
+      .in_group("Robots")
+      .on_first_screen();
+  add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")
+      .in_group("Robots")
+      .on_first_screen();
   generators_.add_to(command);
 }
 
@@ -55,7 +58,9 @@ std::optional<std::filesystem::path> RobotOptions::repro() const {
 }
 
 void RobotOptions::require_robots() const {
-  if (empty()) throw InputError("no robots given; name files or folders, or use --random " + generator_kinds(":12"));
+  if (empty())
+    throw InputError("no robots given; name files, folders or samples (sample:eel), or use --random " +
+                     generator_kinds(":12"));
 }
 
 std::vector<Robot> RobotOptions::random_robots(const RandomRobots& request) const {

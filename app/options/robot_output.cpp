@@ -39,8 +39,8 @@ std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, st
 
 void RobotOutput::add_to(const Command& command, const std::string& count_help) {
   add_files_to(command);
-  add_number(command, "--count", count_, count_help, "N");
-  add_number(command, "--seed", seed_, "Seed (default 1)", "N");
+  add_number(command, "--count", count_, count_help, "N").on_first_screen();
+  add_number(command, "--seed", seed_, "Seed (default 1)", "N").on_first_screen();
 }
 
 void RobotOutput::add_files_to(const Command& command) {

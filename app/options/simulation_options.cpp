@@ -83,13 +83,15 @@ void SimulationOptions::add_to(const Command& command) {
       "auto|cpu|cuda[:N]"));
   add_parameters(command, given_.device, simulation_group);
   add(add_value(
-      command, "--environment", environment_,
-      "Where the robots live; + adds parts, as in ocean+ground+contacts (default: what they are made for, else ocean)",
-      fmt::format("{}", fmt::join(environment_names(), "|")),
-      [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); }));
+          command, "--environment", environment_,
+          "Where the robots live; + adds parts, as in ocean+ground+contacts (default: what they are made for, else "
+          "ocean)",
+          fmt::format("{}", fmt::join(environment_names(), "|")),
+          [](const std::string&, const std::string& text) { return std::string(name_of(environment_named(text))); })
+          .on_first_screen());
   add(add_value(command, "--solver", given_.solver, "Solver (default force)", "force|xpbd",
                 [](const std::string&, const std::string& text) { return solver_named(text); }));
-  add(add_number(command, "--seconds", seconds_, "Simulated time (default 10)", "S"));
+  add(add_number(command, "--seconds", seconds_, "Simulated time (default 10)", "S").on_first_screen());
   add_parameters(command, given_, simulation_group);
   add_environment_parameters(command);
 }

@@ -35,13 +35,17 @@ void VideoOptions::add_to(const Command& command) {
   add_text(command, "-o,--output", output_,
            "Video (.mp4, .webm, .gif), picture (.png), or a folder for one PNG per frame", "FILE|FOLDER")
       .required();
-  add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from));
-  add(add_number(command, "--fps", frames_per_second_, "Frames per second of video (default 30; 25 for .gif)", "N"));
-  add(add_number(command, "--speed", speed_, "Simulated seconds per second of video (default 1)", "X"));
-  add(add_number(command, "--still", still_, "One picture (.png) of this moment rather than a video", "S"));
+  add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from)
+          .on_first_screen());
+  add(add_number(command, "--fps", frames_per_second_, "Frames per second of video (default 30; 25 for .gif)", "N")
+          .on_first_screen());
+  add(add_number(command, "--speed", speed_, "Simulated seconds per second of video (default 1)", "X")
+          .on_first_screen());
+  add(add_number(command, "--still", still_, "One picture (.png) of this moment rather than a video", "S")
+          .on_first_screen());
   add(add_value(command, "--contact-sheet", contact_sheet_,
                 "Columns and rows of moments of --seconds in one picture (.png), as wide as --size", "CxR", grid_from));
-  add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4"));
+  add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4").on_first_screen());
   add(add_choice(command, "--quality", quality_, {"auto", "low", "medium", "high"},
                  "Quality of the drawing (default auto: high on a GPU, low without)"));
   add(add_choice(command, "--gl", gl_, {"auto", "egl", "mesa", "osmesa"},

@@ -22,7 +22,8 @@ void ViewOptions::add_to(const Command& command) {
   std::vector<std::string> colors;
   for (const ColorQuantity& quantity : color_quantities()) colors.emplace_back(quantity.key);
   add(add_choice(command, "--color", words_.color, std::move(colors),
-                 fmt::format("Color by (default {})", words_.color)));
+                 fmt::format("Color by (default {})", words_.color))
+          .on_first_screen());
   add(add_value(command, "--scale", words_.scale, "Ends of the colors' scale (default: fits)", "LOW,HIGH", range_from));
   std::vector<std::string> maps;
   for (int i = 0; i < render::colormap_count; ++i) maps.emplace_back(render::name_of(static_cast<render::Colormap>(i)));

@@ -285,7 +285,9 @@ void bind_robot(nb::module_& module) {
       .def("__getstate__", &state)
       .def("__setstate__", &restore);
   const std::string documentation =
-      "The Robot of a file (.json, .cbor), or a list of the robots of a folder, sorted by the names of the files. "
+      "The Robot of a file (.json, .cbor) or a sample (\"sample:eel\", where the sources or an installed program have "
+      "them), "
+      "or a list of the robots of a folder, sorted by the names of the files. "
       "Files of " +
       import_sources() +
       " are imported without their worlds; one that holds several robots gives a list. "

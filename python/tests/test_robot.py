@@ -294,6 +294,12 @@ def test_files_give_the_robot_again(tmp_path, extension):
     assert mercurysim.load(str(tmp_path / f"robot.{extension}")).origin == robot.origin
 
 
+def test_samples_have_names():
+    assert mercurysim.load("sample:eel").name == "eel"
+    with pytest.raises(InputError, match="^sample:ell: there is no such sample; give beetle, .*did you mean eel"):
+        mercurysim.load("sample:ell")
+
+
 def test_a_folder_gives_its_robots_sorted_by_file(tmp_path):
     robots = mercurysim.random_voxel(3)
     for robot, name in zip(robots, "cab", strict=True):

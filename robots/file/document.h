@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "mercury/error.h"
+
 namespace mercury {
 
 // A number of a document: a whole number that fits 64 bits, else a real one.
@@ -54,6 +56,10 @@ class DocumentEvents {
 // through.
 void read_json(std::string_view document, DocumentEvents& events);
 void read_cbor(std::string_view document, DocumentEvents& events);
+
+// What nlohmann's parser reports about a JSON document, in our words: "line 3, column 7: not valid JSON: invalid
+// literal". `position` [bytes], `id` and `message` are those of its exception.
+InputError json_error(std::string_view document, std::size_t position, int id, const std::string& message);
 
 // Where the first of several documents ends that follow each other [bytes]. For CBOR, throws InputError for one that
 // breaks off or is none. For JSON, where its brackets are closed; the end of the text if they are not. The document may

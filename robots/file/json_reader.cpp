@@ -12,6 +12,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr int number_overflow = 406;  // of nlohmann's exceptions
+
 // "line 3, column 7" of the last of the first `bytes` bytes.
 std::string place_of(std::string_view document, std::size_t bytes) {
   const std::string_view before = document.substr(0, std::min(bytes, document.size()));
@@ -56,13 +58,10 @@ class Adapter : public nlohmann::json_sax<Json> {
   bool end_array() override { return --depth_, events_.end_array(), true; }
 
   bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
-    constexpr int number_overflow = 406;
     // A number beyond the doubles ends the parse. The receiver knows its place in the document, and throws.
     if (error.id == number_overflow)
       events_.number({.kind = Number::Kind::real, .real = std::numeric_limits<double>::infinity(), .text = token});
-    const bool overflow = error.id == number_overflow;
-    throw InputError(place_of(document_, position),
-                     overflow ? "a number is too large" : "not valid JSON: " + reason_of(error.what()));
+    throw json_error(document_, position, error.id, error.what());
   }
 
  private:
@@ -76,6 +75,11 @@ class Adapter : public nlohmann::json_sax<Json> {
 };
 
 }  // namespace
+
+InputError json_error(std::string_view document, std::size_t position, int id, const std::string& message) {
+  return {place_of(document, position),
+          id == number_overflow ? "a number is too large" : "not valid JSON: " + reason_of(message)};
+}
 
 void read_json(std::string_view document, DocumentEvents& events) {
   // The parser takes a NUL as the end and would ignore what follows.

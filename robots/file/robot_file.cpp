@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "mercury/samples.h"
 #include "robots/file/robot_document.h"
 #include "robots/file/whole_file.h"
 
@@ -101,7 +102,8 @@ std::string serialize_robot(const Robot& robot, RobotFormat format) {
   return document;
 }
 
-Robot load_robot(const std::filesystem::path& path) {
+Robot load_robot(const std::filesystem::path& given) {
+  const std::filesystem::path path = sample_or_path(given);
   std::error_code missing;
   if (!std::filesystem::exists(path, missing) && !missing) throw InputError(path.string(), "No such file or directory");
   const RobotFormat format = robot_format_of(path);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "robots/file/document.h"
 #include "robots/importers/report_builder.h"
 #include "robots/importers/scaling.h"
 
@@ -93,12 +94,10 @@ class EvogymImport {
     };
     try {
       return Json::parse(text, check);
-    } catch (const Json::exception& error) {
-      const std::string message = error.what();
-      const std::size_t reason = message.find("; last read");
-      throw InputError(fmt::format(
-          "not valid JSON: {}",
-          message.substr(message.find("] ") + 2, reason == std::string::npos ? 200 : reason - message.find("] ") - 2)));
+    } catch (const Json::parse_error& error) {
+      throw json_error(text, error.byte, error.id, error.what());
+    } catch (const Json::out_of_range&) {
+      throw InputError("a number is too large");
     }
   }
 

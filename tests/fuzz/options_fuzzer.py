@@ -174,7 +174,7 @@ def complaint(outcome, scratch):
             text = line.decode()
         except UnicodeDecodeError:
             return f"printed bytes that are not UTF-8: {line[:200]}"
-        if not text.startswith("mercury: ") and not PROGRESS.match(text):
+        if not text.startswith(("mercury: ", '{"error": {"message": "')) and not PROGRESS.match(text):
             return f"printed a line that is not its own: {text[:300]!r}"
         if any(ord(letter) < 32 or ord(letter) == 127 for letter in text):
             return f"printed control characters: {text[:300]!r}"

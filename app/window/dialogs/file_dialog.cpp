@@ -15,6 +15,8 @@
 #include "app/window/toolkit/key_bindings.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
+#include "mercury/error.h"
+#include "mercury/samples.h"
 
 namespace mercury::window {
 namespace {
@@ -187,6 +189,12 @@ void FileDialog::accept() {
 void FileDialog::accept_typed() {
   focus_ = true;
   fs::path path = typed_path(view_.folder(), text_);
+  if (request_.kind == Kind::open) try {
+      if (const fs::path sample = sample_or_path(text_); sample != text_) path = sample;
+    } catch (const InputError& unknown_sample) {
+      error_ = unknown_sample.what();
+      return;
+    }
   std::error_code unknown;
   if (path.empty() || fs::is_directory(path, unknown)) {
     if (path.empty())

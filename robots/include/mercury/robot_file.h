@@ -47,7 +47,8 @@ class RobotDocuments {
 std::string serialize_robot(const Robot& robot, RobotFormat format);
 
 // Reads a file. Throws InputError as parse_robot, with the path before the message ("eel.json: /springs/7: ..."), and
-// for a file that cannot be read. A robot without a name gets the name of its file.
+// for a file that cannot be read. A robot without a name gets the name of its file. "sample:eel" is a sample robot
+// (mercury/samples.h).
 Robot load_robot(const std::filesystem::path& path);
 
 // Writes a file, whole or not at all. Throws InputError as serialize_robot, and for a file that cannot be written, with

@@ -89,6 +89,20 @@ TEST_F(Checkpoint, ItCanGoOnForLonger) {
   EXPECT_EQ(robots_of(mercury(resume_ + Arguments{"--seconds", "1.5"})), whole);
 }
 
+// Its throughput is that of the steps that it made itself, not of those before the checkpoint.
+TEST_F(Checkpoint, ThroughputIsOfTheStepsOfThisSession) {
+  const auto steps_of = [&](const Arguments& arguments) {
+    const Outcome outcome = mercury(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    const json report = json::parse(outcome.output, nullptr, false);
+    double springs = 0;
+    for (const auto& robot : report["robots"]) springs += robot["springs"].get<double>();
+    return report["springs_per_second"].get<double>() * report["wall_seconds"].get<double>() / springs;
+  };
+  EXPECT_NEAR(steps_of(run_ + Arguments{"--checkpoint", path("c.h5")}), 1230, 0.01);
+  EXPECT_NEAR(steps_of(resume_ + Arguments{"--seconds", "1.5"}), 270, 0.01);
+}
+
 TEST_F(Checkpoint, ASignalSavesTheLastStepAndTheRunGoesOnFromThere) {
   const json whole = robots_of(mercury(run_));
   for (const int signal : {SIGINT, SIGTERM}) {

@@ -71,6 +71,28 @@ TEST(CommandList, HoldsTheOptionsThatTheHelpShows) {
   EXPECT_GT(checked, 300u);
 }
 
+// -h is one screen; --help has the rest.
+TEST(CommandList, ShortHelpOfEveryCommandIsOneScreen) {
+  for (const auto& command : commands()) {
+    std::vector<std::string> arguments = command["words"].get<std::vector<std::string>>();
+    const std::string name = arguments.empty() ? "mercury" : "mercury " + command_name(command);
+    arguments.emplace_back("-h");
+    const Outcome outcome = mercury(arguments);
+    EXPECT_EQ(outcome.status, 0) << name;
+    std::size_t count = 0;
+    std::string last;
+    std::istringstream lines(outcome.output);
+    for (std::string line; std::getline(lines, line); last = line, ++count)
+      EXPECT_LE(line.size(), 100u) << name << ": " << line;
+    EXPECT_LE(count, 30u) << name;
+    EXPECT_EQ(last, name + " --help shows all");
+    for (const auto& option : command["options"])
+      if (option["required"] || option["positional"]) {
+        EXPECT_NE(outcome.output.find(text_of(option["names"][0])), std::string::npos) << name << option["names"];
+      }
+  }
+}
+
 // Options may stand before the command, where it is not known yet which command they belong to.
 TEST(CommandList, AnOptionTakesAValueInAllCommandsOrInNone) {
   std::map<std::string, bool> takes_value;

@@ -184,5 +184,32 @@ TEST_F(HostileInput, InTheNameOfARobotStaysOneValue) {
   EXPECT_NE(run({"--csv", "-"}).find("\"\x1b[31mred\nline\"\"quoted\"\",\xe2\x80\xae\""), std::string::npos);
 }
 
+// A name of 10 MB takes one line of reasonable length.
+TEST_F(HostileInput, InTheLengthOfANameTakesOneLine) {
+  nlohmann::json robot = nlohmann::json::parse(read("good.json"));
+  robot["name"] = std::string(10'000'000, 'n');
+  write("named.json", robot.dump());
+  robot["format"] = robot["name"];
+  write("bad.json", robot.dump());
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"info", path("named.json")},
+           {"run", path("named.json"), "--seconds", "0.01", "--device", "cpu"},
+           {"run", path("bad.json")},
+           {"mutate", path("named.json"), "-o", path("child.json"), "--dry-run"},
+           {"render", path("named.json"), "-o", path("a.mp4"), "--each", "--dry-run"},
+           {"render", path("named.json"), "-o", path("a.png"), "--camera", "follow:none"},
+           {"export", path("named.json"), "-o", path("a.glb"), "--robot", "none"}}) {
+    const Outcome outcome = mercury(arguments);
+    std::istringstream lines(outcome.output + outcome.messages);
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_LE(line.size(), 1000u) << testing::PrintToString(arguments);
+  }
+  for (const char* option : {"--dt", "--axis", "--from", "--config", "--random", "--solver"}) {
+    const Outcome outcome = mercury({"evolve", path("run"), option, std::string(100'000, 'n')});
+    EXPECT_EQ(outcome.status, 2) << option;
+    EXPECT_LE(outcome.messages.size(), 1000u) << option;
+  }
+}
+
 }  // namespace
 }  // namespace mercury::test

@@ -40,23 +40,28 @@ class Inputs : public FolderTest {
     return run_program("/bin/sh",
                        {"-c", "ulimit -v " + std::to_string(kilobytes) + " && exec " MERCURY_PROGRAM " " + arguments});
   }
-  const std::vector<std::string> brief_{"--device", "cpu", "--seconds", "0.01", "--json"};
+  const std::vector<std::string> brief_{"--device", "cpu", "--seconds", "0.01"};
   std::vector<std::string> run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "run");
     arguments.insert(arguments.end(), brief_.begin(), brief_.end());
     return arguments;
   }
+  std::vector<std::string> run_json(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    return run(std::move(arguments));
+  }
 };
 
 TEST_F(Inputs, FoldersInsideFoldersAreReadWithRecursive) {
-  EXPECT_THAT(names_in(mercury(run({path("r")}))), ElementsAre("voxel-7-0", "voxel-7-1"));
-  EXPECT_THAT(names_in(mercury(run({path("r"), "--recursive"}))), ElementsAre("voxel-7-0", "voxel-7-1", "voxel-7-2"));
+  EXPECT_THAT(names_in(mercury(run_json({path("r")}))), ElementsAre("voxel-7-0", "voxel-7-1"));
+  EXPECT_THAT(names_in(mercury(run_json({path("r"), "--recursive"}))),
+              ElementsAre("voxel-7-0", "voxel-7-1", "voxel-7-2"));
 }
 
 TEST_F(Inputs, StandardInputHoldsRobots) {
   const std::string json = read("r/0.JSON") + read("r/1.JSON"), cbor = read("r/inner/2.cbor");
-  EXPECT_THAT(names_in(with_input(run({"-"}), json)), ElementsAre("voxel-7-0", "voxel-7-1"));
-  EXPECT_THAT(names_in(with_input(run({"-", path("r/0.JSON")}), cbor)), ElementsAre("voxel-7-2", "voxel-7-0"));
+  EXPECT_THAT(names_in(with_input(run_json({"-"}), json)), ElementsAre("voxel-7-0", "voxel-7-1"));
+  EXPECT_THAT(names_in(with_input(run_json({"-", path("r/0.JSON")}), cbor)), ElementsAre("voxel-7-2", "voxel-7-0"));
   const Outcome none = with_input(run({"-"}), "\n");
   EXPECT_EQ(none.status, 2);
   EXPECT_EQ(none.messages, "mercury: standard input: holds no robot\n");
@@ -65,6 +70,22 @@ TEST_F(Inputs, StandardInputHoldsRobots) {
   EXPECT_THAT(bad.messages, StartsWith("mercury: standard input: document 3: "));
   EXPECT_EQ(with_input({"grow", "-", "-o", path("grown")}, json).status, 0);
   EXPECT_THAT(listing("grown"), ElementsAre("voxel-7-0.json", "voxel-7-1.json"));
+}
+
+TEST_F(Inputs, SamplesHaveNames) {
+  EXPECT_THAT(names_in(mercury(run_json({"sample:eel", path("r/0.JSON"), "sample:kite"}))),
+              ElementsAre("eel", "voxel-7-0", "kite"));
+  EXPECT_EQ(mercury({"mutate", "sample:eel", "-o", path("child.json")}).status, 0);
+  EXPECT_EQ(mercury({"evolve", path("run"), "--from", "sample:eel", "--dry-run"}).status, 0);
+  write("a.toml", "format = \"mercury-scene\"\nversion = 1\nrobots = [\"sample:eel\"]\n");
+  EXPECT_THAT(names_in(mercury(run_json({path("a.toml")}))), ElementsAre("eel"));
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"run", "sample:ell"}, {"info", "sample:ell"}, {"view", "sample:ell"}}) {
+    const Outcome unknown = mercury(command);
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_THAT(unknown.messages, StartsWith("mercury: sample:ell: there is no such sample; give beetle, boulder, "));
+    EXPECT_THAT(unknown.messages, testing::EndsWith(" or wriggler; did you mean eel?\n"));
+  }
 }
 
 TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
@@ -114,10 +135,12 @@ TEST_F(Inputs, PipesAreRefusedWithoutWaiting) {
 }
 
 TEST_F(Inputs, NumbersOfThreadsThatMakeNoSenseAreRefused) {
-  for (const char* command : {"run", "bench"})
+  ASSERT_EQ(mercury(run({path("r"), "--record", path("r.h5")})).status, 0);
+  for (const std::string command : {"run", "bench", "verify"})
     for (const char* threads : {"2147483647", "100000", "-1"}) {
       std::vector<std::string> arguments{command, "--threads", threads, "--device", "cpu"};
-      if (std::string(command) == "run") arguments.push_back(path("r"));
+      if (command == "run") arguments.push_back(path("r"));
+      if (command == "verify") arguments.push_back(path("r.h5"));
       const Outcome outcome = mercury(arguments);
       EXPECT_EQ(outcome.status, 2) << command;
       EXPECT_THAT(outcome.messages,

@@ -55,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"NoValue", with({"--dt"}), "--dt: needs a value; see mercury run --help"},
         BadInput{"NoRobots",
                  {"run"},
-                 "no robots given; name files or folders, or use --random voxel:12, nn:12, shell:12 or cppn:12"},
+                 "no robots given; name files, folders or samples (sample:eel), or use --random voxel:12, nn:12, "
+                 "shell:12 or cppn:12"},
         BadInput{"UnknownKind",
                  {"run", "--random", "fish:2"},
                  "--random: \"fish\" is not a kind of robot; give voxel:N, nn:N, shell:N or cppn:N"},
@@ -257,7 +258,29 @@ TEST(Program, ShortHelpLeavesOutWhatFewNeed) {
   EXPECT_LT(brief.size(), all.size());
   EXPECT_THAT(brief, HasSubstr("--csv"));
   EXPECT_THAT(brief, testing::Not(HasSubstr("--canvas-symmetry")));
-  EXPECT_THAT(brief, HasSubstr("more options: mercury run --help"));
+  EXPECT_THAT(all, HasSubstr("--canvas-symmetry"));
+}
+
+// Errors of a command with --json are for programs. They are on standard error, where they mix with no result.
+TEST(Program, ErrorsAreJsonWithJson) {
+  const auto error_of = [](const std::vector<std::string>& arguments) {
+    const Outcome outcome = mercury(arguments);
+    EXPECT_EQ(outcome.output, "");
+    EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+    const auto json = nlohmann::json::parse(outcome.messages, nullptr, false);
+    EXPECT_EQ(json["error"]["exit"], outcome.status);
+    return json["error"]["message"].get<std::string>();
+  };
+  const std::string strange = std::string("a\n\"\xff") + ".json";
+  EXPECT_EQ(error_of({"run", "none.json", "--json"}), "none.json: No such file or directory");
+  EXPECT_EQ(error_of({"info", strange, "--json"}), R"(a\n"\xff.json: No such file or directory)");
+  EXPECT_EQ(error_of({"verify", "none.h5", "--json", "--threads", "x"}),
+            "--threads: \"x\" is not accepted; give a whole number");
+  EXPECT_EQ(error_of({"run", "--json", "--dt", "0", "--random", "voxel"}),
+            "--dt: 0 is not accepted; give a finite number > 0 s");
+  EXPECT_EQ(error_of({"run", "--json", "--secnds", "2"}),
+            "--secnds: not an option of mercury run; did you mean --seconds?; see mercury run --help");
+  EXPECT_EQ(error_of({"--json"}), "no command given; see mercury --help");
 }
 
 // Only examples, and names of options with long forms, may be wider than the terminal.
@@ -307,10 +330,10 @@ TEST(Program, OutputThatCannotBeWrittenIsAnError) {
 
 class ConfigFileTest : public FolderTest {
  protected:
-  Outcome run_with(const std::string& toml, std::vector<std::string> more = {}) {
+  Outcome run_with(const std::string& toml, std::vector<std::string> more = {}, bool json = true) {
     write("a.toml", toml);
-    std::vector<std::string> arguments{"run",  "--random", "voxel",    "--seconds",
-                                       "0.01", "--json",   "--config", path("a.toml")};
+    std::vector<std::string> arguments{"run", "--random", "voxel", "--seconds", "0.01", "--config", path("a.toml")};
+    if (json) arguments.emplace_back("--json");
     arguments.insert(arguments.end(), more.begin(), more.end());
     return mercury(arguments);
   }
@@ -343,7 +366,7 @@ TEST_F(ConfigFileTest, SwitchesAreTrueOrFalse) {
 TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
   const std::string file = path("a.toml");
   const auto expect_error = [&](const std::string& toml, const std::string& message) {
-    const Outcome outcome = run_with(toml);
+    const Outcome outcome = run_with(toml, {}, false);
     EXPECT_EQ(outcome.status, 2) << toml;
     EXPECT_EQ(outcome.messages, "mercury: " + file + message + "\n");
   };
@@ -362,7 +385,7 @@ TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
 TEST_F(ConfigFileTest, TyposInTablesOfOtherCommandsAreReported) {
   const std::string file = path("a.toml");
   const auto expect_error = [&](const std::string& toml, const std::string& message) {
-    const Outcome outcome = run_with(toml);
+    const Outcome outcome = run_with(toml, {}, false);
     EXPECT_EQ(outcome.status, 2) << toml;
     EXPECT_EQ(outcome.messages, "mercury: " + file + message + "\n");
   };
@@ -397,7 +420,7 @@ TEST_F(ConfigFileTest, MustBeARegularFile) {
 }
 
 TEST_F(ConfigFileTest, InvalidTomlIsReportedWithItsLine) {
-  const Outcome outcome = run_with("dt = 0.001\nthis is no toml\n");
+  const Outcome outcome = run_with("dt = 0.001\nthis is no toml\n", {}, false);
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.messages, StartsWith("mercury: " + path("a.toml") + ":2: "));
 }

@@ -122,6 +122,18 @@ TEST_F(RenderCommand, EachRobotGetsAVideo) {
   EXPECT_EQ(listing(), (std::vector<std::string>{"a-voxel-3-0.gif", "a-voxel-3-1.gif"}));
 }
 
+// A name with a dot is no file type.
+TEST_F(RenderCommand, VideosOfRobotsWithDotsInTheirNamesKeepTheirType) {
+  write("r.json", R"({"format": "mercury-robot", "version": 1, "name": "v1.2",
+    "masses": [[0,0,0],[1,0,0]], "springs": [[0,1,1]], "faces": []})");
+  for (const auto& [output, written] : std::vector<std::pair<std::string, std::string>>{
+           {"a.mp4", "a-v1.2.mp4"}, {"b.1.gif", "b.1-v1.2.gif"}, {"frames/", "frames-v1.2/"}}) {
+    const Outcome outcome = mercury({"render", path("r.json"), "--each", "-o", path(output), "--dry-run"});
+    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    EXPECT_THAT(outcome.output, HasSubstr(path(written) + "\n"));
+  }
+}
+
 // Each view option changes the picture and is drawn without an error.
 TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
   const std::vector<std::vector<std::string>> variants{{},

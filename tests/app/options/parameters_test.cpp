@@ -102,8 +102,11 @@ class EveryParameter : public FolderTest, public testing::WithParamInterface<Par
   void expect_refused(const Outcome& outcome, const std::string& place) const {
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.output, "");
-    EXPECT_THAT(outcome.messages, StartsWith("mercury: " + place + "--" + parameter().option + ": "));
-    EXPECT_THAT(outcome.messages, HasSubstr(parameter().accepted));
+    const json error = json::parse(outcome.messages, nullptr, false);
+    ASSERT_TRUE(error.is_object()) << outcome.messages;
+    const std::string message = error["error"]["message"];
+    EXPECT_THAT(message, StartsWith(place + "--" + parameter().option + ": "));
+    EXPECT_THAT(message, HasSubstr(parameter().accepted));
     EXPECT_EQ(std::count(outcome.messages.begin(), outcome.messages.end(), '\n'), 1) << outcome.messages;
   }
 };

@@ -104,7 +104,9 @@ TEST(BadEvogym, IsRefusedWithItsPlace) {
   const auto object = [&](const std::string& data) {
     return refusal(R"({"grid_width": 8, "grid_height": 4, "objects": {"a": )" + data + "}}");
   };
-  EXPECT_NE(refusal("{\"grid_width\": 8").find("not valid JSON"), std::string::npos);
+  EXPECT_EQ(refusal("{\"grid_width\": 8"), "line 1, column 16: not valid JSON: unexpected end of input");
+  EXPECT_EQ(refusal("{\"grid_width\": 8,\n  objects}"), "line 2, column 3: not valid JSON: invalid literal");
+  EXPECT_EQ(refusal("{\"grid_width\": 1e999}"), "a number is too large");
   EXPECT_EQ(refusal("[]"), "/: a world of EvoGym is a JSON object");
   EXPECT_EQ(refusal(R"({"grid_width": -8})"), "/grid_width: give a whole number from 1 to 1000000");
   EXPECT_EQ(refusal(R"({"grid_width": 8, "grid_height": 4})"), "/objects: a world of EvoGym has an object of objects");
