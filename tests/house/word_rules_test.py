@@ -19,6 +19,7 @@ BREACHES = [
     "// Springs a second.",
     "// One a robot.",
     "// Any robot, be it large or small.",
+    "// The robot at the present time.",
     "// All robots, save when one explodes.",
     "// Nought is left.",
     "// The colours of robots.",
