@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands of the program, one source file per command.
+// What a command of the program is made of. Each has a source file of its own; program.cpp lists them.
 #pragma once
 
 #include <functional>
@@ -15,20 +15,7 @@ using CommandBody = std::function<int()>;
 // Receives the command that the user chose.
 using Choose = std::function<void(CommandBody)>;
 
-// Each function adds one subcommand to the program. Parsing the command line calls `choose`.
-void add_run_command(const Command& program, const Choose& choose);
-void add_view_command(const Command& program, const Choose& choose);
-void add_render_command(const Command& program, const Choose& choose);
-void add_evolve_command(const Command& program, const Choose& choose);
-void add_new_command(const Command& program, const Choose& choose);
-void add_mutate_command(const Command& program, const Choose& choose);
-void add_cross_command(const Command& program, const Choose& choose);
-void add_grow_command(const Command& program, const Choose& choose);
-void add_import_command(const Command& program, const Choose& choose);
-void add_bench_command(const Command& program, const Choose& choose);
-void add_export_command(const Command& program, const Choose& choose);
-void add_verify_command(const Command& program, const Choose& choose);
-void add_info_command(const Command& program, const Choose& choose);
-void add_describe_command(const Command& program, const Choose& choose);
+// Adds a command to the program. Parsing the command line calls `choose`.
+using AddCommand = void(const Command& program, const Choose& choose);
 
 }  // namespace mercury

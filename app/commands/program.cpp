@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -29,7 +30,18 @@
 #include "robots/file/document.h"
 
 namespace mercury {
+
+// All commands in the order of the help, each in a file of its own. describe-options comes after help.
+AddCommand add_view_command, add_render_command, add_run_command, add_evolve_command, add_new_command,
+    add_mutate_command, add_cross_command, add_grow_command, add_export_command, add_import_command, add_bench_command,
+    add_verify_command, add_info_command, add_describe_command;
+
 namespace {
+
+constexpr std::array commands{add_view_command,   add_render_command, add_run_command,   add_evolve_command,
+                              add_new_command,    add_mutate_command, add_cross_command, add_grow_command,
+                              add_export_command, add_import_command, add_bench_command, add_verify_command,
+                              add_info_command};
 
 constexpr const char* footer =
     "Options may stand before or after the name of the command, and in a file for --config.\n\n"
@@ -77,19 +89,7 @@ class Program {
     const Command program = tree_.root();
     program.set_footer(footer);
     const Choose choose = [this](CommandBody body) { body_ = std::move(body); };
-    add_view_command(program, choose);
-    add_render_command(program, choose);
-    add_run_command(program, choose);
-    add_evolve_command(program, choose);
-    add_new_command(program, choose);
-    add_mutate_command(program, choose);
-    add_cross_command(program, choose);
-    add_grow_command(program, choose);
-    add_export_command(program, choose);
-    add_import_command(program, choose);
-    add_bench_command(program, choose);
-    add_verify_command(program, choose);
-    add_info_command(program, choose);
+    for (AddCommand* const add : commands) add(program, choose);
     add_help_command(program);
     add_describe_command(program, choose);
     add_general_options(program);

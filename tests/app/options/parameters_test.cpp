@@ -9,6 +9,10 @@
 #include "mercury/random.h"
 #include "tests/app/program.h"
 
+namespace mercury {
+AddCommand add_run_command, add_render_command;
+}
+
 namespace mercury::test {
 namespace {
 
