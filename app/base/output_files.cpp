@@ -2,6 +2,7 @@
 #include "app/base/output_files.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,7 +12,8 @@
 #include <cstring>
 #include <optional>
 
-#include "app/base/terminal_question.h"
+#include "app/base/interrupt.h"
+#include "app/base/messages.h"
 #include "mercury/error.h"
 #include "mercury/file_links.h"
 
@@ -19,6 +21,34 @@ namespace mercury {
 namespace {
 
 namespace fs = std::filesystem;
+
+// A line of standard input without its end. poll() returns at a signal; read() alone would go on waiting.
+std::string read_line() {
+  std::string line;
+  while (!interrupted()) {
+    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (poll(&input, 1, -1) < 0) {
+      if (errno == EINTR) continue;
+      break;
+    }
+    char letter = 0;
+    if (read(STDIN_FILENO, &letter, 1) != 1 || letter == '\n') break;
+    line += letter;
+  }
+  return line;
+}
+
+// Whether there is somebody to ask.
+bool can_ask() { return isatty(STDIN_FILENO) == 1 && isatty(STDERR_FILENO) == 1; }
+
+// Prints "mercury: QUESTION [y/N] " and waits for a line. True for "y" and "yes". Throws Interrupted at Ctrl-C.
+bool ask(const std::string& question) {
+  write_to_standard_error("mercury: " + printable(question) + " [y/N] ");
+  const std::string answer = read_line();
+  if (interrupted()) write_to_standard_error("\n");
+  throw_if_interrupted();
+  return answer == "y" || answer == "Y" || answer == "yes" || answer == "Yes";
+}
 
 std::optional<struct stat> status_of(const fs::path& path) {
   struct stat status {};

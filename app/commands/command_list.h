@@ -57,4 +57,15 @@ std::vector<OptionDescription> options_of(const Command& command);
 // which every command takes too.
 std::string json_of(const std::vector<CommandDescription>& commands);
 
+// Completion scripts for shells. They complete commands, options, words that options accept, and files with the right
+// endings.
+std::string bash_completion(const std::vector<CommandDescription>& commands);
+std::string zsh_completion(const std::vector<CommandDescription>& commands);
+std::string fish_completion(const std::vector<CommandDescription>& commands);
+
+// "mercury-new-voxel"; the page is the file mercury-new-voxel.1.
+std::string man_page_name(const CommandDescription& command);
+// The manual page of one of the commands, in the troff macros "man".
+std::string man_page(const CommandDescription& command, const std::vector<CommandDescription>& all);
+
 }  // namespace mercury

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/commands/completion.h"
+#include "app/commands/command_list.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

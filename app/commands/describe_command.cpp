@@ -8,8 +8,6 @@
 
 #include "app/commands/command_list.h"
 #include "app/commands/commands.h"
-#include "app/commands/completion.h"
-#include "app/commands/man_page.h"
 #include "app/options/option_values.h"
 #include "robots/file/whole_file.h"
 

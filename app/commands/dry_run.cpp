@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "app/base/interrupt.h"
@@ -84,13 +83,6 @@ std::string device_text(const Device& device) {
   std::string text(name_of(device));
   if (device.threads > 0) text += fmt::format(", {} threads", device.threads);
   return text;
-}
-
-std::string bytes_text(double bytes) {
-  constexpr std::array units{"B", "kB", "MB", "GB", "TB"};
-  std::size_t unit = 0;
-  for (; bytes >= 1000 && unit + 1 < units.size(); ++unit) bytes /= 1000;
-  return unit == 0 ? fmt::format("{:.0f} B", bytes) : fmt::format("{:.2g} {}", bytes, units[unit]);
 }
 
 }  // namespace mercury

@@ -24,7 +24,7 @@ int print_dry_run(const std::string& command, const Intentions& intentions);
 // "1 frame", "2 frames"
 std::string count_text(std::int64_t count, const std::string& one, const std::string& several);
 
-// "12: 3600 masses, 14000 springs". Of many random robots, which are made one after the other, it makes some and says
+// "12: 3600 masses, 14000 springs". Of many random robots, which are made one after another, it makes some and says
 // "about". Throws InputError as the source does.
 std::string size_text(const RobotSequence& robots);
 std::string size_text(std::span<const Robot> robots);
@@ -35,8 +35,5 @@ std::string time_text(const Configuration& configuration, std::int64_t steps);
 
 // "cuda:1", "cpu, 4 threads", "automatic"
 std::string device_text(const Device& device);
-
-// "3.4 GB"
-std::string bytes_text(double bytes);
 
 }  // namespace mercury

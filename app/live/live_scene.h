@@ -153,7 +153,6 @@ class LiveScene {
   void breed(RobotId a, RobotId b, std::uint64_t seed);
   void clear();
   void rename(RobotId robot, const std::string& name);
-  bool can_mutate(RobotId robot) const;
   // Edits of a voxel robot's body. The robot goes on where it is, and what is attached to it comes off. edit_voxel()
   // returns false, with a message, if the edit cannot be made.
   bool has_voxels(RobotId robot) const;
@@ -190,7 +189,6 @@ class LiveScene {
   // it was before the change.
   const Configuration& configuration() const;
   bool set_configuration(const Configuration& configuration);  // keeps the device
-  void reset_configuration();                                  // to the defaults of the environment; keeps the device
   std::span<const Material> materials(RobotId robot) const;    // in use; empty if the robot is unknown
   bool set_material(const std::vector<RobotId>& robots, MaterialId id, const Material& material);
   // Changes all materials but air: multiplies stiffness, amplitude and frequency of the robot's file, adds to the
@@ -234,7 +232,6 @@ class LiveScene {
   void hide_ghosts();
   const std::vector<LiveGhost>& ghosts() const;
   std::vector<GhostFigures> ghost_figures() const;
-  bool has_parent(RobotId robot) const;
 
   // Files. An existing file is replaced only with `overwrite`.
   SaveResult save(RobotId robot, const std::filesystem::path& path, bool overwrite = false);

@@ -168,14 +168,6 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
   return true;
 }
 
-void LiveScene::reset_configuration() {
-  end_edit();
-  Configuration defaults;
-  defaults.environment = environment_named(name_of(configuration().environment));
-  set_configuration(defaults);
-  end_edit();
-}
-
 std::span<const Material> LiveScene::materials(RobotId robot) const {
   const DocumentRobot* found = parts_->document.find(robot);
   return found ? materials_of(found->body) : std::span<const Material>{};

@@ -298,11 +298,6 @@ void LiveScene::generate(const RandomRobots& generation, bool replace) {
                          task);
 }
 
-bool LiveScene::can_mutate(RobotId robot) const {
-  const DocumentRobot* found = parts_->document.find(robot);
-  return found && generator_of(*found->body.robot) != nullptr;
-}
-
 void LiveScene::mutate(const std::vector<RobotId>& robots, const MutationRequest& mutation, bool replace) {
   Parts& parts = *parts_;
   auto parents = std::make_shared<std::vector<DocumentRobot>>();

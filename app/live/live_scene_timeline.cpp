@@ -221,11 +221,6 @@ void LiveScene::Parts::update_ghosts() {
   std::erase_if(ghosts, [&](const LiveGhost& ghost) { return !document.find(ghost.robot); });
 }
 
-bool LiveScene::has_parent(RobotId robot) const {
-  const DocumentRobot* found = parts_->document.find(robot);
-  return found && found->parent;
-}
-
 std::vector<GhostFigures> LiveScene::ghost_figures() const {
   std::vector<GhostFigures> all;
   if (!parts_->snapshot->ghosts) return all;

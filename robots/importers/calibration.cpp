@@ -66,8 +66,6 @@ double slice_stiffness(int thickness) {
   return (c - b * b / (4 * a)) / (m * m);
 }
 
-double combined_modulus(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
-
 double gravity_time_scale(double edge) { return std::sqrt(calibrated_edge / edge); }
 
 Calibration calibrate(const BeamModel& model, std::optional<double> time_scale) {

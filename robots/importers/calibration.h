@@ -54,10 +54,6 @@ Calibration calibrate(const BeamModel& model, std::optional<double> time_scale =
 // lengths, as a film of a small thing is slowed down to look large.
 double gravity_time_scale(double edge);
 
-// The modulus of the beam that joins voxels of two materials: half a beam of each, one after the other, 2 a b / (a + b)
-// [Pa]. 0 if both are.
-double combined_modulus(double a, double b);
-
 // The stiffness of a slice of a bar of springs, per stiffness of a spring and per mass of a layer [1]: 27/10 without a
 // surface, 22/13 for one voxel. `thickness` = voxels across, 0 = without a surface.
 double slice_stiffness(int thickness);

@@ -159,7 +159,7 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
         scene.pause_on_explosion(below(2) == 0);
         break;
       case 25:
-        scene.reset_configuration();
+        scene.set_configuration({});
         break;
       case 26:
         scene.rename(robot(), below(2) ? "eel" : "");
