@@ -179,7 +179,7 @@ Result measure(const Options& options, Renderer& renderer, const Lattice& lattic
 void print_text(const Options& o, const Context& context, const Renderer& renderer, const Lattice& lattice,
                 const Result& result) {
   std::printf(
-      "%s, %s quality: %d bodies of %zu masses, %dx%d, read %s: %.2f ms per picture, %.1f pictures/s (set up in %.2f "
+      "%s, %s quality: %d bodies of %zu masses, %dx%d, read %s: %.2f ms per frame, %.1f frames/s (set up in %.2f "
       "s)\n",
       context.describe().c_str(), std::string(name_of(renderer.quality())).c_str(), o.number("bodies"),
       lattice.masses.size() / 3, renderer.width(), renderer.height(), o.text("read").c_str(), 1e3 * result.seconds,

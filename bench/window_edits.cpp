@@ -62,7 +62,7 @@ void measure(Window& window, LiveScene& scene, const char* name, const std::func
               1e3 * (now() - begin));
 }
 
-// Measures steps per second while 60 pictures per second are shown, and of the simulation alone.
+// Measures steps per second while 60 frames per second are shown, and of the simulation alone.
 void measure_speed(Window& window, LiveScene& scene) {
   constexpr double seconds = 4;
   std::vector<Robot> robots;
@@ -102,7 +102,7 @@ void measure_speed(Window& window, LiveScene& scene) {
     spent = now() - begin;
   }
   const double alone = static_cast<double>(simulation.steps() - first) / spent;
-  std::printf("unlimited speed: %.4g steps/s with %.1f new pictures/s; %.4g steps/s alone (%.0f %%)\n", in_window,
+  std::printf("unlimited speed: %.4g steps/s with %.1f new frames/s; %.4g steps/s alone (%.0f %%)\n", in_window,
               pictures, alone, 100 * in_window / alone);
 }
 

@@ -45,7 +45,7 @@ struct PreparedBody {
 // does not fit; `index` is for the message.
 std::shared_ptr<const PreparedBody> prepare_body(const Body& body, std::size_t index = 0);
 
-// All bodies of a group, one after the other; indices count over all of them.
+// All bodies of a group, one after another; indices count over all of them.
 struct BodyData {
   std::vector<std::uint32_t> mass_offsets{0}, face_offsets{0}, spring_offsets{0};  // one per body, and one more
   std::vector<float> rest_positions;

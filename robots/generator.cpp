@@ -144,9 +144,9 @@ const Generator& generator_named(std::string_view kind) {
   throw ParameterError("kind", "\"" + std::string(kind) + "\" is not a kind of robot; give " + generator_kinds());
 }
 
-std::string generator_kinds(std::string_view behind) {
+std::string generator_kinds(std::string_view after) {
   std::vector<std::string> kinds;
-  for (const Generator& generator : generators()) kinds.push_back(generator.kind + std::string(behind));
+  for (const Generator& generator : generators()) kinds.push_back(generator.kind + std::string(after));
   return list_of(kinds, " or ");
 }
 

@@ -28,7 +28,7 @@ struct RenderOptions {
 
 struct Subject {
   Configuration configuration;
-  std::vector<Clip> clips;                      // one after the other
+  std::vector<Clip> clips;                      // one after another
   std::shared_ptr<TrajectoryReader> recording;  // of the only clip, which has no robots then; or nothing
   double seconds = 0;                           // of each clip
   std::vector<std::string> notes;

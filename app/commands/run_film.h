@@ -22,7 +22,7 @@ struct Clip {
 };
 
 struct RunFilm {
-  std::vector<Clip> clips;             // one after the other
+  std::vector<Clip> clips;             // one after another
   std::shared_ptr<const Board> board;  // of the only clip, or nothing
   std::vector<std::string> notes;
 };

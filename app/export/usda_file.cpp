@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Universal Scene Description, as text (.usda): the skin as a mesh, the springs as curves, their points over time. A
-// recorded frame is a time code. Frames are written one after the other; none is kept in memory.
+// recorded frame is a time code. Frames are written one after another; none is kept in memory.
 #include <fmt/format.h>
 
 #include <algorithm>

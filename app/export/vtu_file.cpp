@@ -136,7 +136,7 @@ class Grid {
 
   const ExportedRobot& exported_;
   std::vector<std::array<std::uint32_t, 3>> springs_of_faces_;
-  std::vector<std::int32_t> corners_, ends_;  // of the cells, one after the other
+  std::vector<std::int32_t> corners_, ends_;  // of the cells, one after another
   std::vector<std::uint8_t> types_, kinds_, materials_, colors_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The videos that the window makes: of the scene's robots from time 0, and of its own picture. Both are made in the
+// The videos that the window makes: of the scene's robots from time 0, and of its own frames. Both are made in the
 // background; other threads can watch and cancel them.
 #pragma once
 
@@ -55,7 +55,7 @@ class GroupVideo {
   std::unique_ptr<Parts> parts_;
 };
 
-// Records the window's picture as a video. Encodes on its own thread. The video runs in real time: a frame stays until
+// Records the window's frames as a video. Encodes on its own thread. The video runs in real time: a frame stays until
 // the next one. If the encoder is too slow, frames are dropped; only the destructor waits. No member throws; status()
 // reports errors. An existing file is replaced; unused_name() (robot_saving.h) finds a new name.
 class ScreenRecording {
@@ -65,7 +65,7 @@ class ScreenRecording {
   ScreenRecording(const std::string& output, PictureSize size, double frames_per_second = 30);
   ~ScreenRecording();  // finishes and waits
 
-  // Whether the video needs a frame at this time. Ask before reading the picture back. `time` is in seconds from an
+  // Whether the video needs a frame at this time. Ask before reading the frame back. `time` is in seconds from an
   // arbitrary origin and must not go back.
   bool wants(double time) const;
   // Adds a frame: RGB, upper row first, of the size given to the constructor. Returns false if it was dropped.
@@ -82,7 +82,7 @@ class ScreenRecording {
   std::unique_ptr<Parts> parts_;
 };
 
-// Converts an RGB picture to planes Y, U, V (BT.709, limited range). Cuts off an odd last row or column.
+// Converts an RGB frame to planes Y, U, V (BT.709, limited range). Cuts off an odd last row or column.
 render::Image yuv420_of(const render::Image& rgb);
 
 }  // namespace mercury

@@ -94,7 +94,7 @@ class LiveRun {
   void wait();               // until all that was begun in the background has ended, and its results are taken over
   // As it was read last; null before the first time.
   std::shared_ptr<const RunView> view() const;
-  // Why the folder cannot be read at present, or why the run that evolve() began was not made; empty = no problem.
+  // Why the folder cannot be read, or why the run that evolve() began was not made; empty = no problem.
   const std::string& problem() const;
 
   // Reads the family of an individual; family() returns the one read last, or null.

@@ -9,7 +9,7 @@
 //   thread C   film_of()           --/.
 //
 // 1. The thread, the context and the shaders are made by the first task, and used by all later ones.
-// 2. Tasks run one after the other, in the order of their calls. A task finds the renderer with the size, the quality
+// 2. Tasks run one after another, in the order of their calls. A task finds the renderer with the size, the quality
 //    and the bodies of the task before, and sets its own.
 // 3. A fork() copies the memory but not the thread. In the child, every call throws DeviceError, and nothing waits for
 //    a thread that is not there. A child that begins to draw before its parent has is fine. The child has to end by

@@ -9,13 +9,13 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t waiting_pictures = 6;  // drawn, not yet written
+constexpr std::size_t waiting_frames = 6;  // drawn, not yet written
 
 }  // namespace
 
 FrameEncoder::FrameEncoder(FrameWriter& writer, std::function<void(std::int64_t)> on_frame)
-    : writer_(writer), on_frame_(std::move(on_frame)), pictures_(waiting_pictures), spare_(waiting_pictures + 2) {
-  for (std::size_t i = 0; i < waiting_pictures + 2; ++i) spare_.push({});
+    : writer_(writer), on_frame_(std::move(on_frame)), drawn_(waiting_frames), spare_(waiting_frames + 2) {
+  for (std::size_t i = 0; i < waiting_frames + 2; ++i) spare_.push({});
   thread_ = std::thread([this] {
     try {
       encode();
@@ -35,26 +35,26 @@ FrameEncoder::~FrameEncoder() {
 bool FrameEncoder::take(render::Readback& readback) { return take(std::span(&readback, 1)); }
 
 bool FrameEncoder::take(std::span<render::Readback> readbacks) {
-  std::optional<render::Image> picture = spare_.pop();
-  if (!picture) return false;
+  std::optional<render::Image> frame = spare_.pop();
+  if (!frame) return false;
   if (readbacks.size() == 1) {
-    readbacks.front().finish(*picture);
+    readbacks.front().finish(*frame);
   } else {
     parts_.resize(readbacks.size());
     for (std::size_t i = 0; i < readbacks.size(); ++i) readbacks[i].finish(parts_[i]);
-    join(parts_, *picture);
+    join(parts_, *frame);
   }
-  return pictures_.push(std::move(*picture));
+  return drawn_.push(std::move(*frame));
 }
 
 void FrameEncoder::finish() {
-  pictures_.close();
+  drawn_.close();
   if (thread_.joinable()) thread_.join();
   rethrow();
 }
 
 void FrameEncoder::abandon() {
-  pictures_.abandon();
+  drawn_.abandon();
   spare_.abandon();
 }
 
@@ -64,11 +64,11 @@ void FrameEncoder::rethrow() {
 }
 
 void FrameEncoder::encode() {
-  while (auto picture = pictures_.pop()) {
-    writer_.write(*picture);
+  while (auto frame = drawn_.pop()) {
+    writer_.write(*frame);
     const std::int64_t written = ++frames_;
     if (on_frame_) on_frame_(written);
-    spare_.push(std::move(*picture));
+    spare_.push(std::move(*frame));
   }
 }
 

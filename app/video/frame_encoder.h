@@ -25,10 +25,10 @@ class FrameEncoder {
   FrameEncoder(const FrameEncoder&) = delete;
   FrameEncoder& operator=(const FrameEncoder&) = delete;
 
-  // Passes the oldest picture that is being read back to the encoder. Waits while the encoder is behind. False when it
+  // Passes the oldest frame that is being read back to the encoder. Waits while the encoder is busy. False when it
   // has failed or was abandoned.
   bool take(render::Readback& readback);
-  // The same for the parts of a picture, from left to right.
+  // The same for the parts of a frame, from left to right.
   bool take(std::span<render::Readback> readbacks);
   // Writes all frames that were taken, and ends. Throws what the writer threw. The caller finishes the writer.
   void finish();
@@ -44,9 +44,9 @@ class FrameEncoder {
 
   FrameWriter& writer_;
   std::function<void(std::int64_t)> on_frame_;
-  BoundedQueue<render::Image> pictures_;  // drawn, not yet written
-  std::vector<render::Image> parts_;      // of the picture that is taken
-  BoundedQueue<render::Image> spare_;     // written; their memory is used again
+  BoundedQueue<render::Image> drawn_;  // not yet written
+  std::vector<render::Image> parts_;   // of the frame that is taken
+  BoundedQueue<render::Image> spare_;  // written; their memory is used again
   std::atomic<std::int64_t> frames_ = 0;
   std::mutex mutex_;
   std::exception_ptr error_;  // guarded by mutex_

@@ -39,7 +39,7 @@ render::PixelFormat pixel_format_of(VideoKind kind);
 // Frames per second, unless the user asks for another number.
 double usual_frame_rate(VideoKind kind);
 
-// The size of the video when the user asks for `size`: H.264 and VP9 take 4:2:0 pictures, whose sides are even, so odd
+// The size of the video when the user asks for `size`: H.264 and VP9 take 4:2:0 frames, whose sides are even, so odd
 // sides are rounded up.
 PictureSize encoded_size(VideoKind kind, PictureSize size);
 

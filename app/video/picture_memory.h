@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the pictures of a video fit into memory, before they are drawn.
+// Whether the frames of a video fit into memory, before they are drawn.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture of several that stand side by side.
+// One frame of several that stand side by side.
 #pragma once
 
 #include <span>
@@ -10,11 +10,11 @@
 
 namespace mercury {
 
-// The sizes of two halves of a picture, from left to right. Both have even widths, as yuv420 needs, if the picture has.
-// Throws ParameterError("size", ...) for a picture that is too narrow.
+// The sizes of two halves of a frame, from left to right. Both have even widths, as yuv420 needs, if the frame has.
+// Throws ParameterError("size", ...) for a frame that is too narrow.
 std::vector<PictureSize> halves_of(PictureSize whole);
 
-// Puts pictures of one height and format beside each other. `into` keeps its memory if that is large enough.
+// Puts frames of one height and format beside each other. `into` keeps its memory if that is large enough.
 void join(std::span<const render::Image> parts, render::Image& into);
 
 }  // namespace mercury

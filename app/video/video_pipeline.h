@@ -21,7 +21,7 @@ struct OffscreenRenderer {
   render::Renderer renderer;
 };
 // `cuda_device`: draws on the GPU with that CUDA ordinal, if there is a choice; -1 = any. Throws render::ContextError
-// when no context is available, ParameterError("size", ...) when pictures of this size do not fit into memory.
+// when no context is available, ParameterError("size", ...) when frames of this size do not fit into memory.
 OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize size, render::Quality quality,
                                           int cuda_device = -1);
 
@@ -30,8 +30,8 @@ OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize 
 class VideoPipeline {
  public:
   // `names`: one per robot, shown instead of its own; empty = its own. `second`: the same robots under other settings,
-  // as settings.compare says; the picture then has two sides. Throws InputError for a setting that does not suit the
-  // robots or their environment, ParameterError("size", ...) for pictures too narrow for two sides.
+  // as settings.compare says; the frame then has two sides. Throws InputError for a setting that does not suit the
+  // robots or their environment, ParameterError("size", ...) for frames too narrow for two sides.
   VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings,
                 std::span<const std::string> names = {}, std::optional<Simulation> second = {});
   ~VideoPipeline();
@@ -39,7 +39,7 @@ class VideoPipeline {
   VideoPipeline& operator=(const VideoPipeline&) = delete;
 
   const Simulation& simulation() const;  // the first
-  // Whether positions go from the simulation to the picture without leaving the GPU.
+  // Whether positions go from the simulation to the frame without leaving the GPU.
   bool positions_on_device() const;
   // Why they pass through the host although a GPU simulates; empty if there is nothing to say.
   const std::string& bridge_note() const;

@@ -3,15 +3,15 @@
 //
 //   simulate               draw                      encode
 //   a thread               the calling thread        a thread
-//   steps the robots  -->  draws a snapshot,    -->  writes pictures with
-//   to each frame          reads the picture back    the FrameWriter
-//              snapshots (4)             pictures (6)
-//                                  <-- spare pictures (8)
+//   steps the robots  -->  draws a snapshot,    -->  writes frames with
+//   to each frame          reads the frame back      the FrameWriter
+//              snapshots (4)             frames (6)
+//                                  <-- spare frames (8)
 //
 // 1. Each stage has its own thread, so the slowest one sets the rate, not the sum of all three. OpenGL draws on the
 //    calling thread because the context is current there.
 // 2. The queues are short. A stage that is ahead waits, and memory does not grow with the length of the video.
-// 3. Written pictures go back as spare ones, so no memory is allocated per frame.
+// 3. Written frames go back as spare ones, so no memory is allocated per frame.
 // 4. When a stage throws, it abandons all queues, the other stages end, and the caller gets the first exception.
 #pragma once
 

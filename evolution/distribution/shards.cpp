@@ -32,12 +32,12 @@ struct Name {
 // Nothing for other files.
 std::optional<Name> parsed(std::string_view text) {
   Name name;
-  const auto take = [&](std::size_t& number, std::string_view behind) {
+  const auto take = [&](std::size_t& number, std::string_view after) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc{}) return false;
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (!text.starts_with(behind)) return false;
-    text.remove_prefix(behind.size());
+    if (!text.starts_with(after)) return false;
+    text.remove_prefix(after.size());
     return true;
   };
   if (!take(name.generation, "-") || !take(name.shard, "-of-") || !take(name.count, "") || !text.empty())

@@ -38,11 +38,11 @@ std::vector<Assessment> decode_assessments(ByteReader& reader);
 //     head     "GENERATN"; u64 bytes of the index; u64 bytes of the genomes; u64 checksum of the index;
 //              u64 checksum of the genomes; u64 checksum of the head so far
 //     index    number; times; everyone born, in the order of ids; ids of the living
-//     genomes  one after the other, in the order of ids: whole, or as the difference from the first parent's
+//     genomes  one after another, in the order of ids: whole, or as the difference from the first parent's
 //
 // So a reader that does not need the genomes skips them.
 
-// Genomes are read by applying at most as many differences one after the other.
+// Genomes are read by applying at most as many differences one after another.
 inline constexpr int longest_chain = 32;
 
 // Where a genome is in the journal.

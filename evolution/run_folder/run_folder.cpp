@@ -30,7 +30,7 @@ struct RunFolder::Parts {
 
 namespace {
 
-// The genomes of those born, one after the other: whole, or as the difference from the first parent's.
+// The genomes of those born, one after another: whole, or as the difference from the first parent's.
 std::string store_genomes(GenerationRecord& record, const GenomeStore& store) {
   std::vector<Individual>& born = record.generation.born;
   std::vector<std::string> stored(born.size());

@@ -67,7 +67,7 @@ def picture(
 
     `size` is (width, height) in pixels. `environment` is what robots at rest are shown in; a batch has its own. `look`
     are the options of Look, such as color="strain" or camera="top". The same state gives the same bytes. Any thread may
-    call it; pictures are drawn one after the other on a thread of Mercury's own, without a display.
+    call it; pictures are drawn one after another on a thread of Mercury's own, without a display.
 
     Raises InputError for what cannot be used, and DeviceError where there is no OpenGL, or in a process that was forked
     from one that has drawn: start processes with the method "spawn".

@@ -104,7 +104,7 @@ DeviceMask device_mask_from(nb::handle mask, void* cuda_stream) {
   if (!nb::try_cast(capsule, array, false)) throw nb::type_error("mask: this array is no DLPack tensor of a GPU");
   const bool has_bytes = array.dtype() == nb::dtype<bool>() || array.dtype() == nb::dtype<std::uint8_t>();
   if (array.ndim() != 1 || !has_bytes || (array.shape(0) > 1 && array.stride(0) != 1))
-    throw nb::type_error("mask: give one bool or uint8 per robot, one after the other");
+    throw nb::type_error("mask: give one bool or uint8 per robot, one after another");
   return {.owner = nb::borrow(mask), .data = static_cast<const std::uint8_t*>(array.data()), .size = array.shape(0)};
 }
 

@@ -120,7 +120,7 @@ def test_reset_by_a_mask_on_the_gpu(batch):
         batch.reset(torch.ones(3, dtype=torch.bool, device=batch.device))
     with pytest.raises(TypeError, match="bool or uint8"):
         batch.reset(torch.ones(4, device=batch.device))
-    with pytest.raises(TypeError, match="one after the other"):
+    with pytest.raises(TypeError, match="one after another"):
         batch.reset(torch.ones(8, dtype=torch.bool, device=batch.device)[::2])
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs every block of docs/python.md, one after the other, as a reader would."""
+"""Runs every block of docs/python.md, one after another, as a reader would."""
 import importlib.util
 import os
 import re

@@ -193,7 +193,7 @@ class Filtration {
     return parts.size();
   }
 
-  // The points come in one after the other, each with its first tetrahedron: the last point, and a tetrahedron of the
+  // The points come in one after another, each with its first tetrahedron: the last point, and a tetrahedron of the
   // class that has its first one.
   std::pair<std::uint32_t, std::uint32_t> last_to_come() const {
     std::vector<bool> seen(points_.size(), false);

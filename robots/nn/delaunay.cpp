@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points are inserted one after the other (Bowyer 1981, Watson 1981):
+// Points are inserted one after another (Bowyer 1981, Watson 1981):
 //
 //   1. Walk to the tetrahedron that holds the new point.
 //   2. From there, collect all tetrahedra in whose circumscribed sphere the point lies. They form a cavity.

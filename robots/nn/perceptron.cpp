@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A matrix product of a library sums in an order that depends on the instruction set. Here each output has its lane,
-// and adds bias, input 0, input 1, ... one after the other. The width of the vectors decides only how many outputs and
+// and adds bias, input 0, input 1, ... one after another. The width of the vectors decides only how many outputs and
 // points go side by side:
 //
 //            16 outputs

@@ -25,10 +25,12 @@ WORDS = [
     ("of before", "previous"),
     ("built alike", "same topology"),
     ("(springs|steps|pictures|frames|robots) a second", "per second"),
+    ("pictures?(/s| per second)", "frames: a picture is a file that a user keeps"),
     (r"(one|two|three|four|a line|a task|a thread) an? (robot|mass|spring|face|step|core|thread|lane|warp|block|frame|file|line)",
      "per robot, per spring"),
     ("be it", "whether"),
     (r"(the|its|their) present (device|step|state|values?|time|camera|place|positions?|rest|frame|moment|scene|keys?|ones?)", "current"),
+    ("at present", "now, currently"),
     ("save (that|where|when|for)", "except"),
     ("nought|naught", "0"),
     # British spelling

@@ -133,7 +133,7 @@ const Generator* generator_of(const Robot& robot);
 const Generator& generator_named(std::string_view kind);
 
 // "voxel, nn or shell": all kinds, with something after each, as in "voxel:N or nn:N".
-std::string generator_kinds(std::string_view behind = {});
+std::string generator_kinds(std::string_view after = {});
 
 // The parameter's value, its default if it is missing.
 const ParameterValue& value_of(const ParameterValues& values, const GeneratorParameter& parameter);

@@ -26,7 +26,7 @@ RobotFormat robot_format_of(const std::filesystem::path& path);
 // that it announces, so a hostile file cannot exhaust it.
 Robot parse_robot(std::string_view document, RobotFormat format);
 
-// The robots of a text that holds several documents, one after the other: JSON with or without lines between them, or
+// The robots of a text that holds several documents, one after another: JSON with or without lines between them, or
 // CBOR (RFC 8742). The first byte shows which. Refers to the text.
 class RobotDocuments {
  public:
