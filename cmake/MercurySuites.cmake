@@ -9,7 +9,7 @@ function(mercury_discover_suites target label)
 "set(program [[$<TARGET_FILE:${target}>]])
 set(launcher [[${MERCURY_TEST_LAUNCHER}]])
 set(label [[${label}]])
-include([[${PROJECT_SOURCE_DIR}/cmake/MercurySuites.cmake]])
+include([[${CMAKE_CURRENT_FUNCTION_LIST_FILE}]])
 ")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
 endfunction()
@@ -48,8 +48,9 @@ foreach(suite IN LISTS suites)
   endif()
   set(test ${label}.${suite})
   add_test(${test} ${launcher} ${program} --gtest_filter=${filter})
-  # Skipped means that every test of the suite was; a filter without tests is a mistake.
+  # Skipped means that every test of the suite was. A filter without tests is a mistake, and so is a test that ends the
+  # program, whatever its exit status.
   set_tests_properties(${test} PROPERTIES LABELS ${label}
     SKIP_REGULAR_EXPRESSION "PASSED  \\] 0 tests\\.\n\\[  SKIPPED \\] [0-9]+ tests?, listed below:\n(\\[  SKIPPED \\][^\n]*\n)*$"
-    FAIL_REGULAR_EXPRESSION "Running 0 tests")
+    FAIL_REGULAR_EXPRESSION "Running 0 tests;\\[ RUN      \\] [^\n]*\n([^[\n][^\n]*\n|\n)*$")
 endforeach()
