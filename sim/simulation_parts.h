@@ -76,7 +76,7 @@ struct Simulation::Parts {
 
   // To be called before the backend steps, and after it has changed the state.
   void before_step() { shared_actuation.apply(*backend, robots, changed_tables); }
-  void after_change() const { shared_state.publish(*backend, offsets); }
+  void after_change() const { shared_state.publish(*backend, pointers); }
   // To be called when robots have come or gone. `kept` = the old indices of the first ones.
   void after_exchange(std::span<const std::size_t> kept);
 };

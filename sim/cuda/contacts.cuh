@@ -111,7 +111,7 @@ class ContactPass {
  private:
   __device__ static std::uint32_t buckets(const Robot& robot) { return robot.arguments().launch.contact_buckets; }
   __device__ static bool collides(const Robot& robot) {
-    return buckets(robot) > 0 && robot.header().contact_distance > 0;
+    return buckets(robot) > 0 && robot.header().contact_distance > 0 && robot.header().contact_stiffness > 0;
   }
   __device__ ContactMemory contact_memory(const Robot& robot) const { return {memory_, buckets(robot)}; }
 
@@ -135,7 +135,7 @@ class ContactPass {
   __device__ static void add_pair(const Robot& robot, std::uint32_t i, std::uint32_t j) {
     const Vec3 d = robot.mass_at(j).vector(field_x) - robot.mass_at(i).vector(field_x);
     if (!touches(robot, d)) return;
-    const float stiffness = robot.arguments().contact_stiffness * robot.header().force_scale;
+    const float stiffness = robot.header().contact_stiffness * robot.header().force_scale;
     const Vec3 units = repulsion(squared_length(d), robot.header().contact_distance, stiffness) * d;
     robot.mass_at(i).add_to_sum(units);
     robot.mass_at(j).add_to_sum(-units);

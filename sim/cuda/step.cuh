@@ -66,7 +66,8 @@ class RobotStepper {
     if (failure_->before(step, phase_environment)) return;
     if (batch().perturbation_count > 0 && robot_.thread() == 0) add_perturbations();
     if constexpr (EnvironmentModel::has_faces)
-      if (model_.acts_on_faces()) faces_.add(robot_, model_, step, *failure_);
+      if (model_.acts_on_faces())
+        faces_.add(robot_, model_, step, dither_of_step(robot_.arguments().clock.step + step), *failure_);
     if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
   }
 
@@ -77,9 +78,9 @@ class RobotStepper {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
       const Vec3 v = mass.vector(field_v);
-      const Vec3 force = sum_of(mass, 1 / robot_.header().force_scale) + model_.on_mass(v);
+      const Vec3 predicted =
+          accelerated(v, acceleration(sum_of(mass, 1 / robot_.header().force_scale), v, point_at(tile)), constants());
       mass.set_sum(robot_.incoming_bias(tile));
-      const Vec3 predicted = accelerated(v, force, constants());
       store(step, phase_prediction, tile, multiply_add(constants().dt, predicted, mass.vector(field_x)), predicted);
     }
   }
@@ -89,9 +90,13 @@ class RobotStepper {
     if (failure_->before(step, phase_springs)) return;
     const float limit = robot_.header().squared_stretch_limit;
     const SpringPass<Robot> springs(robot_);
+    float longest;
+    if (EnvironmentModel::real_bodies && robot_.arguments().launch.viscous)
+      longest = springs.template add_all<EnvironmentModel::real_bodies>();
+    else
+      longest = springs.template add_all<false>();
     // Padding counts in add_all() and may be long, so a failure is checked again without it.
-    if (springs.add_all() > limit && springs.longest_spring() > limit)
-      failure_->report(step, phase_springs, Failure::never);
+    if (longest > limit && springs.longest_spring() > limit) failure_->report(step, phase_springs, Failure::never);
   }
 
   __device__ void end(std::uint32_t step) {
@@ -104,18 +109,23 @@ class RobotStepper {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
       Vec3 x = mass.vector(field_x), v = mass.vector(field_v);
+      const PointProperties point = point_at(tile);
       if constexpr (solver == Solver::force) {
         const int bias = robot_.incoming_bias(tile);
-        v = accelerated(v, sum_of(mass, 1 / robot_.header().force_scale) + model_.on_mass(v), constants());
+        v = accelerated(v, acceleration(sum_of(mass, 1 / robot_.header().force_scale), v, point), constants());
         x = multiply_add(constants().dt, v, x);
         mass.set_sum(bias);
       } else {
-        const Vec3 correction = sum_of(mass, 1 / robot_.header().correction_scale);
+        Vec3 correction = sum_of(mass, 1 / robot_.header().correction_scale);
+        if constexpr (EnvironmentModel::real_bodies) correction = point.inverse_inertia * correction;
         x = x + correction;
         v = multiply_add(constants().inverse_dt, correction, v);
         mass.set_sum(0);
       }
-      end_step(x, v, model_, constants());
+      if constexpr (EnvironmentModel::real_bodies)
+        end_step(x, v, point.inverse_inertia, model_, constants());
+      else
+        end_step(x, v, model_, constants());
       if constexpr (EnvironmentModel::has_contacts) farthest = fmaxf(farthest, distance_moved(mass, x));
       store(step, phase_end, tile, x, v);
     }
@@ -123,6 +133,20 @@ class RobotStepper {
   }
 
  private:
+  __device__ PointProperties point_at(std::uint32_t tile) const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return robot_.point(tile);
+    else
+      return {};
+  }
+  // Of all forces on a mass, `force` being those that were summed [m/s2].
+  __device__ Vec3 acceleration(Vec3 force, Vec3 v, const PointProperties& point) const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return point.inverse_inertia * (force + model_.on_mass(v, point.weight));
+    else
+      return force + model_.on_mass(v);
+  }
+
   __device__ const BatchView& batch() const { return robot_.arguments().batch; }
   __device__ const StepConstants& constants() const { return robot_.arguments().constants; }
 

@@ -22,9 +22,9 @@ void add_perturbations(Body& body) {
   }
 }
 
-void add_contacts(Body& body, float stiffness) {
+void add_contacts(Body& body) {
   for_each_contact(
-      body, stiffness, [&](std::uint32_t slot) { return Body::at(body.x, slot); },
+      body, [&](std::uint32_t slot) { return Body::at(body.x, slot); },
       [&](std::uint32_t slot, Vec3 units) { add(body.sums, slot, units); });
 }
 
