@@ -66,7 +66,9 @@ bool PlainLoop::add_springs(const PerDistance& per_distance_of) {
     const Vec3 d = state_.positions[spring.b] - state_.positions[spring.a];
     const float squared = squared_length(d);
     longest_squared = squared > longest_squared ? squared : longest_squared;
-    const float approach = inner(d, state_.velocities[spring.b] - state_.velocities[spring.a]);
+    // Not without viscosity: an infinite velocity would make it NaN.
+    const float approach =
+        relaxation_times_[s] == 0 ? 0 : inner(d, state_.velocities[spring.b] - state_.velocities[spring.a]);
     const float viscous = viscous_length(squared, approach, relaxation_times_[s], viscous_limit * measures_.longest);
     const float per_distance = per_distance_of(squared, spring.rest_length * factor_[spring.material] - viscous, s);
     const auto units = [&](float along) { return static_cast<std::uint32_t>(to_fixed_small(per_distance, along)); };

@@ -333,7 +333,9 @@ struct GeneralModel : OceanModel {
               .lift_coefficient = 0,
               .drag_tangential = water->tangential_coefficient,
               .flow = water->flow};
-    return {.density = 0};
+    FaceDrag none;
+    none.density = 0;
+    return none;
   }
 };
 

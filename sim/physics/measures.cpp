@@ -106,6 +106,20 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
   return {power_of_two_within(range), power_of_two_within(reach * longest / (2 / inertia.heaviest + compliance))};
 }
 
+double xpbd_softening(const Robot& robot, const Configuration& configuration) {
+  const std::vector<std::uint32_t> valence = valences(robot);
+  const std::vector<PointProperties> points = point_properties(robot, configuration.environment);
+  const std::span<const Material> materials = materials_of(robot);
+  const auto at = [&](std::uint16_t mass) {
+    return static_cast<double>(valence[mass]) * static_cast<double>(points[mass].inverse_inertia);
+  };
+  double most = 0;
+  for (const Spring& spring : robot.springs)
+    most = std::max(most, (at(spring.a) + at(spring.b)) * static_cast<double>(materials[spring.material].stiffness));
+  return most * static_cast<double>(stiffness_scale_of(configuration.environment)) * configuration.dt *
+         configuration.dt;
+}
+
 std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t noted) {
   if (noted >= state.positions.size()) {
     const auto lost = std::ranges::find_if_not(state.positions, [](Vec3 x) { return within_reach(x); });

@@ -52,6 +52,10 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
 // tau d|d|/dt is at most this many of the robot's longest rest lengths.
 inline constexpr float viscous_limit = 2;
 
+// The largest softening of a spring by XPBD, (w_a s_a + w_b s_b) k dt^2: springs behave as if their stiffness were k /
+// (1 + softening), another one at each dt (docs/physics.md).
+double xpbd_softening(const Robot& robot, const Configuration& configuration);
+
 // The spring that caused an explosion, as far as can be known: the first spring of `bad_mass`, if there is one; else,
 // of the springs beyond the stretch limit, the one with the largest strain; else the one with the largest strain of
 // all. no_spring if the robot has no springs.

@@ -35,9 +35,6 @@ InertiaRange inertia_range(std::span<const PointProperties> points);
 // (environments.h).
 inline bool has_own_points(const Robot& robot) { return !robot.mass.empty() || !robot.fixed.empty(); }
 
-// The volume within the skin [m3]: negative if its faces show inwards, 0 without a skin.
-double skin_volume(const Robot& robot);
-
 // The velocity of each mass at the start [m/s]; fixed masses have none.
 std::vector<Vec3> start_velocities(const Robot& robot);
 
