@@ -107,7 +107,7 @@ void PlainLoop::add(std::size_t mass, Vec3 units) {
 // and returns false.
 template <class EnvironmentModel>
 bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
-  const FaceCoefficients<float> coefficients = model.of_sums(scale_.force);
+  const FaceCoefficients<float> coefficients = model.of_sums(scale_.environment);
   bool fit = true;
   std::uint32_t pair = 0;
   for (const auto& [a, b, c, d] : faces_) {
@@ -140,7 +140,7 @@ void PlainLoop::add_contact(std::uint16_t i, std::uint16_t j, float distance) {
   const Vec3 d = state_.positions[j] - state_.positions[i];
   const float squared = squared_length(d);
   if (!(squared < distance * distance) || joined(i, j)) return;
-  const Vec3 units = repulsion(squared, distance, contact_stiffness_ * scale_.force) * d;
+  const Vec3 units = repulsion(squared, distance, contact_stiffness_ * scale_.environment) * d;
   add(i, units);
   add(j, -units);
 }
@@ -171,7 +171,7 @@ void PlainLoop::add_contacts() {
 void PlainLoop::add_perturbations() {
   for (const Perturbation& perturbation : perturbations_) {
     const Vec3 units =
-        perturbation.stiffness * scale_.force * (perturbation.target - state_.positions[perturbation.mass]);
+        perturbation.stiffness * scale_.environment * (perturbation.target - state_.positions[perturbation.mass]);
     if (fits(units)) add(perturbation.mass, units);
   }
 }
@@ -205,7 +205,7 @@ bool PlainLoop::store_state(std::size_t mass, Vec3 x, Vec3 v) {
 // The velocity that all forces on a mass lead to, before damping.
 template <class EnvironmentModel>
 Vec3 PlainLoop::accelerate(std::size_t mass, const EnvironmentModel& model) {
-  const Vec3 v = state_.velocities[mass], force = take(mass, 1 / scale_.force);
+  const Vec3 v = state_.velocities[mass], force = take(mass, 1 / scale_.environment);
   if constexpr (EnvironmentModel::real_bodies) {
     const auto [inverse_inertia, weight] = points_[mass];
     return accelerated(v, inverse_inertia * (force + model.on_mass(v, weight)), constants_);
@@ -223,10 +223,28 @@ bool PlainLoop::end(std::size_t mass, Vec3 x, Vec3 v, const EnvironmentModel& mo
   return store_state(mass, x, v);
 }
 
+// The end of Algorithm 1, after the forces of the environment.
+template <class EnvironmentModel>
+bool PlainLoop::step_springs(const EnvironmentModel& model) {
+  bool finite = true;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const Vec3 force = take(i, 1 / scale_.force);
+    const Vec3 v = accelerated(state_.velocities[i], points_[i].inverse_inertia * force, constants_);
+    finite &= end(i, multiply_add(constants_.dt, v, state_.positions[i]), v, model);
+  }
+  return finite;
+}
+
 // Algorithm 1.
 template <class EnvironmentModel>
 bool PlainLoop::step_force(const EnvironmentModel& model) {
-  if (!add_environment(model) || !add_spring_forces()) return false;
+  if (!add_environment(model)) return false;
+  if constexpr (EnvironmentModel::real_bodies)
+    if (model.sums_apart()) {
+      for (std::size_t i = 0; i < sums_.size(); ++i) state_.velocities[i] = accelerate(i, model);
+      return add_spring_forces() && step_springs(model);
+    }
+  if (!add_spring_forces()) return false;
   bool finite = true;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const Vec3 v = accelerate(i, model);

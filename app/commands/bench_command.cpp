@@ -19,6 +19,7 @@
 #include "app/commands/results_file.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
+#include "app/options/parameter_options.h"
 #include "app/options/robot_memory.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
@@ -39,6 +40,7 @@ struct BenchOptions {
   std::uint64_t seed = 1;
   double least_seconds = 1;  // of device time to measure
   bool json = false, sweep = false, real = false;
+  RealMaterial material;  // if real
   std::string csv;
 };
 
@@ -78,7 +80,8 @@ std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& option
   while (robots.size() < count) {
     for (Robot& robot :
          random_voxel_robots(voxel, options.seed, std::min(at_once, count - robots.size()), robots.size()))
-      robots.push_back(std::make_shared<const Robot>(options.real ? with_real_body(robot, {}) : std::move(robot)));
+      robots.push_back(
+          std::make_shared<const Robot>(options.real ? with_real_body(robot, options.material) : std::move(robot)));
     watch("making robots", robots.size(), count);
   }
   return robots;
@@ -327,6 +330,7 @@ void add_bench_command(const Command& program, const Choose& choose) {
           },
           "Bodies as in the paper, or of a real material, in water (default paper)", "paper|real")
       .on_first_screen();
+  add_parameters(command, options->material, "Bodies");
   command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
   command
       .add_flag("--sweep", options->sweep,

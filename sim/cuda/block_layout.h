@@ -28,6 +28,7 @@
 //    result.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -65,6 +66,12 @@ struct BlockLayout {
 
 // Pairs of near masses that are listed. If there are more, every step searches the cell grid.
 inline constexpr std::uint32_t contact_list_size = 1023;
+
+// Pairs within this distance are listed [m]: half as far again as they touch, but if possible short of the neighbors in
+// a lattice, which springs join.
+inline float list_radius(float contact_distance, float shortest_rest_length) {
+  return std::max(1.25f * contact_distance, std::min(1.5f * contact_distance, 0.98f * shortest_rest_length));
+}
 
 // Buckets of the cell grid that finds the contacts of a robot of this many tiles; 0 without contacts.
 inline std::uint32_t contact_buckets(const Environment& environment, std::uint32_t tiles) {

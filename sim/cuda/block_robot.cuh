@@ -25,6 +25,8 @@ class BlockRobot {
 
   __device__ const StepArguments& arguments() const { return arguments_; }
   __device__ const RobotHeader& header() const { return header_; }
+  // The same in device memory, for what is rarely needed: it takes no register.
+  __device__ const RobotHeader& stored_header() const { return arguments_.batch.robots[context_.robot]; }
   __device__ const ThreadContext<Memory>& context() const { return context_; }
   __device__ std::uint32_t warps() const { return arguments_.launch.warps_per_robot; }
   __device__ std::uint32_t threads() const { return warps() * lanes; }

@@ -44,8 +44,10 @@ struct RobotHeader {
   std::uint32_t masses, tiles, face_pairs, springs;
   float force_scale, correction_scale;  // FixedPointScale
   float squared_stretch_limit;          // [m2]
-  float contact_distance;               // [m]
-  float contact_stiffness;              // [N/m], times the stiffness scale; 0 = no contacts
+  float environment_scale;              // the same, of the forces of the environment
+  float contact_distance;               // [m]; 0 = no contacts
+  float contact_units;                  // k_c [units/m]
+  float list_radius;                    // within which pairs are listed that may touch [m]
   float viscous_limit;                  // of tau d|d|/dt [m]; 0 = no spring has a relaxation time
   double mass;                          // of all masses together [kg]
 };

@@ -124,8 +124,10 @@ void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMe
                      .force_scale = 1,  // publish() sets these, by describe()
                      .correction_scale = 1,
                      .squared_stretch_limit = measures.squared_stretch_limit(),
+                     .environment_scale = 1,
                      .contact_distance = 0,
-                     .contact_stiffness = 0,
+                     .contact_units = 0,
+                     .list_radius = 0,
                      .viscous_limit = 0,
                      .mass = mass};
   const auto to = table(place);
@@ -219,6 +221,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
+  if (launch_.contact_buckets > 0) workspace += 3 * sizeof(float) * sizes_.slots();
   reserve_workspace(workspace);
 }
 

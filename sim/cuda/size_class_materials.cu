@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "sim/cuda/block_layout.h"
 #include "sim/cuda/size_class.h"
 
 namespace mercury::cuda {
@@ -38,12 +39,15 @@ void SizeClass::describe(std::uint32_t place, const Configuration& configuration
   point_properties_[place] = own ? point_properties(robot, environment) : std::vector<PointProperties>();
   const InertiaRange inertia = inertia_range(point_properties_[place]);
   RobotHeader& header = headers_[place];
-  header.contact_distance = contact_distance(robot, measures, environment);
-  header.contact_stiffness = contact_stiffness_of(environment, configuration.solver, configuration.dt,
-                                                  stiffest_spring(measures, table(place)), inertia.lightest);
+  const float distance = contact_distance(robot, measures, environment);
+  const float contact_stiffness = contact_stiffness_of(environment, configuration.solver, configuration.dt,
+                                                       stiffest_spring(measures, table(place)), inertia.lightest);
   header.viscous_limit = has_viscous_springs(measures, table(place)) ? viscous_limit * measures.longest : 0;
-  const FixedPointScale scale =
-      fixed_point_scale(measures, table(place), configuration, header.contact_distance, inertia);
+  const FixedPointScale scale = fixed_point_scale(measures, table(place), configuration, distance, inertia);
+  header.environment_scale = scale.environment;
+  header.contact_distance = contact_stiffness > 0 ? distance : 0;
+  header.contact_units = contact_stiffness * scale.environment;
+  header.list_radius = list_radius(distance, measures.shortest);
   header.force_scale = scale.force;
   header.correction_scale = scale.correction;
 }

@@ -45,6 +45,10 @@ __global__ void __maxnreg__(72)
         __syncthreads();
       stepper.predict(step);
       __syncthreads();
+    } else if (stepper.sums_apart()) {
+      __syncthreads();
+      stepper.accelerate(step);
+      __syncthreads();
     }
     stepper.add_springs(step);
     __syncthreads();

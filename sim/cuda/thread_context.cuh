@@ -56,6 +56,7 @@ struct BlockContext {
   float* relaxation_times;  // [table_chunks][32], if launch.viscous
   Failure* failure;
   char* contacts;
+  float* listed;  // ContactPass
   ThreadContext<Memory> thread;
 
   // `fields` = of a tile in working memory.
@@ -80,6 +81,9 @@ struct BlockContext {
     contacts = launch.contacts_on_chip ? shared_memory + layout.relaxation_times +
                                              number * contact_bytes(launch.contact_buckets, batch.tile_stride)
                                        : workspace + (Memory::on_chip ? 0 : working_bytes);
+    listed = reinterpret_cast<float*>(
+        workspace + (Memory::on_chip ? 0 : working_bytes) +
+        (launch.contacts_on_chip ? 0 : contact_bytes(launch.contact_buckets, batch.tile_stride)));
     material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +
                      (launch.shared_table ? 0 : number * table_copies * launch.table_chunks * lanes);
     thread.material_table = shared_address(material_table + thread.lane % table_copies);

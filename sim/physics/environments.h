@@ -5,11 +5,13 @@
 //
 //   has_faces, has_contacts, has_ground   which of the parts below a step contains
 //   real_bodies                           masses may differ from 1 kg, and springs have relaxation times
+//   has_flow                              whether the water may flow: damping is relative to it
 //   still_water                           on_mass() is zero, so a step leaves it out
 //   on_mass(v, weight)                    force on a mass that has velocity v and this weight (points.h) [N]
 //   acts_on_faces()                       whether on_face() may be other than zero, if has_faces
 //   on_face(area_normal, v)               force on a face, if has_faces [N]
 //   on_face(normal, u, u.u, coefficients) the same with fewer multiplications, see OceanModel::of_sums()
+//   sums_apart()                          whether the forces of the environment are summed apart from those of springs
 //   dither()                              1 or 0, the factor of fixed_point.h's dithered() for forces on faces
 //   acts_on_ground()                      whether there is ground, if has_ground
 //   touch_ground(x, displacement)         contact with the ground at the end of a step, if has_ground
@@ -58,7 +60,7 @@ struct FaceCoefficients {
 // 4. Hence F . u = rho A / 2 (C_D (u . n) |u|^2 + C_T |u_t|^3) >= 0: drag never adds energy to a body in still water.
 struct OceanModel {
   static constexpr bool has_faces = true, has_contacts = false, has_ground = false, still_water = false;
-  static constexpr bool has_tangential_drag = true, real_bodies = false;
+  static constexpr bool has_tangential_drag = true, real_bodies = false, has_flow = true;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, drag_minus_lift = 0, lift = 0, tangential = 0;
 
@@ -74,6 +76,7 @@ struct OceanModel {
 
   MERCURY_HOST_DEVICE bool acts_on_faces() const { return true; }
   MERCURY_HOST_DEVICE float dither() const { return 0; }
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
 
   // `area_normal` is A n. Both orientations give the same force.
   template <class Vector>
@@ -133,10 +136,10 @@ struct OceanModel {
   }
 };
 
-// Water without tangential drag, as it is by default. Steps do not compute what is zero.
+// Water without tangential drag and flow, as it is by default. Steps do not compute what is zero.
 struct FrictionlessOceanModel : OceanModel {
-  static constexpr bool has_tangential_drag = false;
-  static bool fits(const OceanModel& model) { return model.tangential == 0; }
+  static constexpr bool has_tangential_drag = false, has_flow = false;
+  static bool fits(const OceanModel& model) { return model.tangential == 0 && model.flow == Vec3{}; }
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
@@ -167,7 +170,7 @@ struct StillWaterOceanModel : FrictionlessOceanModel {
 // that moves across itself has a drag coefficient of 2 C_N on one side's area. F . u >= 0: drag never adds energy.
 struct ResistiveModel {
   static constexpr bool has_faces = true, has_contacts = true, has_ground = false, still_water = false;
-  static constexpr bool has_tangential_drag = true, real_bodies = true;
+  static constexpr bool has_tangential_drag = true, real_bodies = true, has_flow = true;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, normal = 0, tangential = 0;
 
@@ -181,6 +184,7 @@ struct ResistiveModel {
   }
   MERCURY_HOST_DEVICE bool acts_on_faces() const { return true; }
   MERCURY_HOST_DEVICE float dither() const { return 1; }
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return true; }
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
@@ -197,7 +201,8 @@ struct ResistiveModel {
     const Vector n{inverse_length * normal.x, inverse_length * normal.y, inverse_length * normal.z};
     const auto across = inner(n, u);
     const Vector along{fnma(across, n.x, u.x), fnma(across, n.y, u.y), fnma(across, n.z, u.z)};
-    const auto factor = by.tangential * length * square_root(inner(along, along));
+    const auto slide = inner(along, along);
+    const auto factor = by.tangential * length * (slide * inverse_sqrt(slide + 1e-30f));
     const auto push = by.normal * length * absolute(across) * across;
     return {multiply_add(push, n.x, factor * along.x), multiply_add(push, n.y, factor * along.y),
             multiply_add(push, n.z, factor * along.z)};
@@ -213,10 +218,11 @@ struct ResistiveModel {
   }
 };
 
-// Drag on each mass, F = drag (flow - v) (paper, II.E).
+// Drag on each mass, F = -drag v (paper, II.E).
 struct OceanSimpleModel {
   static constexpr bool has_faces = false, has_contacts = false, has_ground = false, still_water = false;
-  static constexpr bool real_bodies = false;
+  static constexpr bool real_bodies = false, has_flow = false;
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
   Vec3 gravity, flow;
   float drag = 0;
 
@@ -258,7 +264,8 @@ MERCURY_HOST_DEVICE auto touch_plane(Vector& x, Vector& displacement, float fric
 // Ground and contacts without water.
 struct LandModel {
   static constexpr bool has_faces = false, has_contacts = true, has_ground = true, still_water = false;
-  static constexpr bool real_bodies = false;
+  static constexpr bool real_bodies = false, has_flow = false;
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
   Vec3 gravity;
   float friction = 0;
 
@@ -298,12 +305,13 @@ struct GeneralModel : OceanModel {
   }
   MERCURY_HOST_DEVICE bool acts_on_faces() const { return face_drag; }
   MERCURY_HOST_DEVICE float dither() const { return is_resistive ? 1.0f : 0.0f; }
+  MERCURY_HOST_DEVICE bool sums_apart() const { return is_resistive; }
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
     const Vector u = flow - velocity;
     return on_face(area_normal, u, inner(u, u), coefficients());
   }
-  // One of the two laws has coefficients of zero, and adds nothing.
+  // One of the two has coefficients of zero, and adds nothing.
   template <class Vector, class Real>
   MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
     return drag_and_lift(normal, u, speed_squared, by) + ResistiveModel::on_face(normal, u, speed_squared, by);
@@ -358,7 +366,8 @@ inline AnyEnvironmentModel solver_model_of(const Environment& environment, bool 
     if (FrictionlessOceanModel::fits(model)) return FrictionlessOceanModel{model};
     return model;
   }
-  if (const auto* water = std::get_if<PointDrag>(&environment.water)) return OceanSimpleModel(*water, gravity);
+  if (const auto* water = std::get_if<PointDrag>(&environment.water); water && water->flow == Vec3{})
+    return OceanSimpleModel(*water, gravity);
   if (!has_water(environment)) return OceanSimpleModel(PointDrag{.point_drag = 0}, gravity);
   return GeneralModel(environment);
 }

@@ -85,10 +85,13 @@ MERCURY_HOST_DEVICE auto fits(Vector units) {
                 absolute(units.z) < face_limit_units);
 }
 
-// Units of one robot, powers of two. The force solver sums forces, XPBD corrections of positions.
+// Units of one robot, powers of two. The force solver sums forces, XPBD corrections of positions. Resistive water sums
+// the forces of the environment apart, in units that do not depend on how stiff the springs are; elsewhere they are
+// summed together, in one unit.
 struct FixedPointScale {
-  float force = 1;       // [1/N]
-  float correction = 1;  // [1/m]
+  float force = 1;        // of springs [1/N]
+  float correction = 1;   // [1/m]
+  float environment = 1;  // of all other forces [1/N]
 };
 
 }  // namespace mercury

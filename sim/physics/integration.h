@@ -11,6 +11,9 @@
 //   x'   = x + dt w                                 x'   = p + c
 //   v'   = flow + zeta (w - flow)                   v'   = flow + zeta (w - flow)         end_step()
 //
+// Resistive water accelerates masses by the forces of the environment first, w = v + dt F / m, and then by those of the
+// springs; both were summed at x^n, in units of their own (fixed_point.h).
+//
 // zeta = exp(-damping dt); the flow is that of the water, 0 without water. Where the ground resolves a contact, x' and
 // w change together.
 //
@@ -74,9 +77,11 @@ MERCURY_HOST_DEVICE void end_step(Vector& x, Vector& v, const EnvironmentModel& 
       const auto touched = model.touch_ground(x, displacement);
       v = select(touched, step.inverse_dt * displacement, v);
     }
-  v = step.zeta * v;
-  if constexpr (requires { model.flow; } && !EnvironmentModel::still_water)
-    v = {v.x + step.drift.x, v.y + step.drift.y, v.z + step.drift.z};
+  if constexpr (EnvironmentModel::has_flow)
+    v = {multiply_add(step.zeta, v.x, step.drift.x), multiply_add(step.zeta, v.y, step.drift.y),
+         multiply_add(step.zeta, v.z, step.drift.z)};
+  else
+    v = step.zeta * v;
 }
 
 // The same for a mass that may be fixed, which then stays at rest.

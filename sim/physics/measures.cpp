@@ -49,6 +49,11 @@ float power_of_two_within(float range) { return std::exp2(std::floor(std::log2(s
 
 RobotMeasures measure(const Robot& robot) {
   RobotMeasures measures;
+  for (const Face& face : robot.faces) {
+    const Vec3 a = robot.masses[face.a];
+    measures.largest_face =
+        std::max(measures.largest_face, length(cross(robot.masses[face.b] - a, robot.masses[face.c] - a)) / 2);
+  }
   if (robot.springs.empty()) return measures;
   measures.shortest = robot.springs.front().rest_length;
   for (const Spring& spring : robot.springs) {
@@ -103,7 +108,19 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
   const float compliance =
       static_cast<float>(1 / (static_cast<double>(stiffness) * configuration.dt * configuration.dt));
   const float longest = std::max(measures.longest, min_rest_length);
-  return {power_of_two_within(range), power_of_two_within(reach * longest / (2 / inertia.heaviest + compliance))};
+  FixedPointScale units{power_of_two_within(range),
+                        power_of_two_within(reach * longest / (2 / inertia.heaviest + compliance)), 1};
+  units.environment = units.force;
+  if (const auto* water = std::get_if<ResistiveDrag>(&configuration.environment.water)) {
+    constexpr float fastest = 20, larger = 2;  // [m/s], [1]
+    const float pressure =
+        water->density / 2 * fastest * fastest * std::max(water->normal_coefficient, water->tangential_coefficient);
+    float environment = std::max(pressure * larger * measures.largest_face, 1000 * std::min(1.0f, inertia.lightest));
+    if (const auto& contacts = configuration.environment.contacts)
+      environment = std::max(environment, unlimited_contact_stiffness(*contacts, stiffest) * scale * contact_distance);
+    units.environment = power_of_two_within(environment * (spring_limit_units / face_limit_units));
+  }
+  return units;
 }
 
 double xpbd_softening(const Robot& robot, const Configuration& configuration) {

@@ -16,6 +16,7 @@
 namespace mercury {
 
 struct RobotMeasures {
+  float largest_face = 0;                  // area at rest [m2]
   float longest = 0;                       // longest rest length [m]; 0 without springs
   float shortest = 0;                      // shortest rest length [m]
   std::array<bool, max_materials> used{};  // by material: whether a spring has it
@@ -44,7 +45,10 @@ std::vector<std::uint32_t> valences(const Robot& robot);
 //   correction  2^22 units >= 18 L_max / (2 / m_max + 1 / (k_max dt^2))
 //
 // Viscous springs add at most viscous_limit rest lengths. Contacts and a minimum of 16 N, or of 16 N per kg of the
-// lightest mass, extend the range of forces.
+// lightest mass, extend the range of forces. In resistive water the environment has units of its own:
+//
+//   environment 2^27 units >= k_c distance, the drag on a face of twice the size at 20 m/s, and 1000 N (per kg of the
+//                             lightest mass if that is below 1 kg)
 FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const Material> materials,
                                   const Configuration& configuration, float contact_distance,
                                   const InertiaRange& inertia);

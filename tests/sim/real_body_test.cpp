@@ -156,8 +156,8 @@ TEST_P(RealBody, AFreeBodyInAFlowEndsAtTheFlowsSpeed) {
   check(resistive({.flow = flow}), 0.1);
 }
 
-// rho A / 2 (2 C_N + 4 C_T) v^2: a cube that sinks across two of its sides and along four. Its speed is the way over
-// the time, in the last of 2.5 time constants.
+// rho A / 2 (2 C_N + 4 C_T) v^2: a cube that sinks across two of its sides and along four. The mean speed in the last
+// quarter of a time constant, before the cube turns: on an edge it sinks faster.
 TEST_P(RealBody, ACubeSinksAtItsTerminalSpeedFromAMillimeterToMetersPerSecond) {
   struct Case {
     double side, stiffness, speed;
@@ -177,12 +177,12 @@ TEST_P(RealBody, ACubeSinksAtItsTerminalSpeedFromAMillimeterToMetersPerSecond) {
     // Long steps: in each, a slow body should move by many of the distances between floats.
     setting.dt = std::min({0.01, 0.5 / std::sqrt(17 * stiffness / lightest), time_constant / 200});
     Simulation simulation(setting, {&robot, 1});
-    const std::vector<Vec3> almost(robot.masses.size(), Vec3{0, 0, static_cast<float>(-0.97 * speed)});
+    const std::vector<Vec3> almost(robot.masses.size(), Vec3{0, 0, static_cast<float>(-0.99 * speed)});
     simulation.set_state(0, robot.masses, almost);
     const auto steps = std::llround(time_constant / 100 / setting.dt);
-    simulation.step(150 * steps);
+    simulation.step(75 * steps);
     double found = 0;
-    for (const Telemetry& sample : simulation.step_and_sample(100 * steps, steps)) found -= sample.velocity.z / 100;
+    for (const Telemetry& sample : simulation.step_and_sample(25 * steps, steps)) found -= sample.velocity.z / 25;
     EXPECT_NEAR(found / speed, 1, 0.01) << "k " << stiffness << " N/m, " << speed << " m/s";
   }
 }
@@ -269,7 +269,7 @@ TEST_P(RealBody, BodiesDoNotPassThroughThemselvesInWater) {
     for (std::size_t i = 0; i < x.size(); ++i) (i < first ? left : right) += (1.0f / static_cast<float>(first)) * x[i];
     nearest = std::min(nearest, right.x - left.x);
   }
-  EXPECT_LT(nearest, 0.32f);  // they met: 0.2 m wide, with a contact distance of 0.1 m
+  EXPECT_LT(nearest, 0.29f);  // they met: 0.2 m wide, with a contact distance of 0.09 m
   EXPECT_GT(nearest, 0.2f);   // and stayed apart
   EXPECT_FALSE(simulation.telemetry(0).exploded);
 }

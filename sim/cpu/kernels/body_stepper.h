@@ -43,6 +43,11 @@ class BodyStepper {
   // Algorithm 1.
   bool step_force(const float* factors) {
     if (!add_environment()) return false;
+    if constexpr (EnvironmentModel::real_bodies)
+      if (model_.sums_apart()) {
+        BodyMotion motion(body_, model_, constants_, body_.scale.environment);
+        for (std::size_t slot = 0; slot < body_.slots.mass_at.size(); slot += lane_count) motion.accelerate(slot);
+      }
     BodyMotion end(body_, model_, constants_, body_.scale.force);
     if (!add_springs(factors, body_.squared_diagonal, [&](std::size_t slot) HWY_ATTR { end.end_with_forces(slot); }))
       return false;
@@ -54,7 +59,7 @@ class BodyStepper {
   // Algorithm 2.
   bool step_xpbd(const float* factors) {
     if (!add_environment()) return false;
-    BodyMotion prediction(body_, model_, constants_, body_.scale.force);
+    BodyMotion prediction(body_, model_, constants_, body_.scale.environment);
     for (std::size_t slot = 0; slot < body_.slots.mass_at.size(); slot += lane_count) prediction.predict(slot);
     if (!prediction.is_finite()) return false;
     BodyMotion end(body_, model_, constants_, body_.scale.correction);

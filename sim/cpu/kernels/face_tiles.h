@@ -43,7 +43,7 @@ class FaceTiles {
   FaceTiles(Body& body, const EnvironmentModel& model, std::uint32_t dither)
       : arrays_(body), dither_of_pairs_(body.face_dither.data()), dither_(dither), dither_factor_(model.dither()),
         tiles_(body.face_tiles.data()), end_(tiles_ + body.face_tiles.size()),
-        coefficients_(model.of_sums(body.scale.force)),
+        coefficients_(model.of_sums(body.scale.environment)),
         bound_per_squared_speed_(coefficients_.bound() * body.squared_diagonal),
         thrice_flow_(broadcast_aos(model.thrice_flow)) {}
 

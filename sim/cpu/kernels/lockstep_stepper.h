@@ -44,6 +44,7 @@ class LockstepStepper {
       : group_(group), x_(group.x.data()), v_(group.v.data()), sums_(group.sums.data()), slots_(group.slots),
         model_(model), constants_(setting.constants), force_scale_(load_aligned(group.force_scale.data())),
         correction_scale_(load_aligned(group.correction_scale.data())), per_force_(inverse(force_scale_)),
+        per_environment_(inverse(load_aligned(group.environment_scale.data()))),
         per_correction_(inverse(correction_scale_)),
         squared_stretch_limit_(load_aligned(group.squared_stretch_limit.data())) {}
 
@@ -61,12 +62,19 @@ class LockstepStepper {
  private:
   // Algorithm 1.
   bool step_force(const float* factors) {
+    const bool apart = accelerate_by_environment();
     Box box;
     const bool compact = is_compact(load_aligned(group_.squared_diagonal.data()));
     const bool within_limit = add_springs(factors, compact, [&](std::size_t slot, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = load_nth_slot(x_, slot), v0 = load_nth_slot(v_, slot);
       const PointLanes point = point_at(slot);
-      Lanes3 v = accelerated_by(sum, per_force_, v0, point, model_, constants_), x = multiply_add(constants_.dt, v, x0);
+      Lanes3 v;
+      if constexpr (EnvironmentModel::real_bodies)
+        v = apart ? accelerated_by_springs(sum, per_force_, v0, point, constants_)
+                  : accelerated_by(sum, per_force_, v0, point, model_, constants_);
+      else
+        v = accelerated_by(sum, per_force_, v0, point, model_, constants_);
+      Lanes3 x = multiply_add(constants_.dt, v, x0);
       end_step_of(x, v, point, model_, constants_);
       store_state(x, v, slot);
       box.add(x);
@@ -75,12 +83,24 @@ class LockstepStepper {
     return within_limit && is_within_reach(box);
   }
 
+  // Algorithm 1, where the forces of the environment are summed apart. Returns whether they are.
+  bool accelerate_by_environment() {
+    if constexpr (!EnvironmentModel::real_bodies) return false;
+    if (!model_.sums_apart()) return false;
+    for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+      const Lanes3 v =
+          accelerated_by(take(slot), per_environment_, load_nth_slot(v_, slot), point_at(slot), model_, constants_);
+      store_aligned(v, slot_at(v_, 3 * lane_count * slot), 0);
+    }
+    return true;
+  }
+
   // Algorithm 2.
   bool step_xpbd(const float* factors) {
     Box predicted;
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
       const Lanes3 v =
-          accelerated_by(take(slot), per_force_, load_nth_slot(v_, slot), point_at(slot), model_, constants_);
+          accelerated_by(take(slot), per_environment_, load_nth_slot(v_, slot), point_at(slot), model_, constants_);
       const Lanes3 x = multiply_add(constants_.dt, v, load_nth_slot(x_, slot));
       store_state(x, v, slot);
       predicted.add(x);
@@ -271,7 +291,7 @@ class LockstepStepper {
   const EnvironmentModel model_;
   const StepConstants constants_;
   std::uint32_t dither_ = 0;
-  const Lanes force_scale_, correction_scale_, per_force_, per_correction_, squared_stretch_limit_;
+  const Lanes force_scale_, correction_scale_, per_force_, per_environment_, per_correction_, squared_stretch_limit_;
 };
 
 template <class EnvironmentModel>

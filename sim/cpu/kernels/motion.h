@@ -49,6 +49,12 @@ HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, PointL
     return accelerated(v, per_unit * float_of(sum) + model.on_mass(v), constants);
 }
 
+// The same with springs alone, after the forces of the environment.
+HWY_INLINE Lanes3 accelerated_by_springs(Integers3 sum, Lanes per_unit, Lanes3 v, PointLanes point,
+                                         const StepConstants& constants) {
+  return accelerated(v, point.inverse_inertia * (per_unit * float_of(sum)), constants);
+}
+
 // XPBD's correction of a mass [m]; `sum` counts units of `per_unit` kg m.
 template <class EnvironmentModel>
 HWY_INLINE Lanes3 correction_by(Integers3 sum, Lanes per_unit, PointLanes point) {
@@ -91,12 +97,27 @@ class Motion {
   HWY_INLINE void end_with_forces(std::size_t slot) {
     const Lanes3 x0 = load_aligned(arrays_.x, slot), v0 = load_aligned(arrays_.v, slot);
     const PointLanes point = point_at(slot);
-    Lanes3 v = accelerated_by(take<true>(slot), inverse_scale_, v0, point, model_, constants_);
+    Lanes3 v;
+    if constexpr (EnvironmentModel::real_bodies) {
+      const Integers3 sum = take<true>(slot);
+      v = model_.sums_apart() ? accelerated_by_springs(sum, inverse_scale_, v0, point, constants_)
+                              : accelerated_by(sum, inverse_scale_, v0, point, model_, constants_);
+    } else {
+      v = accelerated_by(take<true>(slot), inverse_scale_, v0, point, model_, constants_);
+    }
     Lanes3 x = multiply_add(constants_.dt, v, x0);
     end_step_of(x, v, point, model_, constants_);
     store_state(x, v, x0, v0, slot);
     box_.add(x);
     store_aos_of(x, v, slot);
+  }
+
+  // Algorithm 1: adds the forces of the environment to the velocity, where they are summed apart.
+  HWY_INLINE void accelerate(std::size_t slot) {
+    const Lanes3 v = accelerated_by(take<false>(slot), inverse_scale_, load_aligned(arrays_.v, slot), point_at(slot),
+                                    model_, constants_);
+    store_aligned(v, arrays_.v, slot);
+    if constexpr (gathered_springs) arrays_.store_v_aos(v, slot);
   }
 
   // Algorithm 2: replaces the position by the prediction and the velocity by v + dt F.

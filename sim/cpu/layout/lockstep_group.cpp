@@ -86,8 +86,8 @@ void resize_arrays(LockstepGroup& group) {
   for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * slots);
   group.sums.resize(3 * slots);
   for (Aligned<float>* by_lane :
-       {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit, &group.contact_distance,
-        &group.viscous_limit, &group.face_force_bound, &group.squared_diagonal})
+       {&group.force_scale, &group.correction_scale, &group.environment_scale, &group.squared_stretch_limit,
+        &group.contact_distance, &group.viscous_limit, &group.face_force_bound, &group.squared_diagonal})
     by_lane->resize(group.lanes);
 }
 
@@ -158,7 +158,7 @@ void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& mode
       group.inverse_inertia[index_map.slots[mass] * group.lanes + lane] = point.inverse_inertia;
       group.weight[index_map.slots[mass] * group.lanes + lane] = point.weight;
     }
-    if (const auto coefficients = face_coefficients_of(model, body.scale.force)) {
+    if (const auto coefficients = face_coefficients_of(model, body.scale.environment)) {
       group.face_force_bound[lane] = coefficients->bound();
       for (std::uint32_t own = 0; own < index_map.face_pairs.size(); ++own) {
         const std::size_t i = group.face_tile_of_pair[index_map.face_pairs[own]] * group.lanes + lane;
@@ -171,6 +171,7 @@ void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& mode
     }
     group.force_scale[lane] = body.scale.force;
     group.correction_scale[lane] = body.scale.correction;
+    group.environment_scale[lane] = body.scale.environment;
     group.squared_stretch_limit[lane] = body.measures.squared_stretch_limit();
     group.contact_distance[lane] = body.contact_distance;
     group.viscous_limit[lane] = viscous_limit * body.measures.longest;
@@ -230,7 +231,8 @@ void set_perturbations(LockstepGroup& group) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane)
     for (const Perturbation& perturbation : group.body_in(lane).perturbations)
       group.perturbations.push_back({group.offset_of(group.index_maps[lane]->slots[perturbation.mass], lane),
-                                     perturbation.target, perturbation.stiffness * group.body_in(lane).scale.force});
+                                     perturbation.target,
+                                     perturbation.stiffness * group.body_in(lane).scale.environment});
 }
 
 void add_perturbations(LockstepGroup& group) {

@@ -96,10 +96,10 @@ struct LockstepGroup {
   std::vector<LanePerturbation> perturbations;
 
   // By lane.
-  Aligned<float> force_scale, correction_scale;  // FixedPointScale
-  Aligned<float> squared_stretch_limit;          // [m2]
-  Aligned<float> contact_distance;               // [m]
-  Aligned<float> viscous_limit;                  // of tau d|d|/dt [m]
+  Aligned<float> force_scale, correction_scale, environment_scale;  // FixedPointScale
+  Aligned<float> squared_stretch_limit;                             // [m2]
+  Aligned<float> contact_distance;                                  // [m]
+  Aligned<float> viscous_limit;                                     // of tau d|d|/dt [m]
   Aligned<float> face_force_bound;  // no face's force exceeds this times |2 A n| |sum of velocities|^2 [units]
   Aligned<float> squared_diagonal;  // of the box around all masses of the lane [m2]; infinite if not known
 

@@ -17,7 +17,7 @@ void add(Sums& sums, std::size_t slot, Vec3 units) {
 void add_perturbations(Body& body) {
   for (const Perturbation& perturbation : body.perturbations) {
     const Vec3 units =
-        perturbation.stiffness * body.scale.force * (perturbation.target - body.position(perturbation.mass));
+        perturbation.stiffness * body.scale.environment * (perturbation.target - body.position(perturbation.mass));
     if (fits(units)) add(body.sums, body.slots.of_mass[perturbation.mass], units);
   }
 }

@@ -24,7 +24,7 @@ void for_each_contact(const Body& body, const Positions& positions, const Add& a
     const Vec3 d = positions(j) - positions(i);
     const float squared = squared_length(d);
     if (!(squared < distance * distance)) continue;
-    const Vec3 units = repulsion(squared, distance, body.contact_stiffness * body.scale.force) * d;
+    const Vec3 units = repulsion(squared, distance, body.contact_stiffness * body.scale.environment) * d;
     add(i, units);
     add(j, -units);
   }

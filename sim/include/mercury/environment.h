@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What robots live in. An environment is composed of parts:
 //
-//   water      none, drag on faces by one of two laws, or drag on masses
+//   water      none, drag on faces (as in the paper, or resistive), or drag on masses
 //   ground     none, or a plane
 //   contacts   none, or masses of one robot that repel each other
 //   gravity, and a factor for every stiffness
@@ -247,8 +247,9 @@ struct Water {
   static constexpr std::string_view name = "water", help = "resistive drag, added mass, contacts";
   ResistiveDrag drag;
   Vec3 gravity;  // [m/s2]
-  // Half as stiff as the body, at the distance of neighbors: masses of a lattice then cannot pass between others.
-  Contacts contacts{.relative_stiffness = 0.5f, .contact_distance = 1};
+  // As stiff as the body, at 0.9 of the distance of neighbors: the middle between four masses of a lattice is 0.71 of
+  // it from each, so what passes there has to push them aside.
+  Contacts contacts{.relative_stiffness = 1, .contact_distance = 0.9f};
 
   constexpr operator Environment() const {
     return {.water = drag, .ground = {}, .contacts = contacts, .gravity = gravity, .stiffness_scale = 1};
