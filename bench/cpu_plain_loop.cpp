@@ -14,7 +14,12 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
     : robot_(robot), configuration_(configuration), measures_(measure(robot)), faces_(pair_faces(robot)) {
   std::array<Material, max_materials> materials{};
   std::ranges::copy(materials_of(robot), materials.begin());
-  scale_ = fixed_point_scale(measures_, materials, configuration);
+  const bool real = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(configuration.environment.water);
+  points_ =
+      real ? point_properties(robot, configuration.environment) : std::vector<PointProperties>(robot.masses.size());
+  const InertiaRange inertia = inertia_range(points_);
+  contact_distance_ = contact_distance(robot, measures_, configuration.environment);
+  scale_ = fixed_point_scale(measures_, materials, configuration, contact_distance_, inertia);
   const Clock clock{.dt = configuration.dt};
   const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
   for (std::size_t id = 0; id < max_materials; ++id) {
@@ -23,18 +28,23 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
     compliance_[id] = static_cast<float>(1 / (stiffness * configuration.dt * configuration.dt)) / scale_.correction;
     phases_[id] = muscle_phase(materials[id], clock);
   }
-  contact_stiffness_ = contact_stiffness_of(configuration.environment, configuration.solver, configuration.dt);
-  constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
-                static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
+  contact_stiffness_ = contact_stiffness_of(configuration.environment, configuration.solver, configuration.dt,
+                                            stiffest_spring(measures_, materials), inertia.lightest);
+  constants_ = step_constants(configuration);
   const std::size_t masses = robot.masses.size();
-  state_ = {robot.masses, std::vector<Vec3>(masses)};
+  state_ = {robot.masses, start_velocities(robot)};
   sums_.resize(masses);
   neighbors_.resize(masses);
   heads_.resize(std::bit_ceil(2 * masses));
   links_.resize(masses);
   const std::vector<std::uint32_t> at = valences(robot);
   for (const Spring& spring : robot.springs) {
-    valence_sums_.push_back(static_cast<float>(at[spring.a] + at[spring.b]));
+    const auto valence_at = [&](std::uint16_t mass) {
+      return static_cast<float>(at[mass]) * points_[mass].inverse_inertia;
+    };
+    relaxation_times_.push_back(materials[spring.material].relaxation_time);
+    valence_sums_.push_back(viscous_factor(relaxation_times_.back(), constants_.inverse_dt) *
+                            (valence_at(spring.a) + valence_at(spring.b)));
     neighbors_[spring.a].push_back(spring.b);
     neighbors_[spring.b].push_back(spring.a);
   }
@@ -56,7 +66,11 @@ bool PlainLoop::add_springs(const PerDistance& per_distance_of) {
     const Vec3 d = state_.positions[spring.b] - state_.positions[spring.a];
     const float squared = squared_length(d);
     longest_squared = squared > longest_squared ? squared : longest_squared;
-    const float per_distance = per_distance_of(squared, spring.rest_length * factor_[spring.material], s);
+    // Not without viscosity: an infinite velocity would make it NaN.
+    const float approach =
+        relaxation_times_[s] == 0 ? 0 : inner(d, state_.velocities[spring.b] - state_.velocities[spring.a]);
+    const float viscous = viscous_length(squared, approach, relaxation_times_[s], viscous_limit * measures_.longest);
+    const float per_distance = per_distance_of(squared, spring.rest_length * factor_[spring.material] - viscous, s);
     const auto units = [&](float along) { return static_cast<std::uint32_t>(to_fixed_small(per_distance, along)); };
     const std::uint32_t fx = units(d.x), fy = units(d.y), fz = units(d.z);
     Sum &a = sums_[spring.a], &b = sums_[spring.b];
@@ -93,9 +107,11 @@ void PlainLoop::add(std::size_t mass, Vec3 units) {
 // and returns false.
 template <class EnvironmentModel>
 bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
-  const FaceCoefficients<float> coefficients = model.of_sums(scale_.force);
+  const FaceCoefficients<float> coefficients = model.of_sums(scale_.environment);
   bool fit = true;
+  std::uint32_t pair = 0;
   for (const auto& [a, b, c, d] : faces_) {
+    const std::uint32_t dither = dither_of_pair(pair++) + dither_of_step(now_);
     const std::vector<Vec3>&x = state_.positions, &v = state_.velocities;
     const Vec3 to_c = x[c] - x[a], common = v[a] + v[c] - model.thrice_flow;
     const auto on_face = [&](Vec3 normal, Vec3 sum) {
@@ -108,12 +124,10 @@ bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
       fit = false;
       continue;
     }
-    add(a, first);
-    add(b, first);
-    add(c, first);
-    add(a, second);
-    add(c, second);
-    add(d, second);
+    const Vec3 on_first = dithered(first, dither, model.dither());
+    const Vec3 on_second = dithered(second, dither + second_face_dither, model.dither());
+    for (const std::uint16_t corner : {a, b, c}) add(corner, on_first);
+    for (const std::uint16_t corner : {a, c, d}) add(corner, on_second);
   }
   return fit;
 }
@@ -126,13 +140,13 @@ void PlainLoop::add_contact(std::uint16_t i, std::uint16_t j, float distance) {
   const Vec3 d = state_.positions[j] - state_.positions[i];
   const float squared = squared_length(d);
   if (!(squared < distance * distance) || joined(i, j)) return;
-  const Vec3 units = repulsion(squared, distance, contact_stiffness_ * scale_.force) * d;
+  const Vec3 units = repulsion(squared, distance, contact_stiffness_ * scale_.environment) * d;
   add(i, units);
   add(j, -units);
 }
 
 void PlainLoop::add_contacts() {
-  const float distance = measures_.contact_distance();
+  const float distance = contact_distance_;
   if (contact_stiffness_ == 0 || distance == 0) return;
   // Cells are a little larger than the distance, so that rounding cannot separate masses that touch.
   const float inverse_size = 1 / (1.01f * distance);
@@ -157,7 +171,7 @@ void PlainLoop::add_contacts() {
 void PlainLoop::add_perturbations() {
   for (const Perturbation& perturbation : perturbations_) {
     const Vec3 units =
-        perturbation.stiffness * scale_.force * (perturbation.target - state_.positions[perturbation.mass]);
+        perturbation.stiffness * scale_.environment * (perturbation.target - state_.positions[perturbation.mass]);
     if (fits(units)) add(perturbation.mass, units);
   }
 }
@@ -188,18 +202,53 @@ bool PlainLoop::store_state(std::size_t mass, Vec3 x, Vec3 v) {
   return false;
 }
 
+// The velocity that all forces on a mass lead to, before damping.
+template <class EnvironmentModel>
+Vec3 PlainLoop::accelerate(std::size_t mass, const EnvironmentModel& model) {
+  const Vec3 v = state_.velocities[mass], force = take(mass, 1 / scale_.environment);
+  if constexpr (EnvironmentModel::real_bodies) {
+    const auto [inverse_inertia, weight] = points_[mass];
+    return accelerated(v, inverse_inertia * (force + model.on_mass(v, weight)), constants_);
+  } else {
+    return accelerated(v, force + model.on_mass(v), constants_);
+  }
+}
+
+template <class EnvironmentModel>
+bool PlainLoop::end(std::size_t mass, Vec3 x, Vec3 v, const EnvironmentModel& model) {
+  if constexpr (EnvironmentModel::real_bodies)
+    end_step(x, v, points_[mass].inverse_inertia, model, constants_);
+  else
+    end_step(x, v, model, constants_);
+  return store_state(mass, x, v);
+}
+
+// The end of Algorithm 1, after the forces of the environment.
+template <class EnvironmentModel>
+bool PlainLoop::step_springs(const EnvironmentModel& model) {
+  bool finite = true;
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    const Vec3 force = take(i, 1 / scale_.force);
+    const Vec3 v = accelerated(state_.velocities[i], points_[i].inverse_inertia * force, constants_);
+    finite &= end(i, multiply_add(constants_.dt, v, state_.positions[i]), v, model);
+  }
+  return finite;
+}
+
 // Algorithm 1.
 template <class EnvironmentModel>
 bool PlainLoop::step_force(const EnvironmentModel& model) {
-  if (!add_environment(model) || !add_spring_forces()) return false;
+  if (!add_environment(model)) return false;
+  if constexpr (EnvironmentModel::real_bodies)
+    if (model.sums_apart()) {
+      for (std::size_t i = 0; i < sums_.size(); ++i) state_.velocities[i] = accelerate(i, model);
+      return add_spring_forces() && step_springs(model);
+    }
+  if (!add_spring_forces()) return false;
   bool finite = true;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    Vec3 v = state_.velocities[i];
-    const Vec3 force = take(i, 1 / scale_.force) + model.on_mass(v);
-    v = accelerated(v, force, constants_);
-    Vec3 x = multiply_add(constants_.dt, v, state_.positions[i]);
-    end_step(x, v, model, constants_);
-    finite &= store_state(i, x, v);
+    const Vec3 v = accelerate(i, model);
+    finite &= end(i, multiply_add(constants_.dt, v, state_.positions[i]), v, model);
   }
   return finite;
 }
@@ -210,23 +259,21 @@ bool PlainLoop::step_xpbd(const EnvironmentModel& model) {
   if (!add_environment(model)) return false;
   bool finite = true;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    const Vec3 v = state_.velocities[i];
-    const Vec3 predicted = accelerated(v, take(i, 1 / scale_.force) + model.on_mass(v), constants_);
+    const Vec3 predicted = accelerate(i, model);
     finite &= store_state(i, multiply_add(constants_.dt, predicted, state_.positions[i]), predicted);
   }
   if (!finite || !add_spring_corrections()) return false;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    const Vec3 correction = take(i, 1 / scale_.correction);
-    Vec3 x = state_.positions[i] + correction;
-    Vec3 v = multiply_add(constants_.inverse_dt, correction, state_.velocities[i]);
-    end_step(x, v, model, constants_);
-    finite &= store_state(i, x, v);
+    const Vec3 correction = points_[i].inverse_inertia * take(i, 1 / scale_.correction);
+    finite &= end(i, state_.positions[i] + correction,
+                  multiply_add(constants_.inverse_dt, correction, state_.velocities[i]), model);
   }
   return finite;
 }
 
 void PlainLoop::step(std::int64_t steps) {
-  const AnyEnvironmentModel any_model = solver_model_of(configuration_.environment);
+  const AnyEnvironmentModel any_model = solver_model_of(
+      configuration_.environment, has_own_points(robot_) || has_viscous_springs(measures_, materials_of(robot_)));
   const auto step_once = [&](const auto& model) {
     return configuration_.solver == Solver::force ? step_force(model) : step_xpbd(model);
   };

@@ -53,6 +53,12 @@ class PlainLoop {
   template <class EnvironmentModel>
   bool add_environment(const EnvironmentModel& model);
   template <class EnvironmentModel>
+  Vec3 accelerate(std::size_t mass, const EnvironmentModel& model);
+  template <class EnvironmentModel>
+  bool end(std::size_t mass, Vec3 x, Vec3 v, const EnvironmentModel& model);
+  template <class EnvironmentModel>
+  bool step_springs(const EnvironmentModel& model);
+  template <class EnvironmentModel>
   bool step_force(const EnvironmentModel& model);
   template <class EnvironmentModel>
   bool step_xpbd(const EnvironmentModel& model);
@@ -66,10 +72,11 @@ class PlainLoop {
   const RobotMeasures measures_;
   FixedPointScale scale_;
   StepConstants constants_;
-  float contact_stiffness_ = 0;
+  std::vector<PointProperties> points_;  // by mass
+  float contact_stiffness_ = 0, contact_distance_ = 0;
   State state_;
   std::vector<Sum> sums_;
-  std::vector<float> valence_sums_;  // by spring, s_a + s_b
+  std::vector<float> valence_sums_, relaxation_times_;  // by spring: xpbd()'s valence_sum, tau
   std::array<float, max_materials> factor_{}, stiffness_{}, compliance_{};
   std::array<MusclePhase, max_materials> phases_{};
   std::vector<FacePair> faces_;

@@ -49,7 +49,7 @@ void near_pairs(State& state) {
   const Robot robot = lattice_of(state);
   cpu::Body body = cpu::make_body(robot, cpu::kernels().front().lanes);
   cpu::set_state(body, robot.masses, std::vector<Vec3>(robot.masses.size()));
-  for (auto _ : state) body.near_pairs.search_grid(body.x.x, body.x.y, body.x.z, body.measures.contact_distance());
+  for (auto _ : state) body.near_pairs.search_grid(body.x.x, body.x.y, body.x.z, body.contact_distance);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(robot.masses.size()));
 }
 BENCHMARK(near_pairs)->Name("search for near pairs")->Arg(5)->Arg(10)->Unit(benchmark::kMicrosecond);

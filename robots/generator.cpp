@@ -8,6 +8,7 @@
 #include "mercury/error.h"
 #include "mercury/names.h"
 #include "mercury/origin.h"
+#include "mercury/real_body.h"
 #include "robots/make_all.h"
 #include "robots/number_text.h"
 
@@ -29,10 +30,53 @@ void keep_actuators(Robot& grown, const Robot& from) {
   if (same_table) grown.actuators = from.actuators;
 }
 
-// What holds for all of them: children name their parents, and a robot that is grown again keeps its origin.
+// The robot with the real body that another has, if it has one.
+Robot with_body_of(const Robot& other, Robot robot) {
+  const std::optional<RealMaterial> material = real_material_of(other);
+  return material ? with_real_body(robot, *material) : std::move(robot);
+}
+
+// Shared by all generators.
+const std::vector<GeneratorParameter>& real_body_parameters() {
+  static const std::vector<GeneratorParameter> all = [] {
+    std::vector<GeneratorParameter> made{{.name = "physics",
+                                          .help = "Bodies as in the paper, or of a real material",
+                                          .words = {"paper", "real"},
+                                          .shared = true,
+                                          .initial = std::string("paper")}};
+    const RealMaterial usual;
+    for_each_parameter(usual, [&](const auto& parameter, float value) {
+      made.push_back({.name = std::string(parameter.name),
+                      .help = "With --physics real: " + std::string(parameter.help),
+                      .unit = std::string(parameter.unit),
+                      .lowest = parameter.accepts.above_lowest ? 1e-6 : 0,
+                      .usual_highest = static_cast<double>(parameter.typical.high),
+                      .advanced = true,
+                      .shared = true,
+                      .initial = value});
+    });
+    return made;
+  }();
+  return all;
+}
+
+// What holds for all of them: children name their parents, a robot that is grown again keeps its origin, and real
+// bodies stay real.
 Generator with_records(Generator generator) {
+  const std::vector<GeneratorParameter>& common = real_body_parameters();
+  generator.parameters.insert(generator.parameters.end(), common.begin(), common.end());
+  generator.validate = [validate = std::move(generator.validate)](const ParameterValues& values) {
+    validate(values);
+    real_material_in(values);
+  };
+  generator.make = [make = std::move(generator.make)](const ParameterValues& values, const std::string& environment,
+                                                      std::uint64_t seed, std::uint64_t index) {
+    const std::optional<RealMaterial> material = real_material_in(values);
+    Robot robot = make(values, environment, seed, index);
+    return material ? with_real_body(robot, *material) : robot;
+  };
   generator.regrow = [regrow = std::move(generator.regrow)](const Robot& robot) {
-    Robot again = regrow(robot);
+    Robot again = with_body_of(robot, regrow(without_real_body(robot)));
     again.origin = robot.origin;
     keep_actuators(again, robot);
     return again;
@@ -40,7 +84,7 @@ Generator with_records(Generator generator) {
   generator.mutate = [mutate = std::move(generator.mutate)](const Robot& parent, const MutationRequest& request,
                                                             const std::string& name) {
     validate(request);
-    Robot child = mutate(parent, request, name);
+    Robot child = with_body_of(parent, mutate(without_real_body(parent), request, name));
     child.origin = with_ancestry(child.origin, {.parents = {parent.name},
                                                 .mutation_seed = request.seed,
                                                 .strength = request.strength,
@@ -51,7 +95,7 @@ Generator with_records(Generator generator) {
   if (generator.cross)
     generator.cross = [cross = std::move(generator.cross)](const Robot& a, const Robot& b, std::uint64_t seed,
                                                            const std::string& name) {
-      Robot child = cross(a, b, seed, name);
+      Robot child = with_body_of(a, cross(without_real_body(a), without_real_body(b), seed, name));
       child.origin = with_ancestry(child.origin, {.parents = {a.name, b.name}, .crossover_seed = seed});
       keep_actuators(child, a);
       return child;
@@ -68,6 +112,17 @@ const std::vector<Generator>& generators() {
     return made;
   }();
   return all;
+}
+
+std::optional<RealMaterial> real_material_in(const ParameterValues& values) {
+  for (const GeneratorParameter& parameter : real_body_parameters()) check(parameter, value_of(values, parameter));
+  if (std::get<std::string>(value_of(values, real_body_parameters().front())) != "real") return std::nullopt;
+  RealMaterial material;
+  for_each_parameter(material, [&](const auto& parameter, float& value) {
+    if (const auto given = values.find(parameter.name); given != values.end()) value = std::get<float>(given->second);
+  });
+  check_parameters(material);
+  return material;
 }
 
 namespace {

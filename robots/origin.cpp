@@ -8,6 +8,7 @@
 #include "mercury/error.h"
 #include "robots/file/document.h"
 #include "robots/number_text.h"
+#include "robots/origin_member.h"
 
 namespace mercury {
 namespace {
@@ -51,17 +52,16 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-// Takes the member "ancestry" out of a JSON object's text; returns false if it has none. The rest of the text is not
-// parsed: the weights of a network are many, and they keep every digit this way.
-bool take_out_ancestry(std::string& object) {
+// Takes a member out of a JSON object's text; returns false if it has none. `quoted` is its key in quotation marks.
+bool take_out(std::string& object, const std::string& quoted) {
   int depth = 0;
   std::size_t member = 0;  // where the current member of the outermost object begins, with the comma before it
-  bool is_ancestry = false, at_key = false;
+  bool is_wanted = false, at_key = false;
   for (std::size_t i = 0; i < object.size(); ++i) {
     const char c = object[i];
     if (c == '"') {
       const std::size_t end = end_of_string(object, i);
-      if (at_key) is_ancestry = object.compare(i, end - i, "\"ancestry\"") == 0;
+      if (at_key) is_wanted = object.compare(i, end - i, quoted) == 0;
       at_key = false;
       i = end - 1;
       continue;
@@ -72,7 +72,7 @@ bool take_out_ancestry(std::string& object) {
     }
     if (c == '}' || c == ']') --depth;
     const bool ends = (c == ',' && depth == 1) || depth == 0;
-    if (ends && is_ancestry) {
+    if (ends && is_wanted) {
       const bool was_first = object[member] != ',';
       object.erase(member, i - member + (was_first && c == ',' ? 1 : 0));
       return true;
@@ -131,16 +131,37 @@ std::vector<std::string> parents_in(const Json& ancestry) {
 
 }  // namespace
 
-std::optional<Ancestry> ancestry_of(const Robot& robot) {
-  if (robot.origin.find(ancestry_key) == std::string::npos) return std::nullopt;
+std::optional<nlohmann::json> origin_member(const Robot& robot, const char* key) {
+  if (robot.origin.find(key) == std::string::npos) return std::nullopt;
   // Of the outermost object, this member alone: a tree of all weights of a network would be large.
   const auto keep = [&](int depth, Json::parse_event_t event, Json& value) {
-    return event != Json::parse_event_t::key || depth != 1 || value == ancestry_key;
+    return event != Json::parse_event_t::key || depth != 1 || value == key;
   };
   const Json origin = Json::parse(robot.origin, keep, false);
   if (!origin.is_object()) throw InputError("/origin", "a JSON object is expected");
-  const auto found = origin.find(ancestry_key);
-  if (found == origin.end()) return std::nullopt;
+  const auto found = origin.find(key);
+  return found == origin.end() ? std::nullopt : std::optional<Json>(*found);
+}
+
+std::string with_origin_member(const std::string& origin, std::string_view key, const std::string& text) {
+  constexpr const char* spaces = " \t\r\n";
+  const std::string quoted = "\"" + std::string(key) + "\"";
+  std::string whole = origin.empty() ? std::string("{}") : origin;
+  while (whole.find(quoted) != std::string::npos && take_out(whole, quoted)) {
+  }
+  const std::size_t begin = whole.find_first_not_of(spaces), end = whole.find_last_not_of(spaces);
+  if (begin == std::string::npos || begin == end || whole[begin] != '{' || whole[end] != '}')
+    throw InputError("/origin", "a JSON object is expected");
+  if (text.empty()) return whole;
+  const bool is_empty = whole.find_first_not_of(spaces, begin + 1) == end;
+  whole.resize(end);
+  if (!is_empty) whole += ',';
+  return whole.append(quoted).append(":").append(text).append("}");
+}
+
+std::optional<Ancestry> ancestry_of(const Robot& robot) {
+  const std::optional<Json> found = origin_member(robot, ancestry_key);
+  if (!found) return std::nullopt;
   if (!found->is_object()) refuse("", "a JSON object is expected");
   return Ancestry{.parents = parents_in(*found),
                   .crossover_seed = natural(*found, "crossover_seed"),
@@ -151,17 +172,7 @@ std::optional<Ancestry> ancestry_of(const Robot& robot) {
 }
 
 std::string with_ancestry(const std::string& origin, const Ancestry& ancestry) {
-  constexpr const char* spaces = " \t\r\n";
-  std::string whole = origin.empty() ? std::string("{}") : origin;
-  while (whole.find(ancestry_key) != std::string::npos && take_out_ancestry(whole)) {
-  }
-  const std::size_t begin = whole.find_first_not_of(spaces), end = whole.find_last_not_of(spaces);
-  if (begin == std::string::npos || begin == end || whole[begin] != '{' || whole[end] != '}')
-    throw InputError("/origin", "a JSON object is expected");
-  const bool is_empty = whole.find_first_not_of(spaces, begin + 1) == end;
-  whole.resize(end);
-  if (!is_empty) whole += ',';
-  return whole.append("\"ancestry\":").append(text_of(ancestry)).append("}");
+  return with_origin_member(origin, ancestry_key, text_of(ancestry));
 }
 
 }  // namespace mercury

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "mercury/state.h"
+#include "sim/physics/points.h"
 
 namespace mercury {
 namespace {
@@ -32,14 +33,17 @@ class SavedStates {
   std::vector<RobotStatus> statuses_;
 };
 
-void mean(std::span<const Vec3> values, float* out) {
-  double x = 0, y = 0, z = 0;
-  for (const Vec3 value : values) {
-    x += static_cast<double>(value.x);
-    y += static_cast<double>(value.y);
-    z += static_cast<double>(value.z);
+// The mean by mass, one value per mass of the robot.
+void mean(const Robot& robot, const Vec3* values, float* out) {
+  double x = 0, y = 0, z = 0, total = 0;
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) {
+    const auto mass = static_cast<double>(mass_of(robot, i));
+    x += mass * static_cast<double>(values[i].x);
+    y += mass * static_cast<double>(values[i].y);
+    z += mass * static_cast<double>(values[i].z);
+    total += mass;
   }
-  const double share = 1.0 / static_cast<double>(values.size());
+  const double share = 1.0 / total;
   out[0] = static_cast<float>(x * share);
   out[1] = static_cast<float>(y * share);
   out[2] = static_cast<float>(z * share);
@@ -82,7 +86,7 @@ void Backend::put_at_rest(std::span<const Robot* const> robots, std::size_t firs
   for (std::size_t i = 0; i < lifts.size(); ++i) {
     std::vector<Vec3> positions = robots[i]->masses;
     for (Vec3& x : positions) x += Vec3{0, 0, lifts[i]};
-    write(first + i, positions, std::vector<Vec3>(positions.size()));
+    write(first + i, positions, start_velocities(*robots[i]));
     set_status(first + i, {});
   }
 }
@@ -107,12 +111,15 @@ std::shared_ptr<void> Backend::allocate_shared(std::size_t bytes) const {
 
 void Backend::copy_shared(void* to, const void* from, std::size_t bytes) const { std::memcpy(to, from, bytes); }
 
-void Backend::publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const {
-  std::vector<Vec3> values(mass_offsets.back());
+void Backend::publish(std::span<const Robot* const> robots, const PublishedArrays& arrays) const {
+  std::size_t masses = 0;
+  for (const Robot* robot : robots) masses += robot->masses.size();
+  std::vector<Vec3> values(masses);
   const auto write_vectors = [&](float* per_mass, float* per_robot) {
     if (per_mass) std::memcpy(per_mass, values.data(), values.size() * sizeof(Vec3));
-    for (std::size_t i = 0; per_robot && i + 1 < mass_offsets.size(); ++i)
-      mean(std::span(values).subspan(mass_offsets[i], mass_offsets[i + 1] - mass_offsets[i]), per_robot + 3 * i);
+    const Vec3* first = values.data();
+    for (std::size_t i = 0; per_robot && i < robots.size(); first += robots[i++]->masses.size())
+      mean(*robots[i], first, per_robot + 3 * i);
   };
   if (arrays.positions || arrays.centers) {
     read_positions(values);

@@ -10,6 +10,19 @@
 
 namespace mercury {
 
+std::string_view name_of(Physics physics) { return physics == Physics::real ? "real" : "paper"; }
+
+Configuration default_configuration(Physics physics, std::string_view environment) {
+  Configuration configuration;
+  const std::string_view own = physics == Physics::real ? Water::name : Ocean::name;
+  configuration.environment = environment_named(environment.empty() ? own : environment);
+  if (physics == Physics::paper) return configuration;
+  configuration.damping = 0;
+  configuration.environment.stiffness_scale = 1;
+  if (configuration.environment.contacts) configuration.environment.contacts = Water{}.contacts;
+  return configuration;
+}
+
 std::string_view name_of(Solver solver) { return solver == Solver::force ? "force" : "xpbd"; }
 
 std::string name_of(const Device& device) {

@@ -27,8 +27,12 @@ constexpr Material mean(const Material& a, const Material& b) {
     return moving > 0 ? sum / moving : 0;
   };
   const auto whole_wave = [](const Material& one) { return one.amplitude != 0 && !one.half_wave; };
-  return {(a.stiffness + b.stiffness) / 2, (a.amplitude + b.amplitude) / 2, over_moving(a.frequency, b.frequency),
-          over_moving(a.phase, b.phase), moving > 0 && !whole_wave(a) && !whole_wave(b)};
+  return {(a.stiffness + b.stiffness) / 2,
+          (a.amplitude + b.amplitude) / 2,
+          over_moving(a.frequency, b.frequency),
+          over_moving(a.phase, b.phase),
+          moving > 0 && !whole_wave(a) && !whole_wave(b),
+          (a.relaxation_time + b.relaxation_time) / 2};
 }
 
 struct Defaults {
@@ -102,7 +106,8 @@ BasePair base_materials_of(MaterialId id) {
 
 bool is_valid(const Material& material) {
   return std::isfinite(material.stiffness) && material.stiffness >= 0 && std::abs(material.amplitude) < 1 &&
-         std::isfinite(material.frequency) && std::isfinite(material.phase);
+         std::isfinite(material.frequency) && std::isfinite(material.phase) &&
+         std::isfinite(material.relaxation_time) && material.relaxation_time >= 0;
 }
 
 void validate(const Material& material, const std::string& where) {
@@ -113,6 +118,8 @@ void validate(const Material& material, const std::string& where) {
   require(std::abs(material.amplitude) < 1, "amplitude must lie between -1 and 1");
   require(std::isfinite(material.frequency), "frequency must be a finite number of rad/s");
   require(std::isfinite(material.phase), "phase must be a finite number of rad");
+  require(std::isfinite(material.relaxation_time) && material.relaxation_time >= 0,
+          "relaxation_time must be a finite number >= 0 s");
 }
 
 }  // namespace mercury

@@ -2,6 +2,7 @@
 #include "mercury/robot.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mercury/error.h"
 #include "mercury/fnv.h"
@@ -25,6 +26,29 @@ void validate_masses(const Robot& robot) {
   for (std::size_t i = 0; i < robot.masses.size(); ++i)
     if (!within_reach(robot.masses[i]))
       throw InputError(place("/masses/", i), "a position must be finite and within 1e6 m of the origin");
+}
+
+void validate_points(const Robot& robot) {
+  const std::size_t points = robot.masses.size();
+  const auto require_count = [&](std::size_t count, const char* where, const char* what) {
+    if (count != 0 && count != points)
+      throw InputError(where, std::to_string(count) + what + ", the robot has " + std::to_string(points) + " masses");
+  };
+  require_count(robot.mass.size(), "/mass", " numbers");
+  for (std::size_t i = 0; i < robot.mass.size(); ++i)
+    if (!(std::isfinite(robot.mass[i]) && robot.mass[i] > 0))
+      throw InputError(place("/mass/", i), "a mass must be a finite number above 0 kg");
+  require_count(robot.velocity.size(), "/velocity", " vectors");
+  for (std::size_t i = 0; i < robot.velocity.size(); ++i)
+    if (const Vec3 v = robot.velocity[i]; !(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)))
+      throw InputError(place("/velocity/", i), "a velocity must be finite");
+  std::vector<bool> seen(robot.fixed.empty() ? 0 : points);
+  for (std::size_t i = 0; i < robot.fixed.size(); ++i) {
+    const std::uint16_t point = robot.fixed[i];
+    if (point >= points) refuse_mass(point, robot, place("/fixed/", i));
+    if (seen[point]) throw InputError(place("/fixed/", i), "mass " + std::to_string(point) + " is listed twice");
+    seen[point] = true;
+  }
 }
 
 bool is_valid(const Spring& spring, std::size_t masses, std::size_t materials) {
@@ -92,6 +116,7 @@ void validate(const Robot& robot) {
   for (std::size_t i = 0; i < robot.materials.size(); ++i)
     if (!is_valid(robot.materials[i])) validate(robot.materials[i], place("/materials/", i));
   validate_masses(robot);
+  validate_points(robot);
   const std::size_t masses = robot.masses.size(), materials = materials_of(robot).size();
   for (std::size_t i = 0; i < robot.springs.size(); ++i)
     if (!is_valid(robot.springs[i], masses, materials)) refuse_spring(robot, i);

@@ -51,23 +51,22 @@ constexpr SharedArray<float> Actuation::*fields[] = {&Actuation::amplitude, &Act
 
 }  // namespace
 
-SharedArray<float> SharedState::array(const Backend& backend, std::span<const std::size_t> mass_offsets,
-                                      StateArray which) {
+SharedArray<float> SharedState::array(const Backend& backend, std::span<const Robot* const> robots,
+                                      std::span<const std::size_t> mass_offsets, StateArray which) {
   SharedArray<float>& wanted = arrays_[static_cast<std::size_t>(which)];
   const bool per_mass = which == StateArray::positions || which == StateArray::velocities;
   const std::size_t rows = per_mass ? mass_offsets.back() : mass_offsets.size() - 1;
   if (!wanted.data || wanted.rows != rows) {
     wanted = allocate<float>(backend, rows, 3);
-    publish(backend, mass_offsets);
+    publish(backend, robots);
   }
   return wanted;
 }
 
-SharedArray<std::uint8_t> SharedState::exploded(const Backend& backend, std::span<const std::size_t> mass_offsets) {
-  const std::size_t robots = mass_offsets.size() - 1;
-  if (!exploded_.data || exploded_.rows != robots) {
-    exploded_ = allocate<std::uint8_t>(backend, robots, 1);
-    publish(backend, mass_offsets);
+SharedArray<std::uint8_t> SharedState::exploded(const Backend& backend, std::span<const Robot* const> robots) {
+  if (!exploded_.data || exploded_.rows != robots.size()) {
+    exploded_ = allocate<std::uint8_t>(backend, robots.size(), 1);
+    publish(backend, robots);
   }
   return exploded_;
 }
@@ -80,8 +79,8 @@ PublishedArrays SharedState::targets() const {
           .exploded = exploded_.data.get()};
 }
 
-void SharedState::publish(const Backend& backend, std::span<const std::size_t> mass_offsets) const {
-  if (const PublishedArrays arrays = targets(); !arrays.empty()) backend.publish(mass_offsets, arrays);
+void SharedState::publish(const Backend& backend, std::span<const Robot* const> robots) const {
+  if (const PublishedArrays arrays = targets(); !arrays.empty()) backend.publish(robots, arrays);
 }
 
 void SharedState::forget() { *this = {}; }
@@ -180,10 +179,10 @@ void SharedActuation::apply(Backend& backend, std::span<const std::shared_ptr<co
 }
 
 SharedArray<float> Simulation::shared_state(StateArray which) {
-  return parts_->shared_state.array(*parts_->backend, parts_->offsets, which);
+  return parts_->shared_state.array(*parts_->backend, parts_->pointers, parts_->offsets, which);
 }
 SharedArray<std::uint8_t> Simulation::shared_exploded() {
-  return parts_->shared_state.exploded(*parts_->backend, parts_->offsets);
+  return parts_->shared_state.exploded(*parts_->backend, parts_->pointers);
 }
 const Actuation& Simulation::actuation() {
   return parts_->shared_actuation.arrays(*parts_->backend, parts_->robots, parts_->changed_tables);

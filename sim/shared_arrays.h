@@ -21,12 +21,13 @@ using MaterialTable = std::array<Material, max_materials>;
 class SharedState {
  public:
   // Makes the array if it is not there, or has another size.
-  SharedArray<float> array(const Backend& backend, std::span<const std::size_t> mass_offsets, StateArray which);
-  SharedArray<std::uint8_t> exploded(const Backend& backend, std::span<const std::size_t> mass_offsets);
+  SharedArray<float> array(const Backend& backend, std::span<const Robot* const> robots,
+                           std::span<const std::size_t> mass_offsets, StateArray which);
+  SharedArray<std::uint8_t> exploded(const Backend& backend, std::span<const Robot* const> robots);
 
   PublishedArrays targets() const;
   // Writes the current state into them.
-  void publish(const Backend& backend, std::span<const std::size_t> mass_offsets) const;
+  void publish(const Backend& backend, std::span<const Robot* const> robots) const;
   void forget();
 
  private:

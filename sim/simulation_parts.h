@@ -76,7 +76,9 @@ struct Simulation::Parts {
 
   // To be called before the backend steps, and after it has changed the state.
   void before_step() { shared_actuation.apply(*backend, robots, changed_tables); }
-  void after_change() const { shared_state.publish(*backend, offsets); }
+  // Says that XPBD softens springs by more than a twentieth; empty if it does not.
+  std::string softening_note() const;
+  void after_change() const { shared_state.publish(*backend, pointers); }
   // To be called when robots have come or gone. `kept` = the old indices of the first ones.
   void after_exchange(std::span<const std::size_t> kept);
 };

@@ -19,12 +19,14 @@
 #include "app/commands/results_file.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
+#include "app/options/parameter_options.h"
 #include "app/options/robot_memory.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "mercury/random_voxel.h"
+#include "mercury/real_body.h"
 #include "mercury/simulation.h"
 
 namespace mercury {
@@ -37,7 +39,8 @@ struct BenchOptions {
   std::size_t count = 0;  // 0 = chosen by choose_count()
   std::uint64_t seed = 1;
   double least_seconds = 1;  // of device time to measure
-  bool json = false, sweep = false;
+  bool json = false, sweep = false, real = false;
+  RealMaterial material;  // if real
   std::string csv;
 };
 
@@ -62,13 +65,14 @@ constexpr std::int64_t sweep_steps = 1000;  // per call in a sweep
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Boxes without air, with a random material per voxel. Throws Interrupted after Ctrl-C.
+// Boxes without air, with a random material per voxel; of real bodies, per robot, so that they have as many springs.
+// Throws Interrupted after Ctrl-C.
 std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& options, std::size_t count) {
   constexpr std::size_t at_once = 128;
   RandomVoxelOptions voxel;
   voxel.smallest = voxel.largest = {options.size[0], options.size[1], options.size[2]};
   voxel.air = 0;
-  voxel.patch = 1;
+  voxel.patch = options.real ? std::ranges::max(options.size) : 1;
   voxel.mirror = Mirror::none;
   voxel.frequencies = 5;
   std::vector<std::shared_ptr<const Robot>> robots;
@@ -76,7 +80,8 @@ std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& option
   while (robots.size() < count) {
     for (Robot& robot :
          random_voxel_robots(voxel, options.seed, std::min(at_once, count - robots.size()), robots.size()))
-      robots.push_back(std::make_shared<const Robot>(std::move(robot)));
+      robots.push_back(
+          std::make_shared<const Robot>(options.real ? with_real_body(robot, options.material) : std::move(robot)));
     watch("making robots", robots.size(), count);
   }
   return robots;
@@ -277,7 +282,7 @@ void sweep(const BenchOptions& options, const Configuration& configuration, cons
 }
 
 int bench(const BenchOptions& options) {
-  const Configuration configuration = options.simulation.configuration();
+  const Configuration configuration = options.simulation.configuration(options.real ? Physics::real : Physics::paper);
   constexpr double longest = 1e6;  // [s]
   if (!(options.least_seconds > 0 && options.least_seconds <= longest))
     throw InputError("--least-seconds", fmt::format("{} is not accepted; give a number above 0, at most {:.0f} s",
@@ -315,6 +320,17 @@ void add_bench_command(const Command& program, const Choose& choose) {
   add_number(command, "--seed", options->seed, "Seed of the robots", "S");
   add_number(command, "--least-seconds", options->least_seconds, "Shortest time to measure, after a warm-up",
              "SECONDS");
+  command
+      .add_option(
+          "--physics",
+          [options](const std::string& word) {
+            if (word != "paper" && word != "real")
+              throw InputError("--physics", fmt::format("\"{}\" is not known; give paper or real", word));
+            options->real = word == "real";
+          },
+          "Bodies as in the paper, or of a real material, in water (default paper)", "paper|real")
+      .on_first_screen();
+  add_parameters(command, options->material, "Bodies");
   command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
   command
       .add_flag("--sweep", options->sweep,

@@ -17,6 +17,7 @@
 #include "app/options/parameter_options.h"
 #include "app/options/robot_output.h"
 #include "app/options/simulation_options.h"
+#include "mercury/real_body.h"
 
 namespace mercury {
 namespace {
@@ -28,6 +29,7 @@ struct NewOptions {
   std::string csv;            // of the candidates; empty = none
   TrialSettings trials;
   SimulationOptions simulation;
+  Physics physics = Physics::paper;  // of the robots' bodies
 
   void add_to(const Command& command) {
     output.add_to(command);
@@ -49,8 +51,9 @@ int describe_work(const NewOptions& options, const std::string& kind) {
   return print_dry_run(
       "new " + kind,
       {{"make", fmt::format("{} of seed {}", search ? options.best_of : output.count(), output.seed())},
-       {"simulate", search ? time_text(options.simulation.configuration(), options.simulation.steps()) : ""},
-       {"on", search ? device_text(options.simulation.configuration().device) : ""},
+       {"simulate",
+        search ? time_text(options.simulation.configuration(options.physics), options.simulation.steps()) : ""},
+       {"on", search ? device_text(options.simulation.configuration(options.physics).device) : ""},
        {"keep", search ? fmt::format("the {} that get farthest", output.count()) : ""},
        {"write", output.description()},
        {"results", options.csv}});
@@ -116,7 +119,7 @@ int keep_best(const NewOptions& options, const std::string& kind, const MakeRobo
   Contest contest{.kind = kind,
                   .seed = options.output.seed(),
                   .candidates = options.best_of,
-                  .configuration = options.simulation.configuration(),
+                  .configuration = options.simulation.configuration(options.physics),
                   .trials = trials_of(options)};
   if (!options.csv.empty()) {
     if (is_standard_output(options.csv))
@@ -138,7 +141,7 @@ int keep_best(const NewOptions& options, const std::string& kind, const MakeRobo
 
 // The environment that the robots are made for or tried in; their origin names it. Empty if the user named none.
 std::string environment_for(const NewOptions& options) {
-  if (options.best_of > 0) return std::string(name_of(options.simulation.configuration().environment));
+  if (options.best_of > 0) return std::string(name_of(options.simulation.configuration(options.physics).environment));
   return options.simulation.chosen_environment();
 }
 
@@ -181,6 +184,7 @@ void add_kind(const Command& family, const Choose& choose, const Generator& gene
     choose([options, &generator] {
       const ParameterValues& values = options->shape.values();
       generator.validate(values);
+      options->shared.physics = real_material_in(values) ? Physics::real : Physics::paper;
       const std::string environment = environment_for(options->shared);
       return make_files(options->shared, generator.kind, [&](std::uint64_t seed, std::uint64_t index) {
         return generator.make(values, environment, seed, index);

@@ -24,12 +24,13 @@ Subject recording_of(const RenderOptions& options, const std::filesystem::path& 
 }
 
 Subject robots_of(const RenderOptions& options) {
-  options.simulation.configuration();  // errors in options come before those in files
+  // Errors in options come before those in files.
+  if (!options.simulation.chosen_environment().empty()) options.simulation.configuration(options.robots.physics());
   Subject subject;
   Clip& clip = subject.clips.emplace_back();
   LoadedRobots loaded = options.robots.load(drawn_memory);
   clip.robots = std::move(loaded.robots);
-  subject.configuration = options.simulation.configuration(loaded.environments, subject.notes);
+  subject.configuration = options.simulation.configuration(loaded.environments, subject.notes, loaded.physics);
   subject.seconds = options.simulation.seconds();
   return subject;
 }

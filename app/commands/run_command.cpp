@@ -324,13 +324,14 @@ int run(const RunOptions& options) {
   validate_recording(options);
   if (!options.resume.empty()) return run_resumed(options);
   if (const auto file = options.robots.repro()) return run_repro(options, *file);
-  options.simulation.configuration();  // errors in options come before those in files
+  // Errors in options come before those in files.
+  if (!options.simulation.chosen_environment().empty()) options.simulation.configuration(options.robots.physics());
   TrialSettings trials = options.trials;
   trials.seconds = options.simulation.seconds();
   validate(trials);
   const RobotSequence robots = options.robots.sequence();
   std::vector<std::string> notes;
-  const Configuration configuration = options.simulation.configuration(robots.environments, notes);
+  const Configuration configuration = options.simulation.configuration(robots.environments, notes, robots.physics);
   print_notes(notes);
   if (options.output.dry_run())
     return describe_work(options, configuration, options.simulation.steps(), size_text(robots));

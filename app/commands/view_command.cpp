@@ -23,6 +23,7 @@
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "mercury/origin.h"
+#include "mercury/real_body.h"
 #include "mercury/run_folder.h"
 
 namespace mercury {
@@ -99,7 +100,7 @@ void check_report(const ViewCommandOptions& options) {
 int view(const ViewCommandOptions& options) {
   check_report(options);
   window::ViewerOptions viewer = viewer_options(options);
-  viewer.configuration = options.simulation.configuration();
+  viewer.configuration = options.simulation.configuration(options.robots.physics());
   if (options.robots.empty()) {
     viewer.robots = window::sample_robots(name_of(viewer.configuration.environment));
     // There are no samples for the simple ocean; use those of the ocean.
@@ -128,14 +129,16 @@ int view(const ViewCommandOptions& options) {
   viewer.generations = options.robots.random();
   require_memory_for(viewer.generations, drawn_memory, usable_host_memory());
   std::vector<std::string> environments;
+  std::optional<Physics> physics;
   for (RobotFromFile& loaded : options.robots.load_files()) {
+    physics = std::max(physics.value_or(Physics::paper), physics_of(std::span(&loaded.robot, 1)));
     environments.push_back(environment_of(loaded.robot));
     if (loaded.file == standard_input)
       viewer.robots.push_back(std::move(loaded.robot));
     else
       viewer.files.push_back(std::move(loaded.file));
   }
-  if (!environments.empty()) viewer.configuration = options.simulation.configuration(environments, viewer.notes);
+  if (physics) viewer.configuration = options.simulation.configuration(environments, viewer.notes, *physics);
   return window::run_viewer(std::move(viewer));
 }
 

@@ -26,7 +26,7 @@ class LiveBatch {
   const std::shared_ptr<const LiveRobots>& robots() const { return population_.robots(); }
   const std::vector<LivePerturbation>& perturbations() const { return perturbations_; }
   const std::vector<Telemetry>& telemetry() const { return telemetry_; }  // of the last sample()
-  std::uint64_t surroundings() const { return surroundings_; }            // see Physics::set_scene()
+  std::uint64_t surroundings() const { return surroundings_; }            // see PhysicsThread::set_scene()
   double time() const { return simulation_.time(); }                      // [s]
   std::int64_t steps() const { return simulation_.steps(); }
   bool empty() const { return simulation_.size() == 0; }

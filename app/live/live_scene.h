@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene of the interactive window: everything that the window does except windows and OpenGL.
 //
-//   SceneDocument (robots, parameters; edits, undo) --> Physics --> Snapshot --> LivePicture --> the window draws
+//   SceneDocument (robots, parameters; edits, undo) --> PhysicsThread --> Snapshot --> LivePicture --> the window draws
 //
 // An edit changes the document on the window's thread and sends it to the physics thread; frame() fetches the newest
 // snapshot. Reading files and making robots are background tasks; their results enter the document in frame().

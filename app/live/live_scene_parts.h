@@ -43,7 +43,7 @@ class SavedRobots {
 // physics thread at once.
 class ScenePulls {
  public:
-  ScenePulls(SceneDocument& document, Physics& physics) : document_(document), physics_(physics) {}
+  ScenePulls(SceneDocument& document, PhysicsThread& physics) : document_(document), physics_(physics) {}
 
   // The mouse.
   const std::optional<LivePerturbation>& by_mouse() const { return by_mouse_; }
@@ -69,7 +69,7 @@ class ScenePulls {
 
  private:
   SceneDocument& document_;
-  Physics& physics_;
+  PhysicsThread& physics_;
   std::optional<LivePerturbation> by_mouse_;
   std::vector<AttachedMass> to_attach_;     // of a scene whose robots are not all there yet
   std::uint64_t resets_ = 0;                // of the scene
@@ -120,7 +120,7 @@ struct LiveScene::Parts {
       : physics(options.configuration, messages), view(options.view), background(messages) {}
 
   Messages messages;
-  Physics physics;
+  PhysicsThread physics;
   SceneDocument document;
   EditHistory history;
   ViewSettings view;

@@ -135,7 +135,7 @@ class Exchange {
 
 // The physics thread: takes commands, carries them out, steps, and publishes snapshots. All members but the exchange
 // and what is thread-safe belong to it.
-struct Physics::Parts {
+struct PhysicsThread::Parts {
   Parts(const Configuration& configuration, Messages& all)
       : messages(all), batch(configuration, measurements, messages), device(batch.simulation().device_name()),
         cuda_device(batch.simulation().cuda_device()) {
@@ -181,125 +181,126 @@ struct Physics::Parts {
   void publish_snapshot();
 };
 
-Physics::Physics(const Configuration& configuration, Messages& messages)
+PhysicsThread::PhysicsThread(const Configuration& configuration, Messages& messages)
     : parts_(std::make_unique<Parts>(configuration, messages)) {
   parts_->publish_snapshot();
   parts_->thread = std::thread([parts = parts_.get()] { parts->run(); });
 }
 
-Physics::~Physics() {
+PhysicsThread::~PhysicsThread() {
   parts_->exchange.request([](PendingCommands& pending) { pending.quit = true; });
   parts_->thread.join();
 }
 
-void Physics::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration, std::uint64_t surroundings) {
+void PhysicsThread::set_scene(std::vector<LiveRobot> robots, const Configuration& configuration,
+                              std::uint64_t surroundings) {
   parts_->exchange.request([&](PendingCommands& pending) {
     pending.scene = {std::move(robots), configuration, nullptr, nullptr, surroundings};
   });
 }
-void Physics::set_repro(const LiveRobot& robot, const Configuration& configuration,
-                        std::shared_ptr<const Repro> repro) {
+void PhysicsThread::set_repro(const LiveRobot& robot, const Configuration& configuration,
+                              std::shared_ptr<const Repro> repro) {
   parts_->exchange.request([&](PendingCommands& pending) {
     pending.scene = {std::vector{robot}, configuration, std::move(repro), nullptr};
     pending.steps = 0;
     pending.drop_timeline();
   });
 }
-void Physics::set_recording(std::vector<LiveRobot> robots, const Configuration& configuration,
-                            std::shared_ptr<TrajectoryReader> recording) {
+void PhysicsThread::set_recording(std::vector<LiveRobot> robots, const Configuration& configuration,
+                                  std::shared_ptr<TrajectoryReader> recording) {
   parts_->exchange.request([&](PendingCommands& pending) {
     pending.scene = {std::move(robots), configuration, nullptr, std::move(recording)};
     pending.steps = 0;
     pending.drop_timeline();
   });
 }
-void Physics::seek(double time) {
+void PhysicsThread::seek(double time) {
   parts_->exchange.request([&](PendingCommands& pending) {
     pending.seek = time;
     pending.steps_back = 0;
   });
 }
-void Physics::step_back(std::int64_t count) {
+void PhysicsThread::step_back(std::int64_t count) {
   parts_->exchange.request([&](PendingCommands& pending) {
     pending.playing = false;
     pending.steps_back += std::max<std::int64_t>(0, count);
   });
 }
-void Physics::go_on() {
+void PhysicsThread::go_on() {
   parts_->exchange.request([&](PendingCommands& pending) {
     pending.go_on = true;
     if (pending.seek) pending.seek_first = std::exchange(pending.seek, {});
   });
 }
-void Physics::set_loop(std::optional<std::pair<double, double>> times) {
+void PhysicsThread::set_loop(std::optional<std::pair<double, double>> times) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.loop = times; });
 }
-void Physics::set_timeline_budget(std::size_t bytes) {
+void PhysicsThread::set_timeline_budget(std::size_t bytes) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.timeline_budget = bytes; });
 }
-void Physics::set_view(const ViewSettings& settings) {
+void PhysicsThread::set_view(const ViewSettings& settings) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.view = settings; });
 }
-void Physics::set_perturbations(std::vector<LivePerturbation> perturbations) {
+void PhysicsThread::set_perturbations(std::vector<LivePerturbation> perturbations) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.perturbations = std::move(perturbations); });
 }
-void Physics::set_bridge(std::shared_ptr<PositionBridge> bridge) {
+void PhysicsThread::set_bridge(std::shared_ptr<PositionBridge> bridge) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.bridge = std::move(bridge); });
 }
-int Physics::cuda_device() const { return parts_->cuda_device; }
-void Physics::play() {
+int PhysicsThread::cuda_device() const { return parts_->cuda_device; }
+void PhysicsThread::play() {
   parts_->exchange.request([](PendingCommands& pending) {
     pending.playing = pending.drop_steps = true;
     pending.steps = 0;
   });
 }
-void Physics::pause() {
+void PhysicsThread::pause() {
   parts_->exchange.request([](PendingCommands& pending) {
     pending.playing = false;
     pending.drop_steps = true;
     pending.steps = 0;
   });
 }
-void Physics::set_speed(double speed) {
+void PhysicsThread::set_speed(double speed) {
   if (!(speed > 0)) return;
   parts_->exchange.request([&](PendingCommands& pending) { pending.speed = speed; });
 }
-void Physics::step(std::int64_t count) {
+void PhysicsThread::step(std::int64_t count) {
   parts_->exchange.request([&](PendingCommands& pending) {
     pending.playing = false;
     pending.steps += std::max<std::int64_t>(0, count);
   });
 }
-void Physics::reset() {
+void PhysicsThread::reset() {
   parts_->exchange.request([](PendingCommands& pending) {
     pending.reset = true;
     pending.steps = 0;
     pending.drop_timeline();
   });
 }
-void Physics::pause_on_explosion(bool pause) {
+void PhysicsThread::pause_on_explosion(bool pause) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.pause_on_explosion = pause; });
 }
 
-void Physics::set_second(std::optional<SideDifference> difference) {
+void PhysicsThread::set_second(std::optional<SideDifference> difference) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.difference = std::move(difference); });
 }
-void Physics::set_ghosts(std::vector<LiveRobot> ghosts) {
+void PhysicsThread::set_ghosts(std::vector<LiveRobot> ghosts) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.ghosts = std::move(ghosts); });
 }
-const Measurements& Physics::second_measurements() const { return parts_->comparison.second_measurements(); }
-const Measurements& Physics::ghost_measurements() const { return parts_->comparison.ghost_measurements(); }
+const Measurements& PhysicsThread::second_measurements() const { return parts_->comparison.second_measurements(); }
+const Measurements& PhysicsThread::ghost_measurements() const { return parts_->comparison.ghost_measurements(); }
 
-void Physics::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
+void PhysicsThread::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
 
-std::shared_ptr<const Snapshot> Physics::newest() { return parts_->exchange.newest(); }
-std::vector<Explosion> Physics::take_explosions() { return parts_->explosions.take(); }
-std::optional<Repro> Physics::repro(RobotId robot) const { return parts_->explosions.repro(robot); }
-const Measurements& Physics::measurements() const { return parts_->measurements; }
-std::string Physics::device_name() const { return parts_->device; }
-void Physics::wait_until_done() { parts_->exchange.wait_until_done(); }
+std::shared_ptr<const Snapshot> PhysicsThread::newest() { return parts_->exchange.newest(); }
+std::vector<Explosion> PhysicsThread::take_explosions() { return parts_->explosions.take(); }
+std::optional<Repro> PhysicsThread::repro(RobotId robot) const { return parts_->explosions.repro(robot); }
+const Measurements& PhysicsThread::measurements() const { return parts_->measurements; }
+std::string PhysicsThread::device_name() const { return parts_->device; }
+void PhysicsThread::wait_until_done() { parts_->exchange.wait_until_done(); }
 
-void Physics::Parts::run() {
+void PhysicsThread::Parts::run() {
   stepping.start();
   for (PendingCommands taken = wait_for_commands(); !taken.quit; taken = wait_for_commands()) {
     guarded([&] { carry_out(taken); });
@@ -311,7 +312,7 @@ void Physics::Parts::run() {
 }
 
 // Waits for commands or for the time of the next step; on a GPU that the window watches, for that of its next frame.
-PendingCommands Physics::Parts::wait_for_commands() {
+PendingCommands PhysicsThread::Parts::wait_for_commands() {
   const bool wanted = exchange.is_wanted();
   double due = std::numeric_limits<double>::infinity();
   if (stepping.is_running()) due = stepping.is_unlimited() ? 0 : std::min(stepping.next_due(wanted), wall_now() + 1);
@@ -322,7 +323,7 @@ PendingCommands Physics::Parts::wait_for_commands() {
 }
 
 // A failure of physics must not end the window: reports the error, pauses, and returns false.
-bool Physics::Parts::guarded(auto task) {
+bool PhysicsThread::Parts::guarded(auto task) {
   try {
     task();
     return true;
@@ -334,7 +335,7 @@ bool Physics::Parts::guarded(auto task) {
   return false;
 }
 
-void Physics::Parts::carry_out(PendingCommands& taken) {
+void PhysicsThread::Parts::carry_out(PendingCommands& taken) {
   if (!taken.any()) return;
   dirty = true;
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
@@ -383,7 +384,7 @@ void Physics::Parts::carry_out(PendingCommands& taken) {
 }
 
 // Whatever changes the robots makes the moment that is shown the present first.
-void Physics::Parts::prepare_changes(const PendingCommands& taken) {
+void PhysicsThread::Parts::prepare_changes(const PendingCommands& taken) {
   if (taken.timeline_budget) timeline.set_budget(*taken.timeline_budget);
   if (taken.seek_first) seek(*taken.seek_first);
   const bool perturbed = taken.perturbations && *taken.perturbations != batch.perturbations();
@@ -392,7 +393,7 @@ void Physics::Parts::prepare_changes(const PendingCommands& taken) {
 }
 
 // Returns whether the list of robots or the kind of environment changed.
-bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
+bool PhysicsThread::Parts::set_scene(const PendingCommands::Scene& scene) {
   repro.set(scene.repro);
   const Configuration before = batch.configuration();
   const bool at_start = batch.steps() == 0, first = batch.empty() && at_start;
@@ -423,7 +424,7 @@ bool Physics::Parts::set_scene(const PendingCommands::Scene& scene) {
 }
 
 // The robots could not be simulated, and none is there now.
-void Physics::Parts::forget_all() {
+void PhysicsThread::Parts::forget_all() {
   comparison.end();
   explosions.forget_absent(*batch.robots());
   repro.set(nullptr);
@@ -433,7 +434,7 @@ void Physics::Parts::forget_all() {
 }
 
 // Returns all robots to rest at time 0, or a replay to its start.
-void Physics::Parts::restart() {
+void PhysicsThread::Parts::restart() {
   batch.reset();
   stepping.forget_cost();  // exploded robots cost nothing until now
   stepping.drop();
@@ -449,20 +450,20 @@ void Physics::Parts::restart() {
   comparison.restart();
 }
 
-void Physics::Parts::play_recording(std::shared_ptr<TrajectoryReader> reader) {
+void PhysicsThread::Parts::play_recording(std::shared_ptr<TrajectoryReader> reader) {
   timeline.clear();
   recording.open(std::move(reader));
   note_explosions();
 }
 
-void Physics::Parts::show_recording(double time) {
+void PhysicsThread::Parts::show_recording(double time) {
   recording.show(time);
   note_explosions();
 }
 
-void Physics::Parts::seek(double time) { recording.is_open() ? show_recording(time) : timeline.seek(time); }
+void PhysicsThread::Parts::seek(double time) { recording.is_open() ? show_recording(time) : timeline.seek(time); }
 
-void Physics::Parts::carry_out_seek(const PendingCommands& taken) {
+void PhysicsThread::Parts::carry_out_seek(const PendingCommands& taken) {
   if (taken.loop) timeline.set_loop(*taken.loop);
   if (taken.seek) seek(*taken.seek);
   if (taken.steps_back > 0 && recording.is_open())
@@ -475,7 +476,7 @@ void Physics::Parts::carry_out_seek(const PendingCommands& taken) {
 }
 
 // The moment that is shown becomes the present.
-void Physics::Parts::make_present() {
+void PhysicsThread::Parts::make_present() {
   if (recording.is_open()) {
     recording.leave();
     batch.cut_measures(batch.steps());
@@ -490,7 +491,7 @@ void Physics::Parts::make_present() {
 }
 
 // Makes one slice of the steps that are due. Returns whether anything changed.
-bool Physics::Parts::advance() {
+bool PhysicsThread::Parts::advance() {
   if (timeline.is_seeking()) {
     timeline.advance_seek();
     return true;
@@ -524,7 +525,7 @@ bool Physics::Parts::advance() {
 }
 
 // Interrupts the steps where a sample of the telemetry is due and where a replay changes something.
-void Physics::Parts::take_steps(std::int64_t count) {
+void PhysicsThread::Parts::take_steps(std::int64_t count) {
   const bool viewing = timeline.is_viewing();
   const std::int64_t target = batch.steps() + count;
   double spent = 0, measuring = 0;
@@ -564,7 +565,7 @@ void Physics::Parts::take_steps(std::int64_t count) {
   if (!viewing) timeline.stepped(spent);
 }
 
-void Physics::Parts::publish_snapshot() {
+void PhysicsThread::Parts::publish_snapshot() {
   const double start = wall_now();
   // On a GPU, velocities are a copy, and the steps wait for it.
   const bool with_velocities = !stepping.playing() || velocities_wanted || exchange.is_awaited();

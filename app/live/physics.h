@@ -13,7 +13,7 @@
 //     as it likes
 //   take_explosions(), repro() <---------  Explosions, repros <---------------  report_explosions()
 //
-// Background tasks (background.h) never touch Physics; their results reach it through the window thread.
+// Background tasks (background.h) never touch PhysicsThread; their results reach it through the window thread.
 //
 // The timeline (timeline.h) belongs to the physics thread, too: it keeps keyframes while robots play, and computes the
 // moments between them again when the window asks for one. A recording is played in the same way, from its file.
@@ -51,14 +51,14 @@
 namespace mercury {
 
 // All members are called from one thread, the window's.
-class Physics {
+class PhysicsThread {
  public:
   // Throws InputError for an invalid configuration and DeviceError for a missing device. Reports later failures to
   // `messages`.
-  explicit Physics(const Configuration& configuration, Messages& messages);
-  ~Physics();
-  Physics(const Physics&) = delete;
-  Physics& operator=(const Physics&) = delete;
+  explicit PhysicsThread(const Configuration& configuration, Messages& messages);
+  ~PhysicsThread();
+  PhysicsThread(const PhysicsThread&) = delete;
+  PhysicsThread& operator=(const PhysicsThread&) = delete;
 
   // Replaces the robots and the configuration. The robots must be valid, and the device must be that of the
   // constructor. A robot that is already simulated keeps its state. A robot that was removed and comes back continues

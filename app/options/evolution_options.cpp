@@ -15,6 +15,7 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
+#include "mercury/real_body.h"
 #include "mercury/samples.h"
 
 namespace mercury {
@@ -162,13 +163,15 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
   evolution.algorithm = algorithm();
   if (!objectives_.empty()) evolution.objectives = objectives_;
   evolution.trials.seconds = simulation_.seconds();
-  evolution.configuration = simulation_.configuration();
+  Physics physics = real_material_in(settings.space.values) ? Physics::real : Physics::paper;
+  evolution.configuration = simulation_.configuration(physics);
   validate(evolution);
   settings.space.founders = founders(paths);
+  if (!settings.space.founders.empty() && physics == Physics::paper) physics = physics_of(settings.space.founders);
   std::vector<std::string> environments;
   for (const Robot& robot : settings.space.founders) environments.push_back(environment_of(robot));
   if (environments.empty()) environments.push_back(generator_named(settings.space.kind).environment);
-  evolution.configuration = simulation_.configuration(environments, notes);
+  evolution.configuration = simulation_.configuration(environments, notes, physics);
   settings.space.environment = name_of(evolution.configuration.environment);
   make_genome_space(settings.space);  // throws for a request that cannot be used
   return settings;

@@ -79,6 +79,7 @@ struct Writer {
 
 void GeneratorOptions::add_to(const Command& command, const Generator& generator) {
   for (const GeneratorParameter& parameter : generator.parameters) {
+    if (parameter.shared && command.find_option(option_of(parameter.name))) continue;  // of an earlier generator
     const std::string option = option_of(parameter.name);
     const Option added = command
                              .add_option(
@@ -87,7 +88,7 @@ void GeneratorOptions::add_to(const Command& command, const Generator& generator
                                    values_[parameter.name] = parameter_value_from(parameter, option, text);
                                  },
                                  description_of(parameter), std::visit(Form{parameter}, parameter.initial))
-                             .in_group(generator.title);
+                             .in_group(parameter.shared ? std::string("Bodies") : generator.title);
     const bool whole = std::holds_alternative<std::int64_t>(parameter.initial);
     const bool number =
         std::holds_alternative<float>(parameter.initial) || std::holds_alternative<double>(parameter.initial);

@@ -14,6 +14,7 @@
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "mercury/origin.h"
+#include "mercury/real_body.h"
 
 namespace mercury {
 namespace {
@@ -87,6 +88,7 @@ LoadedRobots RobotOptions::load(const MemoryUse& use) const {
     all.environments.push_back(generator_named(request.kind).environment);
     for (Robot& robot : random_robots(request)) add(robot);
   }
+  all.physics = physics_of(all.robots);
   return all;
 }
 
@@ -105,6 +107,12 @@ RobotSequence RobotOptions::sequence() const {
     sequence.environments.push_back(generator_named(request.kind).environment);
   }
   sequence.count = first.back();
+  const bool real = physics() == Physics::real;
+  sequence.physics = files.empty() ? (real ? Physics::real : Physics::paper) : physics_of(files);
+  if (!files.empty() && !sequence.random.empty() && (sequence.physics == Physics::real) != real)
+    throw InputError("--random",
+                     "these robots have bodies of the paper, those of the files have real ones; --physics "
+                     "real gives all a real one");
   sequence.source = [files = std::move(files), requests = sequence.random,
                      first = std::move(first)](std::size_t index) -> std::shared_ptr<const Robot> {
     if (index < files.size()) return files[index];
@@ -118,6 +126,10 @@ RobotSequence RobotOptions::sequence() const {
   return sequence;
 }
 
+Physics RobotOptions::physics() const {
+  return real_material_in(generators_.values()) ? Physics::real : Physics::paper;
+}
+
 void RobotOptions::require_robot_files() const {
   if (const auto file = recording())
     throw InputError(file->string(), "is a recording; mercury view and render play it, here give robots");
@@ -127,7 +139,15 @@ void RobotOptions::require_robot_files() const {
 
 std::vector<RobotFromFile> RobotOptions::load_files() const {
   require_robot_files();
-  return files_.load();
+  std::vector<RobotFromFile> loaded = files_.load();
+  if (const auto material = real_material_in(generators_.values()))
+    for (RobotFromFile& file : loaded)
+      if (!real_material_of(file.robot)) try {
+          file.robot = with_real_body(file.robot, *material);
+        } catch (const InputError& error) {
+          throw InputError(file.file.string(), error.what());
+        }
+  return loaded;
 }
 
 std::vector<RandomRobots> RobotOptions::random() const {

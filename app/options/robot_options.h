@@ -26,6 +26,7 @@ struct RobotSequence {
   std::vector<RandomRobots> random;          // the last robots of the sequence, one request after the other
   // The environments that the robots are made for, see environment_of().
   std::vector<std::string> environments;
+  Physics physics = Physics::paper;
 };
 
 // Robots that are there.
@@ -33,6 +34,7 @@ struct LoadedRobots {
   std::vector<std::shared_ptr<const Robot>> robots;
   std::vector<std::filesystem::path> files;  // of the first robots, one each
   std::vector<std::string> environments;     // as in RobotSequence
+  Physics physics = Physics::paper;
 };
 
 class RobotOptions {
@@ -62,6 +64,9 @@ class RobotOptions {
   std::vector<RobotFromFile> load_files() const;
   std::vector<std::filesystem::path> files() const { return files_.paths(); }
   std::vector<RandomRobots> random() const;
+
+  // What the options say that bodies are to be; robots of files may have real ones without a word.
+  Physics physics() const;
 
   bool empty() const { return files_.empty() && random_.empty(); }
 

@@ -89,7 +89,7 @@ SceneFile::SceneFile(const std::filesystem::path& path) : parts_(std::make_uniqu
     (void)attached();
     (void)parts.simulation.seconds();
     // Without an environment of its own, its parameters are those of the environment that its robots choose.
-    if (!parts.simulation.chosen_environment().empty()) (void)parts.simulation.configuration();
+    if (!parts.simulation.chosen_environment().empty()) (void)parts.simulation.configuration(parts.robots.physics());
   });
 }
 
@@ -105,7 +105,8 @@ ViewSettings SceneFile::view(Layout usual) const { return parts_->view.settings(
 
 Configuration SceneFile::configuration(std::span<const std::string> environments,
                                        std::vector<std::string>& notes) const {
-  return located_in(*this, [&] { return parts_->simulation.configuration(environments, notes); });
+  return located_in(*this,
+                    [&] { return parts_->simulation.configuration(environments, notes, parts_->robots.physics()); });
 }
 
 std::vector<std::string> SceneFile::arguments(const Command& command, const std::vector<std::string>& given) const {

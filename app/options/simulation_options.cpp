@@ -14,6 +14,7 @@
 #include "app/options/parameter_options.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
+#include "mercury/real_body.h"
 #include "mercury/threads.h"
 
 namespace mercury {
@@ -93,6 +94,7 @@ void SimulationOptions::add_to(const Command& command) {
                 [](const std::string&, const std::string& text) { return solver_named(text); }));
   add(add_number(command, "--seconds", seconds_, "Simulated time (default 10)", "S").on_first_screen());
   add_parameters(command, given_, simulation_group);
+  add(add_number(command, "--substeps", substeps_, "Divide the time step by N (default 1)", "N"));
   add_environment_parameters(command);
 }
 
@@ -140,9 +142,12 @@ void SimulationOptions::set_parameters(Environment& environment) const {
                                                   environments_with(name)));
 }
 
-Configuration SimulationOptions::configuration_in(std::string_view environment) const {
+Configuration SimulationOptions::configuration_in(std::string_view environment, Physics physics) const {
+  const Configuration usual = default_configuration(physics, environment);
   Configuration configuration = given_;
-  configuration.environment = environment_named(environment);
+  configuration.environment = usual.environment;
+  configuration.dt = dt();
+  if (!command_->is_given(option_of("damping"))) configuration.damping = usual.damping;
   set_parameters(configuration.environment);
   validate(configuration);
   require_possible_threads(configuration.device);
@@ -165,36 +170,48 @@ Configuration SimulationOptions::configuration_over(const Configuration& base) c
   return configuration;
 }
 
-Configuration SimulationOptions::configuration() const { return configuration_in(environment_.value_or("ocean")); }
+Configuration SimulationOptions::configuration(Physics physics) const {
+  return configuration_in(environment_.value_or(""), physics);
+}
 
 Configuration SimulationOptions::configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const {
   std::vector<std::string> environments;
   for (const Robot& robot : robots) environments.push_back(environment_of(robot));
-  return configuration(environments, notes);
+  return configuration(environments, notes, physics_of(robots));
 }
 
 Configuration SimulationOptions::configuration(std::span<const std::string> environments,
-                                               std::vector<std::string>& notes) const {
-  if (environment_) return configuration();
+                                               std::vector<std::string>& notes, Physics physics) const {
+  if (environment_) return configuration(physics);
+  // Robots that were made for the paper's water are put into the water of their physics.
+  const Configuration own = default_configuration(physics);
   std::set<std::string> wanted;
   for (const std::string& environment : environments)
-    if (is_environment(environment)) wanted.insert(environment);
-  if (wanted.size() == 1) return configuration_in(*wanted.begin());
+    if (is_environment(environment))
+      wanted.insert(has_water(environment_named(environment)) && physics == Physics::real
+                        ? std::string(name_of(own.environment))
+                        : environment);
+  if (wanted.size() == 1) return configuration_in(*wanted.begin(), physics);
   if (wanted.size() > 1)
-    notes.push_back(fmt::format("the robots are made for {}; all are put into ocean, --environment chooses",
-                                fmt::join(wanted, " and ")));
-  return configuration();
+    notes.push_back(fmt::format("the robots are made for {}; all are put into {}, --environment chooses",
+                                fmt::join(wanted, " and "), name_of(own.environment)));
+  return configuration(physics);
 }
 
 double SimulationOptions::seconds(double otherwise) const {
   const double seconds = seconds_.value_or(otherwise);
   if (!(std::isfinite(seconds) && seconds >= 0))
     throw InputError("--seconds", fmt::format("{} is not accepted; give a finite number >= 0 s", seconds));
-  if (seconds / given_.dt > 1e15)
-    throw InputError("--seconds", fmt::format("{} s are too many steps of {} s", seconds, given_.dt));
+  if (seconds / dt() > 1e15)
+    throw InputError("--seconds", fmt::format("{} s are too many steps of {} s", seconds, dt()));
   return seconds;
 }
 
-std::int64_t SimulationOptions::steps() const { return std::llround(seconds() / given_.dt); }
+double SimulationOptions::dt() const {
+  if (substeps_ < 1) throw InputError("--substeps", fmt::format("{} is not accepted; give 1 or more", substeps_));
+  return given_.dt / substeps_;
+}
+
+std::int64_t SimulationOptions::steps() const { return std::llround(seconds() / dt()); }
 
 }  // namespace mercury

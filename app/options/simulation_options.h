@@ -25,12 +25,14 @@ class SimulationOptions {
 
   // The configuration that the options describe. Throws InputError for an option that cannot be used or does not apply
   // to the environment.
-  Configuration configuration() const;
+  Configuration configuration(Physics physics = Physics::paper) const;
   // The same, but without --environment the robots choose: the environment that they are made for, if they agree.
   // Appends to `notes` what the user should know about that.
   Configuration configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const;
-  // The same with the environments that the robots are made for; a name that is none, or empty, has no effect.
-  Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes) const;
+  // The same with the environments that the robots are made for; a name that is none, or empty, has no effect. What the
+  // options leave out is as the physics of the robots has it.
+  Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes,
+                              Physics physics = Physics::paper) const;
 
   // The same over the configuration of a run: what the command line does not say is as there, except for the device.
   Configuration configuration_over(const Configuration& base) const;
@@ -49,8 +51,9 @@ class SimulationOptions {
     std::optional<std::variant<float, bool, Vec3>> value;  // if given
   };
 
+  double dt() const;  // divided by --substeps [s]
   void add_environment_parameters(const Command& command);
-  Configuration configuration_in(std::string_view environment) const;
+  Configuration configuration_in(std::string_view environment, Physics physics) const;
   // Writes the options of its parameters into an environment. Throws InputError for options that do not apply to it.
   void set_parameters(Environment& environment) const;
 
@@ -59,6 +62,7 @@ class SimulationOptions {
   std::optional<std::string> environment_;
   std::map<std::string, ParameterOption> parameter_options_;  // by the parameter's name
   std::optional<double> seconds_;
+  int substeps_ = 1;
 };
 
 }  // namespace mercury

@@ -12,6 +12,7 @@
 #include "mercury/genome.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
+#include "mercury/real_body.h"
 #include "robots/genes.h"
 
 namespace mercury {
@@ -22,6 +23,7 @@ struct GenomeContext {
   const GenesKind& kind;
   Genes genes = Genes::body;
   std::string environment;
+  std::optional<RealMaterial> material;  // of the robots' bodies; the genes say nothing of it
 };
 
 using GenesPointer = std::shared_ptr<const BodyGenes>;
@@ -31,7 +33,10 @@ class BodyGenome : public Genome {
   BodyGenome(GenesPointer genes, std::shared_ptr<const GenomeContext> context)
       : genes_(std::move(genes)), context_(std::move(context)) {}
 
-  Robot grow(const std::string& name) const override { return genes_->grown(name, context_->environment); }
+  Robot grow(const std::string& name) const override {
+    Robot robot = genes_->grown(name, context_->environment);
+    return context_->material ? with_real_body(robot, *context_->material) : robot;
+  }
   GenomePointer mutate(double strength, std::uint64_t seed) const override {
     if (strength == 0) return std::make_shared<BodyGenome>(genes_, context_);
     return std::make_shared<BodyGenome>(genes_->mutated(context_->genes, strength, seed), context_);
@@ -62,12 +67,27 @@ class BodyGenome : public Genome {
   mutable std::atomic<std::uint64_t> identity_{0};  // 0 = not computed yet
 };
 
+// The real material of the founders, which is one, or that of the request.
+std::optional<RealMaterial> material_of(const GenomeSpaceRequest& request) {
+  std::optional<RealMaterial> material = real_material_in(request.values);
+  for (const Robot& founder : request.founders) {
+    const std::optional<RealMaterial> own = real_material_of(founder);
+    if (!own) continue;
+    if (material && *own != *material)
+      throw InputError("robot " + founder.name, "has a real body of another material than the rest");
+    material = own;
+  }
+  return material;
+}
+
 // Random robots of a generator, or the founders and mutants of them.
 class BodySpace : public GenomeSpace {
  public:
   BodySpace(const Generator& generator, const GenomeSpaceRequest& request)
       : generator_(generator), values_(request.values),
-        context_(std::make_shared<GenomeContext>(GenomeContext{*generator.genes, request.genes, request.environment})) {
+        context_(std::make_shared<GenomeContext>(
+            GenomeContext{*generator.genes, request.genes, request.environment, material_of(request)})) {
+    values_.erase("physics");
     for (const Robot& founder : request.founders) founders_.push_back(genes_of(founder));
     if (founders_.empty()) generator_.validate(values_);
   }
@@ -101,8 +121,10 @@ class BodySpace : public GenomeSpace {
   GenomePointer genome(GenesPointer genes) const { return std::make_shared<BodyGenome>(std::move(genes), context_); }
   // A body or materials that were changed by hand would be lost without a word.
   GenesPointer genes_of(const Robot& founder) const try {
-    GenesPointer genes = context_->kind.of(founder);
-    const Robot grown = genes->grown(founder.name, "");
+    const bool real = real_material_of(founder).has_value();
+    GenesPointer genes = context_->kind.of(real ? without_real_body(founder) : founder);
+    Robot grown = genes->grown(founder.name, "");
+    if (real) grown = with_real_body(grown, *real_material_of(founder));
     if (!std::ranges::equal(materials_of(grown).subspan(1), materials_of(founder).subspan(1)) ||
         grown.springs != founder.springs || grown.masses != founder.masses)
       throw InputError("/origin", "leads to another robot; evolve its muscles alone");

@@ -90,11 +90,10 @@ void break_up(LockstepGroup& group, WorkBatch& batch) {
   group = {};
 }
 
-void advance_alone(const Kernel& kernel, Body& body, const StepSetting& setting, Factors factors, std::int64_t step,
-                   std::int64_t steps) {
+void advance_alone(const Kernel& kernel, Body& body, const StepSetting& setting, Factors factors, StepRange steps) {
   if (body.status.exploded_step >= 0) return;
   const std::int64_t done = body.written && !accept_state(body) ? 0 : kernel.advance(body, setting, factors, steps);
-  if (done < steps) explode(body, step + done);
+  if (done < steps.count) explode(body, steps.first + done);
 }
 
 }  // namespace
@@ -124,17 +123,18 @@ std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& s
   batch.factors.resize(static_cast<std::size_t>(std::min(steps, at_once)) * muscles);
   for (std::int64_t done = 0; done < steps; done += at_once) {
     const std::int64_t now = std::min(at_once, steps - done);
+    const StepRange range{clock.step + done, now};
     kernel.fill_factors(batch.muscles, batch.factors.data(), now);
     const Factors factors{batch.factors.data(), muscles};
     for (LockstepGroup& group : batch.groups) {
       if (group.bodies.empty()) continue;
       reset_padding(group, now);
       make_checkpoint(group);
-      if (kernel.advance_group(group, setting, factors, now)) continue;
+      if (kernel.advance_group(group, setting, factors, range)) continue;
       return_to_checkpoint(group);
       break_up_counted(group);
     }
-    for (Body* body : batch.bodies) advance_alone(kernel, *body, setting, factors, clock.step + done, now);
+    for (Body* body : batch.bodies) advance_alone(kernel, *body, setting, factors, range);
   }
   return broken_up;
 }

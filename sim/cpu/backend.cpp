@@ -59,7 +59,6 @@ class CpuBackend final : public Backend {
     loose_.clear();
     bodies_.clear();
     configuration_ = configuration;
-    setting_ = setting_of(configuration);
     ungroup();
     append(robots);
   }
@@ -100,7 +99,7 @@ class CpuBackend final : public Backend {
 
   void configure(const Configuration& configuration) override {
     configuration_ = configuration;
-    setting_ = setting_of(configuration);
+    choose_model();
     ungroup();
     for_each_body([&](std::size_t i) { update_spring_parameters(*bodies_[i], configuration_); });
   }
@@ -144,7 +143,7 @@ class CpuBackend final : public Backend {
     const auto set_down = [&](std::size_t i) {
       std::vector<Vec3> positions = robots[i]->masses;
       for (Vec3& x : positions) x += Vec3{0, 0, lifts[i]};
-      set_state(*bodies_[first + i], positions, std::vector<Vec3>(positions.size()));
+      set_state(*bodies_[first + i], positions, start_velocities(*robots[i]));
     };
     arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, lifts.size(), set_down); });
   }
@@ -216,11 +215,11 @@ class CpuBackend final : public Backend {
       const Robot& robot = *robots[i - first];
       bodies_[i] = std::make_unique<Body>(make_body(robot, kernel_.lanes));
       update_spring_parameters(*bodies_[i], configuration_);
-      const std::vector<Vec3> at_rest(robot.masses.size());
-      set_state(*bodies_[i], robot.masses, at_rest);
+      set_state(*bodies_[i], robot.masses, start_velocities(robot));
       counter.add_one();
     };
     arena_.execute([&] { oneapi::tbb::parallel_for(first, bodies_.size(), make); });
+    choose_model();
     if (batches_.empty()) return;
     for (std::size_t i = first; i < bodies_.size(); ++i) loose_.push_back(bodies_[i].get());
   }
@@ -259,7 +258,14 @@ class CpuBackend final : public Backend {
     if (driven) materials_changed();
   }
 
+  void choose_model() {
+    const bool real_bodies =
+        std::ranges::any_of(bodies_, [](const auto& body) { return body->viscous || has_own_points(*body->robot); });
+    setting_ = setting_of(configuration_, real_bodies);
+  }
+
   void materials_changed() {
+    choose_model();
     for (WorkBatch& batch : batches_) batch.spring_parameters_are_stale = true;
   }
 

@@ -11,14 +11,13 @@ namespace {
 
 struct Sum {
   double x = 0, y = 0, z = 0;
-  void add(Vec3 a) {
-    x += static_cast<double>(a.x);
-    y += static_cast<double>(a.y);
-    z += static_cast<double>(a.z);
+  void add(double mass, Vec3 a) {
+    x += mass * static_cast<double>(a.x);
+    y += mass * static_cast<double>(a.y);
+    z += mass * static_cast<double>(a.z);
   }
-  Vec3 over(std::size_t n) const {
-    const auto count = static_cast<double>(n);
-    return {static_cast<float>(x / count), static_cast<float>(y / count), static_cast<float>(z / count)};
+  Vec3 over(double mass) const {
+    return {static_cast<float>(x / mass), static_cast<float>(y / mass), static_cast<float>(z / mass)};
   }
 };
 
@@ -27,17 +26,21 @@ struct Sum {
 Telemetry measure_state(const Body& body, const Configuration& configuration, const Clock& clock) {
   Telemetry result;
   Sum position, velocity;
+  double total_mass = 0;
   const std::size_t masses = body.robot->masses.size();
   for (std::size_t i = 0; i < masses; ++i) {
     const Vec3 v = body.velocity(i);
-    position.add(body.position(i));
-    velocity.add(v);
-    result.kinetic_energy += 0.5 * (static_cast<double>(v.x) * static_cast<double>(v.x) +
-                                    static_cast<double>(v.y) * static_cast<double>(v.y) +
-                                    static_cast<double>(v.z) * static_cast<double>(v.z));
+    const auto mass = static_cast<double>(mass_of(*body.robot, i));
+    total_mass += mass;
+    position.add(mass, body.position(i));
+    velocity.add(mass, v);
+    result.kinetic_energy +=
+        0.5 * mass *
+        (static_cast<double>(v.x) * static_cast<double>(v.x) + static_cast<double>(v.y) * static_cast<double>(v.y) +
+         static_cast<double>(v.z) * static_cast<double>(v.z));
   }
-  result.center_of_mass = position.over(masses);
-  result.velocity = velocity.over(masses);
+  result.center_of_mass = position.over(total_mass);
+  result.velocity = velocity.over(total_mass);
   std::array<MaterialNow, max_materials> materials;
   for (std::size_t id = 0; id < body.materials.size(); ++id)
     if (body.measures.used[id]) materials[id] = material_at(body.materials[id], configuration.environment, clock);

@@ -91,9 +91,7 @@ void CudaBackend::configure(const Configuration& configuration) {
   begin_change();
   rest_valid_ = false;
   configuration_ = configuration;
-  model_ = solver_model_of(configuration.environment);
-  constants_ = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
-                static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
+  constants_ = step_constants(configuration);
   for (const auto& robots : classes()) robots->configure(configuration);
   choose_launches();
 }
@@ -175,6 +173,10 @@ void CudaBackend::begin_exchange() {
 }
 
 void CudaBackend::choose_launches() {
+  views_valid_ = false;
+  model_ =
+      solver_model_of(configuration_.environment,
+                      std::ranges::any_of(classes(), [](const auto& robots) { return robots->has_real_bodies(); }));
   for (const auto& robots : classes()) {
     if (robots->size() == 0) continue;
     robots->choose_launch(configuration_, places_.size());

@@ -71,7 +71,7 @@ class CudaBackend final : public Backend {
   void copy_positions_with_steps(std::shared_ptr<float> device_out) const override;
   std::shared_ptr<void> allocate_shared(std::size_t bytes) const override;
   void copy_shared(void* to, const void* from, std::size_t bytes) const override;
-  void publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const override;
+  void publish(std::span<const Robot* const> robots, const PublishedArrays& arrays) const override;
   RobotStatus status(std::size_t robot) const override;
   std::vector<RobotStatus> statuses() const override;
   void set_status(std::size_t robot, const RobotStatus& status) override;
@@ -83,7 +83,7 @@ class CudaBackend final : public Backend {
     Event start{Event::timed}, end{Event::timed}, sleepy_end{Event::sleepy}, forked;
     Event queued;                          // the end of what was last queued in a caller's stream
     DeviceArray<RobotView> views;          // [robot], if views_valid_
-    DeviceArray<float> rest;               // [mass][3], positions at rest, if rest_valid_
+    DeviceArray<float> rest;               // [mass][6], positions and velocities at the start, if rest_valid_
     Actuators actuators;                   // none are driven if it is empty
     MappedArray<DeviceTelemetry> reports;  // of the current state if report_valid_
     DeviceArray<DeviceTelemetry> samples;  // of step_and_report()
@@ -104,6 +104,7 @@ class CudaBackend final : public Backend {
   // To be called before robots come or go: what names places or masses of the batch is no longer valid.
   void begin_exchange();
 
+  // Chooses the model for the robots and their materials, and how each class is launched.
   void choose_launches();
   void number_masses(std::span<const Robot* const> robots);
   const RobotView* views() const;

@@ -88,7 +88,7 @@ void CudaBackend::copy_shared(void* to, const void* from, std::size_t bytes) con
   check(cudaStreamSynchronize(cudaStreamLegacy), "copying a shared array");
 }
 
-void CudaBackend::publish(std::span<const std::size_t>, const PublishedArrays& arrays) const {
+void CudaBackend::publish(std::span<const Robot* const>, const PublishedArrays& arrays) const {
   if (places_.empty()) return;
   use_device();
   const cudaStream_t stream = enter(nullptr);
@@ -132,11 +132,13 @@ const float* CudaBackend::rest_positions(std::span<const Robot* const> robots, s
   if (!rest_valid_) {
     settle();
     std::vector<float> all;
-    for (std::size_t i = 0; i < robots.size(); ++i)
-      for (const Vec3 mass : robots[i]->masses) {
-        const Vec3 x = at_rest(mass, lifts[i]);
-        all.insert(all.end(), {x.x, x.y, x.z});
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const std::vector<Vec3> velocities = start_velocities(*robots[i]);
+      for (std::size_t mass = 0; mass < velocities.size(); ++mass) {
+        const Vec3 x = at_rest(robots[i]->masses[mass], lifts[i]), v = velocities[mass];
+        all.insert(all.end(), {x.x, x.y, x.z, v.x, v.y, v.z});
       }
+    }
     if (owned_->rest.size() < all.size()) owned_->rest = DeviceArray<float>(all.size());
     owned_->rest.write(0, all, main().get());
     rest_valid_ = true;

@@ -146,12 +146,7 @@ void CudaBackend::begin_launches(const Clock& clock) const {
 void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream) const {
   for (const std::uint32_t c : launch_order_) {
     const SizeClass& robots = owned_->classes[c];
-    StepArguments arguments{robots.view(),
-                            clock,
-                            constants_,
-                            stiffness_scale_of(configuration_.environment),
-                            contact_stiffness_of(configuration_.environment, configuration_.solver, configuration_.dt),
-                            0,
+    StepArguments arguments{robots.view(),  clock, constants_, stiffness_scale_of(configuration_.environment), 0,
                             robots.launch()};
     std::int64_t done = 0;
     do {

@@ -16,6 +16,8 @@
 //                                  if records    if any      working memory (tile.h)
 //                                  have one word
 //
+//   After the rest lengths come the relaxation times of the materials if springs have any, one table, or one per robot.
+//
 // 1. A launch carries its robots through many steps. Masses stay in shared memory all the while; only spring records
 //    and face pairs come from the L2 cache, once per step.
 // 2. A warp needs the parameters of 32 materials at once, which would often lie in the same banks. So the block keeps
@@ -26,6 +28,7 @@
 //    result.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -58,11 +61,17 @@ static_assert(sizeof(SpringParameters<Solver::xpbd>) == parameter_bytes);
 
 // Ends of the parts of shared memory [bytes].
 struct BlockLayout {
-  std::uint32_t tables, failures, lengths, contacts, total;
+  std::uint32_t tables, failures, lengths, relaxation_times, contacts, total;
 };
 
 // Pairs of near masses that are listed. If there are more, every step searches the cell grid.
 inline constexpr std::uint32_t contact_list_size = 1023;
+
+// Pairs within this distance are listed [m]: half as far again as they touch, but if possible short of the neighbors in
+// a lattice, which springs join.
+inline float list_radius(float contact_distance, float shortest_rest_length) {
+  return std::max(1.25f * contact_distance, std::min(1.5f * contact_distance, 0.98f * shortest_rest_length));
+}
 
 // Buckets of the cell grid that finds the contacts of a robot of this many tiles; 0 without contacts.
 inline std::uint32_t contact_buckets(const Environment& environment, std::uint32_t tiles) {
@@ -82,7 +91,8 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
   layout.tables = (tables * launch.table_chunks * lanes * parameter_bytes) << launch.table_copy_bits;
   layout.failures = layout.tables + launch.robots_per_block * 16;
   layout.lengths = layout.failures + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
-  layout.contacts = layout.lengths;
+  layout.relaxation_times = layout.lengths + (launch.viscous ? tables * launch.table_chunks * lanes * 4 : 0);
+  layout.contacts = layout.relaxation_times;
   if (launch.contacts_on_chip)
     layout.contacts += launch.robots_per_block * contact_bytes(launch.contact_buckets, tiles);
   layout.total = layout.contacts;

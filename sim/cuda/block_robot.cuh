@@ -25,6 +25,8 @@ class BlockRobot {
 
   __device__ const StepArguments& arguments() const { return arguments_; }
   __device__ const RobotHeader& header() const { return header_; }
+  // The same in device memory, for what is rarely needed: it takes no register.
+  __device__ const RobotHeader& stored_header() const { return arguments_.batch.robots[context_.robot]; }
   __device__ const ThreadContext<Memory>& context() const { return context_; }
   __device__ std::uint32_t warps() const { return arguments_.launch.warps_per_robot; }
   __device__ std::uint32_t threads() const { return warps() * lanes; }
@@ -69,6 +71,16 @@ class BlockRobot {
     return -static_cast<int>(__ldg(arguments_.batch.incoming_counts + slot_in_batch(tile))) * rounding_magic_bits;
   }
 
+  // Of this thread's mass in a tile.
+  __device__ PointProperties point(std::uint32_t tile) const {
+    if (!arguments_.batch.points) return {};
+    const float2 pair = __ldg(reinterpret_cast<const float2*>(arguments_.batch.points + slot_in_batch(tile)));
+    return {pair.x, pair.y};
+  }
+  __device__ float point_mass(std::uint32_t tile) const {
+    return arguments_.batch.point_masses ? __ldg(arguments_.batch.point_masses + slot_in_batch(tile)) : 1.0f;
+  }
+
   __device__ const std::uint32_t* row_start() const {
     return arguments_.batch.row_start + std::size_t{context_.robot} * (arguments_.batch.tile_stride + 1);
   }
@@ -105,6 +117,10 @@ class BlockRobot {
   __device__ SpringParameters<solver> parameters_of(const SpringRecord& record) const {
     const float2 pair = table_entry_of(record);
     return {pair.x, pair.y};
+  }
+  // tau [s], from the one table of relaxation times that the lanes share: few materials lie in one bank.
+  __device__ float relaxation_time_of(const SpringRecord& record) const {
+    return OnChip::load(context_.relaxation_times + material_of(record) * 4, 0);
   }
   // d(L / L0) / dt [1/s] and L / L0, after MaterialTable::write_rates().
   __device__ float2 rate_and_length_factor_of(const SpringRecord& record) const { return table_entry_of(record); }

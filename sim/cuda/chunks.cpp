@@ -72,6 +72,10 @@ void fill_state(std::span<float> state, const Robot& robot, const SlotOrder& ord
   std::ranges::fill(state, 0.f);
   for (std::uint32_t mass = 0; mass < robot.masses.size(); ++mass)
     put_vector(state, order.slot_of(mass), field_x, at_rest(robot.masses[mass], lift));
+  if (robot.velocity.empty()) return;
+  const std::vector<Vec3> velocities = start_velocities(robot);
+  for (std::uint32_t mass = 0; mass < velocities.size(); ++mass)
+    put_vector(state, order.slot_of(mass), field_v, velocities[mass]);
 }
 
 Vec3 vector_at(std::span<const float> state, std::uint32_t slot, Field field) {

@@ -2,15 +2,18 @@
 // Contacts: masses of a robot that are near each other without a spring between them repel (land).
 //
 //   every step        |  list of near pairs  -> which of them touch -> forces
-//   now and then      |  cell grid -> list of near pairs, without those that a spring joins
+//   now and then      |  how far has each mass moved since it was listed?
+//   if too far        |  cell grid -> list of near pairs, without those that a spring joins
 //
-//   0          contact distance        list_radius = 1.5 contact distances
+//   0          contact distance          list radius (block_layout.h)
 //   |--------------- touch -----------------|------- listed --------|
-//                                           |<-- margin: 0.5 ------>|
+//                                           |<------ margin ------->|
 //
 // 1. Searching the grid costs far more than reading the list, which is short or empty unless the robot folds up.
 // 2. The list can miss a pair only after one of its masses has moved half the margin. Each thread adds up the
-//    farthest that one of its masses moved per step; the list is made again when a sum reaches list_reach.
+//    farthest that one of its masses moved per step, which costs nothing but is often too much: what swings comes back,
+//    and the whole robot travels. So when a sum reaches the limit, the true ways are computed, relative to the first
+//    mass, from the positions at which the masses were listed. They replace the sums if all are below half the limit.
 // 3. If there are more pairs than the list holds, every step searches the grid.
 // 4. Both ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
 //    not change a bit.
@@ -21,11 +24,6 @@
 #include "sim/physics/environments.h"
 
 namespace mercury::cuda {
-
-// Pairs within this many contact distances are listed.
-inline constexpr float list_radius = 1.5f;
-// How far a mass may go before the list is made again, in contact distances: half the margin, less 1 % for rounding.
-inline constexpr float list_reach = 0.99f * (list_radius - 1) / 2;
 
 struct ContactMemory {
   std::uint32_t* count;  // pairs found, of which contact_list_size fit
@@ -39,11 +37,11 @@ struct ContactMemory {
   __device__ bool overflows() const { return *static_cast<volatile std::uint32_t*>(count) > contact_list_size; }
 };
 
-// Calls visit(j) for every slot j within list_radius of slot i at x that comes after i, so each pair is visited once.
+// Calls visit(j) for every slot j within `radius` of slot i at x that comes after i, so each pair is visited once.
 template <class Position, class Visit>
-__device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets, float distance, std::uint32_t i,
-                              Vec3 x, const Position& position, const Visit& visit) {
-  const float radius = list_radius * distance, inverse_size = 1 / radius;
+__device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets, float radius, std::uint32_t i, Vec3 x,
+                              const Position& position, const Visit& visit) {
+  const float inverse_size = 1 / radius;
   const Cell cell = cell_of(x, inverse_size);
   for (int n = 0; n < half_neighborhood; ++n) {
     const Cell other = neighbor_cell(cell, n);
@@ -55,42 +53,33 @@ __device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets
   }
 }
 
-template <class Robot>
+// `verifies`: whether the true ways are computed; it takes registers.
+template <class Robot, bool verifies>
 class ContactPass {
  public:
-  __device__ explicit ContactPass(char* memory) : memory_(memory) {}
+  __device__ ContactPass(char* memory, float* listed) : memory_(memory), listed_(listed) {}
 
-  // Makes the list of near pairs. All threads of the block must call it, since it has barriers.
-  __device__ void make_list(const Robot& robot) {
-    const ContactMemory memory = contact_memory(robot);
-    traveled_ = 0;
-    for (std::uint32_t b = robot.thread(); b < buckets(robot); b += robot.threads()) memory.heads[b] = end_of_list;
-    if (robot.thread() == 0) *memory.count = 0;
-    __syncthreads();
-    const float inverse_size = 1 / (list_radius * robot.header().contact_distance);
-    for (std::uint32_t tile = robot.first_tile(); collides(robot) && tile < robot.last_tile(); ++tile) {
-      if (!robot.has_mass(tile)) continue;
-      const std::uint32_t slot = robot.own_slot(tile);
-      const Cell cell = cell_of(robot.own_mass(tile).vector(field_x), inverse_size);
-      const std::uint32_t bucket = bucket_of(cell, buckets(robot) - 1);
-      memory.links[slot] = static_cast<std::uint16_t>(atomicExch(memory.heads + bucket, slot));
+  // Makes the list of near pairs, or makes sure that it is still complete. All threads of the block must call it, since
+  // it has barriers.
+  __device__ void update_list(const Robot& robot) {
+    if constexpr (verifies) {
+      const float farthest = has_list_ && collides(robot) ? farthest_since_listed(robot) : 0;
+      const bool complete =
+          has_list_ && (!collides(robot) || (farthest < reach(robot) / 2 && !contact_memory(robot).overflows()));
+      if (!__syncthreads_or(!complete)) {
+        traveled_ = farthest;
+        return;
+      }
+      has_list_ = true;
     }
-    __syncthreads();
-    if (collides(robot))
-      for_each_near_pair(robot, [&](std::uint32_t i, Vec3, std::uint32_t j) {
-        if (joined(robot, i, j)) return;
-        const std::uint32_t index = atomicAdd(memory.count, 1u);
-        if (index < contact_list_size) memory.pairs[index] = i << 16 | j;
-      });
-    __syncthreads();
+    make_list(robot);
   }
 
   // No mass of this thread moved farther than this in a step [m].
   __device__ void moved(float farthest) { traveled_ += farthest; }
-  // Whether the list must be made again before the next step.
+  // Whether the list may miss a pair in the next step.
   __device__ bool stale(const Robot& robot) const {
-    return collides(robot) &&
-           (traveled_ > list_reach * robot.header().contact_distance || contact_memory(robot).overflows());
+    return collides(robot) && (traveled_ > reach(robot) || contact_memory(robot).overflows());
   }
 
   // Adds the forces of all pairs that touch.
@@ -109,13 +98,63 @@ class ContactPass {
   }
 
  private:
+  // How far a mass may go before the list must be made again [m]: half the margin, less 1 % for rounding.
+  __device__ static float reach(const Robot& robot) {
+    return 0.99f * (robot.stored_header().list_radius - robot.header().contact_distance) / 2;
+  }
+
+  // Of this thread's masses, relative to the first mass of the robot [m].
+  __device__ float farthest_since_listed(const Robot& robot) const {
+    const Vec3 first = robot.mass_at(0).vector(field_x) - listed_at(0);
+    float squared = 0;
+    for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile)
+      if (robot.has_mass(tile))
+        squared = fmaxf(squared,
+                        squared_length(robot.own_mass(tile).vector(field_x) - listed_at(robot.own_slot(tile)) - first));
+    return sqrtf(squared);
+  }
+  __device__ Vec3 listed_at(std::uint32_t slot) const {
+    const float* x = listed_ + 3 * slot;
+    return {x[0], x[1], x[2]};
+  }
+
+  __device__ void make_list(const Robot& robot) {
+    const ContactMemory memory = contact_memory(robot);
+    traveled_ = 0;
+    for (std::uint32_t b = robot.thread(); b < buckets(robot); b += robot.threads()) memory.heads[b] = end_of_list;
+    if (robot.thread() == 0) *memory.count = 0;
+    __syncthreads();
+    const float inverse_size = 1 / robot.stored_header().list_radius;
+    for (std::uint32_t tile = robot.first_tile(); collides(robot) && tile < robot.last_tile(); ++tile) {
+      if (!robot.has_mass(tile)) continue;
+      const std::uint32_t slot = robot.own_slot(tile);
+      const Vec3 x = robot.own_mass(tile).vector(field_x);
+      if constexpr (verifies) {
+        listed_[3 * slot] = x.x;
+        listed_[3 * slot + 1] = x.y;
+        listed_[3 * slot + 2] = x.z;
+      }
+      const Cell cell = cell_of(x, inverse_size);
+      const std::uint32_t bucket = bucket_of(cell, buckets(robot) - 1);
+      memory.links[slot] = static_cast<std::uint16_t>(atomicExch(memory.heads + bucket, slot));
+    }
+    __syncthreads();
+    if (collides(robot))
+      for_each_near_pair(robot, [&](std::uint32_t i, Vec3, std::uint32_t j) {
+        if (joined(robot, i, j)) return;
+        const std::uint32_t index = atomicAdd(memory.count, 1u);
+        if (index < contact_list_size) memory.pairs[index] = i << 16 | j;
+      });
+    __syncthreads();
+  }
+
   __device__ static std::uint32_t buckets(const Robot& robot) { return robot.arguments().launch.contact_buckets; }
   __device__ static bool collides(const Robot& robot) {
     return buckets(robot) > 0 && robot.header().contact_distance > 0;
   }
   __device__ ContactMemory contact_memory(const Robot& robot) const { return {memory_, buckets(robot)}; }
 
-  // Calls visit(i, x_i, j) for every pair within list_radius whose slot i is one of this thread's.
+  // Calls visit(i, x_i, j) for every pair within the list radius whose slot i is one of this thread's.
   template <class Visit>
   __device__ void for_each_near_pair(const Robot& robot, const Visit& visit) const {
     const auto position = [&](std::uint32_t j) { return robot.mass_at(j).vector(field_x); };
@@ -123,7 +162,7 @@ class ContactPass {
       if (!robot.has_mass(tile)) continue;
       const std::uint32_t i = robot.own_slot(tile);
       const Vec3 x = robot.own_mass(tile).vector(field_x);
-      for_each_near(contact_memory(robot), buckets(robot), robot.header().contact_distance, i, x, position,
+      for_each_near(contact_memory(robot), buckets(robot), robot.stored_header().list_radius, i, x, position,
                     [&](std::uint32_t j) { visit(i, x, j); });
     }
   }
@@ -135,8 +174,8 @@ class ContactPass {
   __device__ static void add_pair(const Robot& robot, std::uint32_t i, std::uint32_t j) {
     const Vec3 d = robot.mass_at(j).vector(field_x) - robot.mass_at(i).vector(field_x);
     if (!touches(robot, d)) return;
-    const float stiffness = robot.arguments().contact_stiffness * robot.header().force_scale;
-    const Vec3 units = repulsion(squared_length(d), robot.header().contact_distance, stiffness) * d;
+    const Vec3 units =
+        repulsion(squared_length(d), robot.header().contact_distance, robot.stored_header().contact_units) * d;
     robot.mass_at(i).add_to_sum(units);
     robot.mass_at(j).add_to_sum(-units);
   }
@@ -157,7 +196,9 @@ class ContactPass {
   }
 
   char* const memory_;
-  float traveled_ = 0;  // upper bound for this thread's masses since the list was made [m]
+  float* const listed_;  // [slot][3], the positions when the list was made
+  bool has_list_ = false;
+  float traveled_ = 0;  // upper bound for this thread's masses since then [m]
 };
 
 }  // namespace mercury::cuda

@@ -6,6 +6,7 @@
 #include "sim/cuda/memory.h"
 #include "sim/cuda/rest_lengths.h"
 #include "sim/cuda/step.h"
+#include "sim/physics/measures.h"
 
 namespace mercury {
 
@@ -20,9 +21,10 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   batch.robot_count = many_robots;
   batch.tile_stride = tiles_for(robot.masses.size());
   batch.record_words = record_words_for(robot);
+  const bool viscous = has_viscous_springs(measure(robot), materials_of(robot));
   const LaunchConfiguration launch =
-      choose_launch_configuration(configuration.solver, configuration.environment, batch, true, many_robots);
-  const AnyEnvironmentModel model = solver_model_of(configuration.environment);
+      choose_launch_configuration(configuration.solver, configuration.environment, batch, true, viscous, many_robots);
+  const AnyEnvironmentModel model = solver_model_of(configuration.environment, viscous || has_own_points(robot));
   return {device_limits().shared_per_block, launch.on_chip, launch.on_chip && launch.contacts_on_chip,
           robots_in_flight(configuration.solver, model, launch)};
 }

@@ -16,15 +16,18 @@ class FacePass {
     if (first_pair(robot) < robot.header().face_pairs) first_ = load(robot, first_pair(robot));
   }
 
-  // After prefetch().
+  // After prefetch(). `units_per_newton` of the sums; `dither` is
+  // dither_of_step().
   template <class Robot, class EnvironmentModel>
-  __device__ void add(const Robot& robot, const EnvironmentModel& model, std::uint32_t step, Failure& failure) const {
+  __device__ void add(const Robot& robot, const EnvironmentModel& model, float units_per_newton, std::uint32_t step,
+                      std::uint32_t dither, Failure& failure) const {
     ushort4 next = first_;
     for (std::uint32_t p = first_pair(robot); p < robot.header().face_pairs; p += robot.threads()) {
       const ushort4 corners = next;
       if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
       if (corners.x == corners.z) continue;  // padding; a single face may have a = b or a = d
-      if (!add_pair(robot, model, corners)) failure.report(step, phase_environment, lowest_mass(robot, corners));
+      if (!add_pair(robot, model, units_per_newton, corners, dither + dither_of_pair(p)))
+        failure.report(step, phase_environment, lowest_mass(robot, corners));
     }
   }
 
@@ -43,7 +46,8 @@ class FacePass {
 
   // Returns false if a force is too large for its fixed-point sum, or NaN.
   template <class Robot, class EnvironmentModel>
-  __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, ushort4 corners) {
+  __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, float units_per_newton,
+                                  ushort4 corners, std::uint32_t dither) {
     const auto a = robot.mass_at(corners.x), b = robot.mass_at(corners.y), c = robot.mass_at(corners.z),
                d = robot.mass_at(corners.w);
     const Vec3 xa = a.vector(field_x), xb = b.vector(field_x), xc = c.vector(field_x), xd = d.vector(field_x);
@@ -54,10 +58,14 @@ class FacePass {
     const Vec3 second_normal = 0.25f * cross((xd - xa) + (xd - xc), shared_edge);
     const Vec3 shared = a.vector(field_v) + c.vector(field_v);
     const float third = 1.0f / 3.0f;
-    const float scale = third * robot.header().force_scale;
-    const Vec3 first = scale * model.on_face(first_normal, third * (shared + b.vector(field_v)));
-    const Vec3 second = scale * model.on_face(second_normal, third * (shared + d.vector(field_v)));
+    const float scale = third * units_per_newton;
+    Vec3 first = scale * model.on_face(first_normal, third * (shared + b.vector(field_v)));
+    Vec3 second = scale * model.on_face(second_normal, third * (shared + d.vector(field_v)));
     if (!fits(first) || !fits(second)) return false;
+    if constexpr (EnvironmentModel::real_bodies) {
+      first = dithered(first, dither, model.dither());
+      second = dithered(second, dither + second_face_dither, model.dither());
+    }
     const int x1 = round_to_int(first.x), y1 = round_to_int(first.y), z1 = round_to_int(first.z);
     const int x2 = round_to_int(second.x), y2 = round_to_int(second.y), z2 = round_to_int(second.z);
     b.add_to_sum(x1, y1, z1);

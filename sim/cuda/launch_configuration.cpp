@@ -44,12 +44,13 @@ bool fit_one(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fie
 }  // namespace
 
 LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,
-                                                bool same_materials, std::size_t batch_size,
+                                                bool same_materials, bool viscous, std::size_t batch_size,
                                                 std::uint32_t table_chunks) {
   const DeviceLimits limits = device_limits();
   const std::uint32_t tiles = robots.tile_stride;
   LaunchConfiguration launch;
   launch.shared_table = same_materials;
+  launch.viscous = viscous;
   launch.table_chunks = table_chunks;
   launch.record_words = robots.record_words;
   launch.contact_buckets = contact_buckets(environment, tiles);

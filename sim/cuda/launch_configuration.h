@@ -22,6 +22,7 @@ struct LaunchConfiguration {
   bool valence_on_chip = true;                         // with field_valence, which XPBD reads
   std::uint32_t contact_buckets = 0;                   // a power of two, or 0 = no self-collision
   std::uint32_t record_words = 2;                      // of the batch
+  bool viscous = false;                                // springs have relaxation times
   bool contacts_on_chip = true;                        // else after the working memory in the workspace
   std::size_t shared_bytes = 0;
 };
@@ -48,7 +49,7 @@ constexpr std::uint32_t tiles_per_warp(std::uint32_t tiles) {
 // The configuration that keeps most robots in flight on the current device, beside the rest of `batch_size` robots.
 // Springs name materials below 32 `table_chunks`.
 LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,
-                                                bool same_materials, std::size_t batch_size,
+                                                bool same_materials, bool viscous, std::size_t batch_size,
                                                 std::uint32_t table_chunks = max_materials / lanes);
 
 }  // namespace mercury::cuda

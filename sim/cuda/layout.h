@@ -29,6 +29,7 @@
 #include "sim/cuda/tile.h"
 #include "sim/physics/face_pairs.h"
 #include "sim/physics/muscle.h"
+#include "sim/physics/points.h"
 
 namespace mercury::cuda {
 
@@ -43,7 +44,12 @@ struct RobotHeader {
   std::uint32_t masses, tiles, face_pairs, springs;
   float force_scale, correction_scale;  // FixedPointScale
   float squared_stretch_limit;          // [m2]
-  float contact_distance;               // [m]
+  float environment_scale;              // the same, of the forces of the environment
+  float contact_distance;               // [m]; 0 = no contacts
+  float contact_units;                  // k_c [units/m]
+  float list_radius;                    // within which pairs are listed that may touch [m]
+  float viscous_limit;                  // of tau d|d|/dt [m]; 0 = no spring has a relaxation time
+  double mass;                          // of all masses together [kg]
 };
 
 // Whether and when a robot exploded.
@@ -72,8 +78,10 @@ struct BatchView {
   const std::uint16_t* masses;     // [robot][slot], the mass that stands there, by its number
   // [robot][slot]: the reactions that a slot receives per step, one for each entry of the schedule whose partner it is.
   const std::uint32_t* incoming_counts;
-  const Material* materials;  // [robot][max_materials]
-  MusclePhase* phases;        // [robot][max_materials], for the current clock base
+  const PointProperties* points;  // [robot][slot]; null = masses of 1 kg, none fixed
+  const float* point_masses;      // [robot][slot] [kg]; null = 1 kg
+  const Material* materials;      // [robot][max_materials]
+  MusclePhase* phases;            // [robot][max_materials], for the current clock base
   const DevicePerturbation* perturbations;
   char* workspace;  // [robot], what does not fit on the chip: contact lists, working memory
   std::uint32_t robot_count, tile_stride, row_stride, face_stride, perturbation_count;

@@ -19,8 +19,8 @@ class MaterialTable {
   // `warps` = those that share this table; `warp` = the number of this one among them.
   __device__ MaterialTable(const StepArguments& arguments, std::uint32_t robot, std::uint32_t warp, std::uint32_t warps,
                            std::uint32_t lane, Parameters* table)
-      : warp_(warp), warps_(warps), lane_(lane), copies_(1u << arguments.launch.table_copy_bits),
-        copy_bits_(arguments.launch.table_copy_bits), table_(table),
+      : warp_(warp), warps_(warps), lane_(lane), chunks_(arguments.launch.table_chunks),
+        copies_(1u << arguments.launch.table_copy_bits), copy_bits_(arguments.launch.table_copy_bits), table_(table),
         materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
         phases_(arguments.batch.phases + std::size_t{robot} * max_materials) {}
 
@@ -36,6 +36,12 @@ class MaterialTable {
         table_[(chunk * lanes + lane_) * copies_ + copy].*coefficient = value;
     }
     update(arguments, 0);
+  }
+
+  // Writes the relaxation times of all materials.
+  __device__ void fill_relaxation_times(float* table) const {
+    for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_)
+      table[chunk * lanes + lane_] = materials_[chunk * lanes + lane_].relaxation_time;
   }
 
   // Writes the length factors of this many steps after the launch's first.
@@ -81,7 +87,7 @@ class MaterialTable {
       to->*parameter = __shfl_sync(0xffffffffu, value, source);
   }
 
-  const std::uint32_t warp_, warps_, lane_, copies_, copy_bits_;
+  const std::uint32_t warp_, warps_, lane_, chunks_, copies_, copy_bits_;
   Parameters* const table_;
   const Material* const materials_;
   const MusclePhase* const phases_;

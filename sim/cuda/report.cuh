@@ -86,7 +86,7 @@ class RobotReporter {
       stage(offsetof(DeviceTelemetry, strained_share),
             __float_as_int(mercury::strained_share(__float_as_uint(strained), robot_.header().springs)));
     }
-    const double share = 1.0 / robot_.header().masses;
+    const double share = 1.0 / robot_.header().mass;
     for (std::uint32_t quantity = robot_.context().warp; quantity < quantities; quantity += robot_.warps()) {
       const double total = sum(quantity);
       if (quantity == kinetic_energy)
@@ -166,7 +166,7 @@ class RobotReporter {
     for (std::uint32_t tile = 0; tile < tiles; tile += at_once) {
       float value[at_once];
 #pragma unroll
-      for (int i = 0; i < at_once; ++i) value[i] = tile + i < tiles ? value_of(robot_.own_mass(tile + i), quantity) : 0;
+      for (int i = 0; i < at_once; ++i) value[i] = tile + i < tiles ? value_of(tile + i, quantity) : 0;
 #pragma unroll
       for (int i = 0; i < at_once; i += 2) {
         even += static_cast<double>(value[i]);
@@ -177,11 +177,14 @@ class RobotReporter {
     for (std::uint32_t half = lanes / 2; half > 0; half /= 2) sum += __shfl_down_sync(0xffffffffu, sum, half);
     return sum;
   }
-  __device__ static float value_of(const Mass<Memory>& mass, std::uint32_t quantity) {
-    if (quantity != kinetic_energy)
-      return mass.value(quantity == elastic_energy ? field_energy : quantity == power ? field_power : quantity);
+  __device__ float value_of(std::uint32_t tile, std::uint32_t quantity) const {
+    const Mass<Memory> mass = robot_.own_mass(tile);
+    if (quantity == elastic_energy) return mass.value(field_energy);
+    if (quantity == power) return mass.value(field_power);
+    const float kilograms = robot_.point_mass(tile);
+    if (quantity != kinetic_energy) return kilograms * mass.value(quantity);
     const Vec3 v = mass.vector(field_v);
-    return 0.5f * multiply_add(v.x, v.x, multiply_add(v.y, v.y, v.z * v.z));
+    return 0.5f * kilograms * multiply_add(v.x, v.x, multiply_add(v.y, v.y, v.z * v.z));
   }
 
   // The word of the staged report at this offset [bytes]: word i lies in field_staged of slot i.

@@ -14,17 +14,19 @@ __device__ double sum_of_warp(double value) {
   return value;
 }
 
-// The vectors of one robot that begin at this field: per mass, and their mean. All threads of the block call this.
+// The vectors of one robot that begin at this field: per mass, and their mean by mass. All threads of the block call
+// this.
 __device__ void publish_field(const RobotView& robot, Field first_field, float* per_mass, float* mean) {
   __shared__ double sums[3][warps];
   double sum[3] = {};
   for (std::uint32_t slot = threadIdx.x; slot < robot.masses; slot += threads) {
     const float* from = robot.state + offset_of_slot(slot, state_fields) + first_field * lanes;
     const std::size_t to = 3 * (robot.first_mass + robot.order[slot]);
+    const double mass = robot.point_masses ? static_cast<double>(robot.point_masses[slot]) : 1.0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       const float value = from[axis * lanes];
       if (per_mass) per_mass[to + axis] = value;
-      sum[axis] += static_cast<double>(value);
+      sum[axis] += mass * static_cast<double>(value);
     }
   }
   if (!mean) return;
@@ -36,7 +38,7 @@ __device__ void publish_field(const RobotView& robot, Field first_field, float* 
   if (threadIdx.x < 3) {
     double total = 0;
     for (const double of_warp : sums[threadIdx.x]) total += of_warp;
-    mean[threadIdx.x] = static_cast<float>(total * (1.0 / robot.masses));
+    mean[threadIdx.x] = static_cast<float>(total * (1.0 / robot.mass));
   }
   __syncthreads();
 }
@@ -54,15 +56,15 @@ __global__ void __launch_bounds__(threads) publish_kernel(const RobotView* robot
 
 // One block per robot.
 __global__ void __launch_bounds__(threads)
-    rest_kernel(const RobotView* robots, const float* rest, const std::uint8_t* mask) {
+    rest_kernel(const RobotView* robots, const float* start, const std::uint8_t* mask) {
   if (!mask[blockIdx.x]) return;
   const RobotView robot = robots[blockIdx.x];
   for (std::uint32_t slot = threadIdx.x; slot < robot.masses; slot += threads) {
-    const float* from = rest + 3 * (robot.first_mass + robot.order[slot]);
+    const float* from = start + 6 * (robot.first_mass + robot.order[slot]);
     float* const to = robot.state + offset_of_slot(slot, state_fields);
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       to[(field_x + axis) * lanes] = from[axis];
-      to[(field_v + axis) * lanes] = 0;
+      to[(field_v + axis) * lanes] = from[3 + axis];
     }
   }
   if (threadIdx.x == 0) *robot.status = {-1, no_mass};
@@ -76,10 +78,10 @@ void publish_states(const RobotView* robots, std::size_t count, const PublishedA
   check(cudaGetLastError(), "writing shared arrays");
 }
 
-void put_masked_at_rest(const RobotView* robots, std::size_t count, const float* rest, const std::uint8_t* mask,
+void put_masked_at_rest(const RobotView* robots, std::size_t count, const float* start, const std::uint8_t* mask,
                         cudaStream_t stream) {
   if (count == 0) return;
-  rest_kernel<<<static_cast<unsigned>(count), threads, 0, stream>>>(robots, rest, mask);
+  rest_kernel<<<static_cast<unsigned>(count), threads, 0, stream>>>(robots, start, mask);
   check(cudaGetLastError(), "putting robots at rest");
 }
 

@@ -18,9 +18,11 @@ namespace mercury::cuda {
 struct RobotView {
   float* state;                // [tile][state_fields][32]
   const std::uint16_t* order;  // [slot], the mass that stands there, by its number
+  const float* point_masses;   // [slot] [kg]; null = 1 kg
   DeviceStatus* status;
   std::uint64_t first_mass;  // among the masses of the batch
   std::uint32_t masses;
+  double mass;  // [kg]
 };
 
 // These are asynchronous.
@@ -29,9 +31,9 @@ struct RobotView {
 // robot, so centers are reproducible.
 void publish_states(const RobotView* robots, std::size_t count, const PublishedArrays& arrays, cudaStream_t stream);
 
-// Puts those robots whose element of `mask` is not 0 at rest; they have not exploded. `rest` = positions of all masses
-// of the batch.
-void put_masked_at_rest(const RobotView* robots, std::size_t count, const float* rest, const std::uint8_t* mask,
+// Puts those robots whose element of `mask` is not 0 back to the start; they have not exploded. `start` = positions and
+// velocities of all masses of the batch, [mass][6].
+void put_masked_at_rest(const RobotView* robots, std::size_t count, const float* start, const std::uint8_t* mask,
                         cudaStream_t stream);
 
 }  // namespace mercury::cuda

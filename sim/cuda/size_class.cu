@@ -74,7 +74,9 @@ void SizeClass::for_each_array(const Visit& visit) {
 std::uint32_t SizeClass::append(std::size_t count) {
   const std::uint32_t first = size();
   headers_.resize(first + count);
+  robots_.resize(first + count);
   measures_.resize(first + count);
+  point_properties_.resize(first + count);
   slot_tables_.resize(first + count);
   materials_.resize((first + count) * max_materials);
   return first;
@@ -110,16 +112,24 @@ void SizeClass::make_room(const ChunkSizes& sizes) {
 
 void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMeasures& measures,
                           const Arrangement& arrangement) {
+  robots_[place] = &robot;
   measures_[place] = measures;
   slot_tables_[place] = arrangement.order;
+  double mass = 0;
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) mass += static_cast<double>(mass_of(robot, i));
   headers_[place] = {.masses = static_cast<std::uint32_t>(robot.masses.size()),
                      .tiles = arrangement.schedule.tiles(),
                      .face_pairs = static_cast<std::uint32_t>(arrangement.faces.size()),
                      .springs = static_cast<std::uint32_t>(robot.springs.size()),
-                     .force_scale = 1,  // publish() sets the scales
+                     .force_scale = 1,  // publish() sets these, by describe()
                      .correction_scale = 1,
                      .squared_stretch_limit = measures.squared_stretch_limit(),
-                     .contact_distance = measures.contact_distance()};
+                     .environment_scale = 1,
+                     .contact_distance = 0,
+                     .contact_units = 0,
+                     .list_radius = 0,
+                     .viscous_limit = 0,
+                     .mass = mass};
   const auto to = table(place);
   const auto rest = std::ranges::copy(materials_of(robot), to.begin()).out;
   std::fill(rest, to.end(), Material{});
@@ -146,7 +156,8 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
   const std::size_t count = size() - first_place;
   if (count == 0) return;
   find_same_materials(first_place);
-  oneapi::tbb::parallel_for(first_place, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
+  oneapi::tbb::parallel_for(first_place, size(), [&](std::uint32_t place) { describe(place, configuration); });
+  points_stale_ = true;
   const cudaStream_t stream = urgent_->get();
   device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
   statuses_.write(first_place, std::vector<DeviceStatus>(count, DeviceStatus{-1, no_mass}), stream);
@@ -156,7 +167,10 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
 
 void SizeClass::truncate(std::uint32_t first_place) {
   headers_.resize(first_place);
+  robots_.resize(first_place);
   measures_.resize(first_place);
+  point_properties_.resize(first_place);
+  points_stale_ = true;
   slot_tables_.resize(first_place);
   materials_.resize(std::size_t{first_place} * max_materials);
 }
@@ -168,7 +182,9 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
   for (const uint2 move : moves) {
     new_place[move.x] = move.y;
     headers_[move.y] = headers_[move.x];
+    robots_[move.y] = robots_[move.x];
     measures_[move.y] = measures_[move.x];
+    point_properties_[move.y] = std::move(point_properties_[move.x]);
     slot_tables_[move.y] = slot_tables_[move.x];
     std::ranges::copy(table(move.x), table(move.y).begin());
   }
@@ -187,20 +203,25 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
 }
 
 void SizeClass::configure(const Configuration& configuration) {
-  oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) { update_scales(place, configuration); });
+  oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) { describe(place, configuration); });
+  points_stale_ = true;
   device_headers_.write(0, headers_, urgent_->get());
 }
 
 void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size) {
+  publish_points();
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;
+  const bool viscous =
+      std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.viscous_limit > 0; });
   launch_ = choose_launch_configuration(configuration.solver, configuration.environment, view(), same_materials,
-                                        batch_size, table_chunks_);
+                                        viscous, batch_size, table_chunks_);
   const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(partner_fields_, launch_.on_chip ? fields : 0);
   address_partners(0, old_fields, partner_fields_);
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
+  if (launch_.contact_buckets > 0) workspace += 3 * sizeof(float) * sizes_.slots();
   reserve_workspace(workspace);
 }
 
@@ -239,6 +260,8 @@ BatchView SizeClass::view() const {
           .valences = valences_.data(),
           .masses = masses_.data(),
           .incoming_counts = incoming_counts_.data(),
+          .points = points_.data(),
+          .point_masses = point_masses_.data(),
           .materials = driven_materials_.size() > 0 ? driven_materials_.data() : device_materials_.data(),
           .phases = phases_.data(),
           .perturbations = perturbations_.data(),

@@ -74,6 +74,8 @@ class SizeClass {
   }
   void publish_materials(std::uint32_t place, const Configuration& configuration);
   void publish_all_materials(const Configuration& configuration);
+  // Whether a robot says what its masses are or has springs with a relaxation time.
+  bool has_real_bodies() const;
   // Queues a kernel that computes the phases, if materials or the clock's base or dt changed.
   void update_phases(const Clock& clock, cudaStream_t stream);
   // From here on the steps read copies of the materials, some of which actuators drive (actuation.h), and robots have
@@ -107,7 +109,10 @@ class SizeClass {
   Event& done() const { return *done_; }
 
  private:
-  void update_scales(std::uint32_t place, const Configuration& configuration);
+  // Computes what depends on the configuration and the materials of a robot.
+  void describe(std::uint32_t place, const Configuration& configuration);
+  // Uploads the properties of all masses if one of them is not a free mass of 1 kg, and XPBD's valences with them.
+  void publish_points();
   // To be called when tables from a place on have changed.
   void find_same_materials(std::uint32_t first_changed);
   // Rewrites the partners of the spring records from `first_place` on: offsets in working memory with this many fields
@@ -125,7 +130,9 @@ class SizeClass {
   std::size_t capacity_ = 0;
   // [place]
   std::vector<RobotHeader> headers_;
+  std::vector<const Robot*> robots_;
   std::vector<RobotMeasures> measures_;
+  std::vector<std::vector<PointProperties>> point_properties_;  // by mass; empty = free masses of 1 kg
   std::vector<std::shared_ptr<const SlotOrder>> slot_tables_;
   std::vector<std::uint64_t> first_mass_;  // as in set_first_masses()
   std::vector<Material> materials_;        // [place][max_materials]
@@ -134,6 +141,7 @@ class SizeClass {
   std::uint32_t table_chunks_ = max_materials / lanes;  // LaunchConfiguration::table_chunks
   std::size_t workspace_stride_ = 0, perturbation_count_ = 0;
   bool same_materials_ = false;  // all robots have the same table
+  bool points_stale_ = true, valences_have_masses_ = false;
   bool phases_stale_ = true;
   Clock phase_clock_;
 
@@ -145,6 +153,8 @@ class SizeClass {
   ChunkedArray<FacePair> face_pairs_;
   ChunkedArray<Material> device_materials_;
   ChunkedArray<MusclePhase> phases_;
+  DeviceArray<PointProperties> points_;     // [place][slot], or empty
+  DeviceArray<float> point_masses_;         // [place][slot] [kg], or empty
   DeviceArray<Material> driven_materials_;  // [place][max_materials] while actuators drive them, else empty
   std::vector<MaterialId> driven_ids_;      // the same: the index among them, by id
   DeviceArray<DevicePerturbation> perturbations_;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
+#include "sim/cuda/block_layout.h"
 #include "sim/cuda/size_class.h"
 
 namespace mercury::cuda {
@@ -29,10 +31,59 @@ __global__ void rename(std::uint32_t* records, std::size_t records_per_robot, st
 
 }  // namespace
 
-void SizeClass::update_scales(std::uint32_t place, const Configuration& configuration) {
-  const FixedPointScale scale = fixed_point_scale(measures_[place], table(place), configuration);
-  headers_[place].force_scale = scale.force;
-  headers_[place].correction_scale = scale.correction;
+void SizeClass::describe(std::uint32_t place, const Configuration& configuration) {
+  const Robot& robot = *robots_[place];
+  const RobotMeasures& measures = measures_[place];
+  const Environment& environment = configuration.environment;
+  const bool own = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(environment.water);
+  point_properties_[place] = own ? point_properties(robot, environment) : std::vector<PointProperties>();
+  const InertiaRange inertia = inertia_range(point_properties_[place]);
+  RobotHeader& header = headers_[place];
+  const float distance = contact_distance(robot, measures, environment);
+  const float contact_stiffness = contact_stiffness_of(environment, configuration.solver, configuration.dt,
+                                                       stiffest_spring(measures, table(place)), inertia.lightest);
+  header.viscous_limit = has_viscous_springs(measures, table(place)) ? viscous_limit * measures.longest : 0;
+  const FixedPointScale scale = fixed_point_scale(measures, table(place), configuration, distance, inertia);
+  header.environment_scale = scale.environment;
+  header.contact_distance = contact_stiffness > 0 ? distance : 0;
+  header.contact_units = contact_stiffness * scale.environment;
+  header.list_radius = list_radius(distance, measures.shortest);
+  header.force_scale = scale.force;
+  header.correction_scale = scale.correction;
+}
+
+bool SizeClass::has_real_bodies() const {
+  return std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.viscous_limit > 0; }) ||
+         std::ranges::any_of(robots_, [](const Robot* robot) { return has_own_points(*robot); });
+}
+
+void SizeClass::publish_points() {
+  if (!std::exchange(points_stale_, false)) return;
+  const bool own = std::ranges::any_of(point_properties_, [](const auto& points) { return !points.empty(); });
+  points_ = {};
+  point_masses_ = {};
+  if (!own && !valences_have_masses_) return;
+  const std::size_t stride = sizes_.slots();
+  std::vector<PointProperties> points(size() * stride, PointProperties{0, 0});
+  std::vector<float> masses(size() * stride), valences(size() * stride);
+  oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) {
+    const Robot& robot = *robots_[place];
+    const std::vector<std::uint32_t> springs = mercury::valences(robot);
+    for (std::uint32_t mass = 0; mass < robot.masses.size(); ++mass) {
+      const std::size_t slot = place * stride + order_of(place).slot_of(mass);
+      points[slot] = point_properties_[place].empty() ? PointProperties{} : point_properties_[place][mass];
+      masses[slot] = mass_of(robot, mass);
+      valences[slot] = static_cast<float>(springs[mass]) * points[slot].inverse_inertia;
+    }
+  });
+  const cudaStream_t stream = urgent_->get();
+  valences_.write(0, valences, stream);
+  valences_have_masses_ = own;
+  if (!own) return;
+  points_ = DeviceArray<PointProperties>(points.size());
+  points_.write(0, points, stream);
+  point_masses_ = DeviceArray<float>(masses.size());
+  point_masses_.write(0, masses, stream);
 }
 
 void SizeClass::find_same_materials(std::uint32_t first_changed) {
@@ -43,7 +94,7 @@ void SizeClass::find_same_materials(std::uint32_t first_changed) {
 }
 
 void SizeClass::publish_materials(std::uint32_t place, const Configuration& configuration) {
-  update_scales(place, configuration);
+  describe(place, configuration);
   device_headers_.write(place, std::span(headers_).subspan(place, 1), urgent_->get());
   device_materials_.write(place, table(place), urgent_->get());
   if (driven_materials_.size() > 0)

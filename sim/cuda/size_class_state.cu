@@ -80,8 +80,13 @@ void SizeClass::set_status(std::uint32_t place, DeviceStatus status) {
 }
 
 RobotView SizeClass::robot_view(std::uint32_t place) const {
-  return {state_.chunk(place), masses_.chunk(place), statuses_.chunk(place), first_mass_[place],
-          headers_[place].masses};
+  return {state_.chunk(place),
+          masses_.chunk(place),
+          point_masses_.size() > 0 ? point_masses_.data() + place * sizes_.slots() : nullptr,
+          statuses_.chunk(place),
+          first_mass_[place],
+          headers_[place].masses,
+          headers_[place].mass};
 }
 
 }  // namespace mercury::cuda

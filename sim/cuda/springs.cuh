@@ -32,15 +32,19 @@ class SpringPass {
 
   // Adds the forces or corrections of all springs of this warp's tiles. Returns the longest |d|^2 that this thread met,
   // padding included [m2].
+  // `viscous`: whether springs may have a relaxation time.
+  template <bool viscous>
   __device__ float add_all() const {
     float longest = 0;
     robot_.walk_springs(
         [&](std::uint32_t tile, const Mass<Memory>& mass, std::uint32_t rows) {
           const int bias = static_cast<int>(rows) * rounding_magic_bits;
-          return Owner{mass.vector(field_x), own_valence(tile, mass), bias, bias, bias};
+          Owner owner{mass.vector(field_x), own_valence(tile, mass), bias, bias, bias, {}};
+          if constexpr (viscous) owner.v = mass.vector(field_v);
+          return owner;
         },
         [&](auto count, const SpringRecord* records, Owner& owner) {
-          add_springs<decltype(count)::value>(records, owner, longest);
+          add_springs<decltype(count)::value, viscous>(records, owner, longest);
         },
         [](const Mass<Memory>& mass, const Owner& owner) { mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z); });
     return longest;
@@ -69,6 +73,7 @@ class SpringPass {
     Vec3 x;
     float valence;
     int sum_x, sum_y, sum_z;
+    Vec3 v;  // if viscous
   };
 
   struct LoadedSpring {
@@ -77,20 +82,28 @@ class SpringPass {
     SpringParameters<solver> parameters;
     float scaled_rest_length;
     float valence;  // of both masses together, for XPBD
+    Vec3 rate;      // the velocity of the owner, seen from the partner, if viscous
+    float relaxation_time;
   };
 
   // `count` springs of one owner: first all loads, then the arithmetic and the additions.
-  template <int count>
+  template <int count, bool viscous>
   __device__ void add_springs(const SpringRecord* records, Owner& owner, float& longest) const {
     LoadedSpring springs[count];
 #pragma unroll
-    for (int i = 0; i < count; ++i) springs[i] = load(records[i], owner);
+    for (int i = 0; i < count; ++i) {
+      springs[i] = load(records[i], owner);
+      if constexpr (viscous) {
+        springs[i].rate = owner.v - springs[i].partner.vector(field_v);
+        springs[i].relaxation_time = robot_.relaxation_time_of(records[i]);
+      }
+    }
 #pragma unroll
     for (int i = 0; i < count; ++i) {
       const LoadedSpring& spring = springs[i];
       const float squared = squared_length(spring.d);
       longest = fmaxf(longest, squared);
-      const float per_distance = units_per_distance(spring, squared);
+      const float per_distance = units_per_distance<viscous>(spring, squared);
       const int x = bits_of(multiply_add(per_distance, spring.d.x, rounding_magic));
       const int y = bits_of(multiply_add(per_distance, spring.d.y, rounding_magic));
       const int z = bits_of(multiply_add(per_distance, spring.d.z, rounding_magic));
@@ -112,12 +125,22 @@ class SpringPass {
   }
 
   // Force or correction on the partner, per meter of d, in units.
+  template <bool viscous>
   __device__ float units_per_distance(const LoadedSpring& spring, float squared) const {
-    const float length = spring.scaled_rest_length * spring.parameters.length_factor;
+    float length = spring.scaled_rest_length * spring.parameters.length_factor;
+    float valence = spring.valence;
+    if constexpr (viscous) {
+      const Vec3 d = spring.d, rate = spring.rate;
+      const float approach = multiply_add(d.z, rate.z, multiply_add(d.y, rate.y, d.x * rate.x));
+      length -= viscous_length(squared, approach, robot_.scale() * spring.relaxation_time,
+                               robot_.scale() * robot_.header().viscous_limit);
+      if constexpr (solver == Solver::xpbd)
+        valence *= viscous_factor(spring.relaxation_time, robot_.arguments().constants.inverse_dt);
+    }
     if constexpr (solver == Solver::force)
       return hooke(squared, length, spring.parameters.stiffness, robot_.scale());
     else
-      return xpbd(squared, length, spring.valence, spring.parameters.compliance, robot_.scale());
+      return xpbd(squared, length, valence, spring.parameters.compliance, robot_.scale());
   }
 
   __device__ float own_valence(std::uint32_t tile, const Mass<Memory>& mass) const {

@@ -24,6 +24,8 @@ __global__ void __maxnreg__(72)
       arguments, shared ? context.first_robot : thread.robot, shared ? threadIdx.x / lanes : thread.warp,
       shared ? blockDim.x / lanes : launch.warps_per_robot, thread.lane, context.material_table);
   materials.fill(arguments);
+  if constexpr (EnvironmentModel::real_bodies)
+    if (launch.viscous) materials.fill_relaxation_times(context.relaxation_times);
   Stepper stepper(arguments, model, context);
   // Threads without a robot, or with one that exploded earlier, skip the work but take part in all barriers.
   const bool active = context.has_robot && stepper.alive();
@@ -42,6 +44,10 @@ __global__ void __maxnreg__(72)
       if (EnvironmentModel::has_faces || EnvironmentModel::has_contacts || arguments.batch.perturbation_count > 0)
         __syncthreads();
       stepper.predict(step);
+      __syncthreads();
+    } else if (stepper.sums_apart()) {
+      __syncthreads();
+      stepper.accelerate(step);
       __syncthreads();
     }
     stepper.add_springs(step);

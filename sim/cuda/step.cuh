@@ -16,7 +16,8 @@ class RobotStepper {
 
   __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model,
                           const BlockContext<solver, Memory>& context)
-      : robot_(arguments, context.thread), model_(model), contacts_(context.contacts), failure_(context.failure) {}
+      : robot_(arguments, context.thread), model_(model), contacts_(context.contacts, context.listed),
+        failure_(context.failure) {}
 
   __device__ const Robot& robot() const { return robot_; }
   __device__ bool alive() const { return batch().statuses[robot_.context().robot].exploded_step < 0; }
@@ -53,7 +54,7 @@ class RobotStepper {
   }
 
   // All threads of the block must call this, since it has barriers.
-  __device__ void list_contacts() { contacts_.make_list(robot_); }
+  __device__ void list_contacts() { contacts_.update_list(robot_); }
   __device__ bool contacts_stale() const { return contacts_.stale(robot_); }
 
   // Loads early what add_environment() needs first.
@@ -66,8 +67,35 @@ class RobotStepper {
     if (failure_->before(step, phase_environment)) return;
     if (batch().perturbation_count > 0 && robot_.thread() == 0) add_perturbations();
     if constexpr (EnvironmentModel::has_faces)
-      if (model_.acts_on_faces()) faces_.add(robot_, model_, step, *failure_);
+      if (model_.acts_on_faces())
+        faces_.add(robot_, model_, environment_scale(), step, dither_of_step(robot_.arguments().clock.step + step),
+                   *failure_);
     if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
+  }
+
+  // Whether the forces of the environment are to be summed apart from those of springs, by accelerate().
+  __device__ bool sums_apart() const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return model_.sums_apart();
+    else
+      return false;
+  }
+
+  // Force solver: adds the forces of the environment to the velocity.
+  __device__ void accelerate(std::uint32_t step) {
+    if constexpr (EnvironmentModel::real_bodies) {
+      if (failure_->before(step, phase_prediction)) return;
+      for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
+        if (!robot_.has_mass(tile)) continue;
+        const Mass<Memory> mass = robot_.own_mass(tile);
+        const Vec3 v = mass.vector(field_v);
+        // The bias of the reactions that are to come has been in the sum.
+        const int bias = robot_.incoming_bias(tile);
+        const Vec3 force = sum_of(mass, bias, 1 / environment_scale());
+        mass.set_vector(field_v, accelerated(v, acceleration(force, v, point_at(tile)), constants()));
+        mass.set_sum(bias);
+      }
+    }
   }
 
   // XPBD: replaces the position by the prediction, and the velocity by v + dt F.
@@ -77,9 +105,9 @@ class RobotStepper {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
       const Vec3 v = mass.vector(field_v);
-      const Vec3 force = sum_of(mass, 1 / robot_.header().force_scale) + model_.on_mass(v);
+      const Vec3 predicted =
+          accelerated(v, acceleration(sum_of(mass, 0, 1 / environment_scale()), v, point_at(tile)), constants());
       mass.set_sum(robot_.incoming_bias(tile));
-      const Vec3 predicted = accelerated(v, force, constants());
       store(step, phase_prediction, tile, multiply_add(constants().dt, predicted, mass.vector(field_x)), predicted);
     }
   }
@@ -89,9 +117,13 @@ class RobotStepper {
     if (failure_->before(step, phase_springs)) return;
     const float limit = robot_.header().squared_stretch_limit;
     const SpringPass<Robot> springs(robot_);
+    float longest;
+    if (EnvironmentModel::real_bodies && robot_.arguments().launch.viscous)
+      longest = springs.template add_all<EnvironmentModel::real_bodies>();
+    else
+      longest = springs.template add_all<false>();
     // Padding counts in add_all() and may be long, so a failure is checked again without it.
-    if (springs.add_all() > limit && springs.longest_spring() > limit)
-      failure_->report(step, phase_springs, Failure::never);
+    if (longest > limit && springs.longest_spring() > limit) failure_->report(step, phase_springs, Failure::never);
   }
 
   __device__ void end(std::uint32_t step) {
@@ -104,18 +136,24 @@ class RobotStepper {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
       Vec3 x = mass.vector(field_x), v = mass.vector(field_v);
+      const PointProperties point = point_at(tile);
       if constexpr (solver == Solver::force) {
         const int bias = robot_.incoming_bias(tile);
-        v = accelerated(v, sum_of(mass, 1 / robot_.header().force_scale) + model_.on_mass(v), constants());
+        const Vec3 force = sum_of(mass, 0, 1 / robot_.header().force_scale);
+        v = accelerated(v, sums_apart() ? point.inverse_inertia * force : acceleration(force, v, point), constants());
         x = multiply_add(constants().dt, v, x);
         mass.set_sum(bias);
       } else {
-        const Vec3 correction = sum_of(mass, 1 / robot_.header().correction_scale);
+        Vec3 correction = sum_of(mass, 0, 1 / robot_.header().correction_scale);
+        if constexpr (EnvironmentModel::real_bodies) correction = point.inverse_inertia * correction;
         x = x + correction;
         v = multiply_add(constants().inverse_dt, correction, v);
         mass.set_sum(0);
       }
-      end_step(x, v, model_, constants());
+      if constexpr (EnvironmentModel::real_bodies)
+        end_step(x, v, point.inverse_inertia, model_, constants());
+      else
+        end_step(x, v, model_, constants());
       if constexpr (EnvironmentModel::has_contacts) farthest = fmaxf(farthest, distance_moved(mass, x));
       store(step, phase_end, tile, x, v);
     }
@@ -123,6 +161,20 @@ class RobotStepper {
   }
 
  private:
+  __device__ PointProperties point_at(std::uint32_t tile) const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return robot_.point(tile);
+    else
+      return {};
+  }
+  // Of all forces on a mass, `force` being those that were summed [m/s2].
+  __device__ Vec3 acceleration(Vec3 force, Vec3 v, const PointProperties& point) const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return point.inverse_inertia * (force + model_.on_mass(v, point.weight));
+    else
+      return force + model_.on_mass(v);
+  }
+
   __device__ const BatchView& batch() const { return robot_.arguments().batch; }
   __device__ const StepConstants& constants() const { return robot_.arguments().constants; }
 
@@ -130,7 +182,7 @@ class RobotStepper {
     for (std::uint32_t p = 0; p < batch().perturbation_count; ++p) {
       const DevicePerturbation& perturbation = batch().perturbations[p];
       if (perturbation.robot != robot_.context().robot) continue;
-      const Vec3 units = perturbation.stiffness * robot_.header().force_scale *
+      const Vec3 units = perturbation.stiffness * environment_scale() *
                          (perturbation.target - robot_.mass_at(perturbation.slot).vector(field_x));
       if (fits(units)) robot_.mass_at(perturbation.slot).add_to_sum(units);
     }
@@ -144,9 +196,19 @@ class RobotStepper {
     return moved;
   }
 
-  __device__ static Vec3 sum_of(const Mass<Memory>& mass, float inverse_scale) {
-    return {static_cast<float>(mass.sum(0)) * inverse_scale, static_cast<float>(mass.sum(1)) * inverse_scale,
-            static_cast<float>(mass.sum(2)) * inverse_scale};
+  // Units per newton of what add_environment() adds.
+  __device__ float environment_scale() const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return robot_.header().environment_scale;
+    else
+      return robot_.header().force_scale;
+  }
+
+  // The sum above `bias`.
+  __device__ static Vec3 sum_of(const Mass<Memory>& mass, int bias, float inverse_scale) {
+    return {static_cast<float>(mass.sum(0) - bias) * inverse_scale,
+            static_cast<float>(mass.sum(1) - bias) * inverse_scale,
+            static_cast<float>(mass.sum(2) - bias) * inverse_scale};
   }
 
   // Stores a mass's new state if it is finite. If not, the mass stays where it is, and the robot has exploded.
@@ -162,7 +224,7 @@ class RobotStepper {
   const Robot robot_;
   const EnvironmentModel& model_;
   FacePass faces_;
-  ContactPass<Robot> contacts_;
+  ContactPass<Robot, EnvironmentModel::real_bodies> contacts_;
   Failure* const failure_;
 };
 

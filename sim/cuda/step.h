@@ -17,7 +17,6 @@ struct StepArguments {
   Clock clock;  // of the first step
   StepConstants constants;
   float stiffness_scale = 1;
-  float contact_stiffness = 0;  // [N/m], times the stiffness scale
   std::uint32_t steps = 0;
   LaunchConfiguration launch;
   DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null

@@ -30,13 +30,14 @@ struct Failure {
   __device__ std::uint32_t step() const { return (when - 1) / 4; }
 };
 
-// A thread's part in its robot. The two tables are addresses in shared memory.
+// A thread's part in its robot. The tables are addresses in shared memory.
 template <class Memory>
 struct ThreadContext {
   std::uint32_t robot, warp, lane;
   typename Memory::Address masses;  // of the robot's slot 0
   std::uint32_t material_table;     // this lane's copy
   std::uint32_t lengths;
+  std::uint32_t relaxation_times;  // by material, if the robot is viscous
 };
 
 extern __shared__ char shared_memory[];
@@ -52,8 +53,10 @@ struct BlockContext {
   bool has_robot;  // the last block may have more room than robots
   SpringParameters<solver>* material_table;
   float* lengths;
+  float* relaxation_times;  // [table_chunks][32], if launch.viscous
   Failure* failure;
   char* contacts;
+  float* listed;  // ContactPass
   ThreadContext<Memory> thread;
 
   // `fields` = of a tile in working memory.
@@ -75,15 +78,21 @@ struct BlockContext {
       thread.masses = shared_address(shared_memory) + layout.contacts + number * working_bytes;
     else
       thread.masses = workspace;
-    contacts = launch.contacts_on_chip
-                   ? shared_memory + layout.lengths + number * contact_bytes(launch.contact_buckets, batch.tile_stride)
-                   : workspace + (Memory::on_chip ? 0 : working_bytes);
+    contacts = launch.contacts_on_chip ? shared_memory + layout.relaxation_times +
+                                             number * contact_bytes(launch.contact_buckets, batch.tile_stride)
+                                       : workspace + (Memory::on_chip ? 0 : working_bytes);
+    listed = reinterpret_cast<float*>(
+        workspace + (Memory::on_chip ? 0 : working_bytes) +
+        (launch.contacts_on_chip ? 0 : contact_bytes(launch.contact_buckets, batch.tile_stride)));
     material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +
                      (launch.shared_table ? 0 : number * table_copies * launch.table_chunks * lanes);
     thread.material_table = shared_address(material_table + thread.lane % table_copies);
     failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
     lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
     thread.lengths = shared_address(lengths);
+    relaxation_times = reinterpret_cast<float*>(shared_memory + layout.lengths) +
+                       (launch.shared_table ? 0 : number * launch.table_chunks * lanes);
+    thread.relaxation_times = shared_address(relaxation_times);
   }
 };
 

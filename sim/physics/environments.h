@@ -4,11 +4,15 @@
 // run time which of them are there. A model has
 //
 //   has_faces, has_contacts, has_ground   which of the parts below a step contains
+//   real_bodies                           masses may differ from 1 kg, and springs have relaxation times
+//   has_flow                              whether the water may flow: damping is relative to it
 //   still_water                           on_mass() is zero, so a step leaves it out
-//   on_mass(v)                            force on a mass of 1 kg that has velocity v [N]
+//   on_mass(v, weight)                    force on a mass that has velocity v and this weight (points.h) [N]
 //   acts_on_faces()                       whether on_face() may be other than zero, if has_faces
 //   on_face(area_normal, v)               force on a face, if has_faces [N]
 //   on_face(normal, u, u.u, coefficients) the same with fewer multiplications, see OceanModel::of_sums()
+//   sums_apart()                          whether the forces of the environment are summed apart from those of springs
+//   dither()                              1 or 0, the factor of fixed_point.h's dithered() for forces on faces
 //   acts_on_ground()                      whether there is ground, if has_ground
 //   touch_ground(x, displacement)         contact with the ground at the end of a step, if has_ground
 //
@@ -33,9 +37,9 @@ MERCURY_HOST_DEVICE auto inner(Vector a, Vector b) {
 // Factors of the parts of a force on a face. Real is float, or a vector of floats.
 template <class Real>
 struct FaceCoefficients {
-  Real drag, lift, tangential;
+  Real drag, lift, tangential, normal;
   // No component of a force exceeds this times |normal| |u|^2.
-  float bound() const { return std::fabs(drag) + std::fabs(lift) + std::fabs(tangential); }
+  float bound() const { return std::fabs(drag) + std::fabs(lift) + std::fabs(tangential) + std::fabs(normal); }
 };
 
 // Drag and lift on faces (equation 1), with u = flow - v, where v is the mean velocity of the corners:
@@ -56,7 +60,7 @@ struct FaceCoefficients {
 // 4. Hence F . u = rho A / 2 (C_D (u . n) |u|^2 + C_T |u_t|^3) >= 0: drag never adds energy to a body in still water.
 struct OceanModel {
   static constexpr bool has_faces = true, has_contacts = false, has_ground = false, still_water = false;
-  static constexpr bool has_tangential_drag = true;
+  static constexpr bool has_tangential_drag = true, real_bodies = false, has_flow = true;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, drag_minus_lift = 0, lift = 0, tangential = 0;
 
@@ -71,6 +75,8 @@ struct OceanModel {
   }
 
   MERCURY_HOST_DEVICE bool acts_on_faces() const { return true; }
+  MERCURY_HOST_DEVICE float dither() const { return 0; }
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
 
   // `area_normal` is A n. Both orientations give the same force.
   template <class Vector>
@@ -122,18 +128,18 @@ struct OceanModel {
   //          = -rho / 108 (... |normal . sum| sum + ... |sum|^2 normal)
   FaceCoefficients<float> of_sums(float scale) const {
     const float common = -half_density * scale / 54;
-    return {common * drag_minus_lift, common * lift, common * tangential};
+    return {common * drag_minus_lift, common * lift, common * tangential, 0};
   }
   // Coefficients for A n and u themselves.
   MERCURY_HOST_DEVICE FaceCoefficients<float> coefficients() const {
-    return {half_density * drag_minus_lift, half_density * lift, half_density * tangential};
+    return {half_density * drag_minus_lift, half_density * lift, half_density * tangential, 0};
   }
 };
 
-// Water without tangential drag, as it is by default. Steps do not compute what is zero.
+// Water without tangential drag and flow, as it is by default. Steps do not compute what is zero.
 struct FrictionlessOceanModel : OceanModel {
-  static constexpr bool has_tangential_drag = false;
-  static bool fits(const OceanModel& model) { return model.tangential == 0; }
+  static constexpr bool has_tangential_drag = false, has_flow = false;
+  static bool fits(const OceanModel& model) { return model.tangential == 0 && model.flow == Vec3{}; }
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
@@ -152,9 +158,71 @@ struct StillWaterOceanModel : FrictionlessOceanModel {
   static bool fits(const FrictionlessOceanModel& model) { return model.flow == Vec3{} && model.gravity == Vec3{}; }
 };
 
-// Drag on each mass, F = drag (flow - v) (paper, II.E).
+// Resistive drag on faces: the motion across a face and the motion along it are resisted apart.
+//
+//             |                      across:   rho A / 2 C_N |u_n| u_n,   u_n = (u . n) n
+//     u       |    n                 along:    rho A / 2 C_T |u_t| u_t,   u_t = u - u_n
+//   ----->    |---->
+//             |                      A third of the sum acts on each corner.
+//           face
+//
+// A closed body feels its windward and its leeward faces, so its coefficient is twice the face's: a plate of one voxel
+// that moves across itself has a drag coefficient of 2 C_N on one side's area. F . u >= 0: drag never adds energy.
+struct ResistiveModel {
+  static constexpr bool has_faces = true, has_contacts = true, has_ground = false, still_water = false;
+  static constexpr bool has_tangential_drag = true, real_bodies = true, has_flow = true;
+  Vec3 gravity, flow, thrice_flow;
+  float half_density = 0, normal = 0, tangential = 0;
+
+  ResistiveModel(const ResistiveDrag& water, Vec3 gravity_)
+      : gravity(gravity_), flow(water.flow), thrice_flow(3.0f * water.flow), half_density(water.density / 2),
+        normal(water.normal_coefficient), tangential(water.tangential_coefficient) {}
+
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE Vector on_mass(Vector, Real weight) const {
+    return {weight * gravity.x, weight * gravity.y, weight * gravity.z};
+  }
+  MERCURY_HOST_DEVICE bool acts_on_faces() const { return true; }
+  MERCURY_HOST_DEVICE float dither() const { return 1; }
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return true; }
+
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
+    const Vector u = flow - velocity;
+    return on_face(area_normal, u, inner(u, u), coefficients());
+  }
+  // |normal| (normal_coefficient |u_n| u_n + tangential_coefficient |u_t| u_t). Both orientations give the same force.
+  // A face without area has no direction, and feels none.
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real, FaceCoefficients<Real> by) {
+    const auto squared = inner(normal, normal);
+    const auto inverse_length = select(squared > 1e-30f, inverse_sqrt(squared), 0.0f);
+    const auto length = squared * inverse_length;
+    const Vector n{inverse_length * normal.x, inverse_length * normal.y, inverse_length * normal.z};
+    const auto across = inner(n, u);
+    const Vector along{fnma(across, n.x, u.x), fnma(across, n.y, u.y), fnma(across, n.z, u.z)};
+    const auto slide = inner(along, along);
+    const auto factor = by.tangential * length * (slide * inverse_sqrt(slide + 1e-30f));
+    const auto push = by.normal * length * absolute(across) * across;
+    return {multiply_add(push, n.x, factor * along.x), multiply_add(push, n.y, factor * along.y),
+            multiply_add(push, n.z, factor * along.z)};
+  }
+
+  // As those of OceanModel.
+  FaceCoefficients<float> of_sums(float scale) const {
+    const float common = -half_density * scale / 54;
+    return {0, 0, common * tangential, common * normal};
+  }
+  MERCURY_HOST_DEVICE FaceCoefficients<float> coefficients() const {
+    return {0, 0, half_density * tangential, half_density * normal};
+  }
+};
+
+// Drag on each mass, F = -drag v (paper, II.E).
 struct OceanSimpleModel {
   static constexpr bool has_faces = false, has_contacts = false, has_ground = false, still_water = false;
+  static constexpr bool real_bodies = false, has_flow = false;
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
   Vec3 gravity, flow;
   float drag = 0;
 
@@ -196,6 +264,8 @@ MERCURY_HOST_DEVICE auto touch_plane(Vector& x, Vector& displacement, float fric
 // Ground and contacts without water.
 struct LandModel {
   static constexpr bool has_faces = false, has_contacts = true, has_ground = true, still_water = false;
+  static constexpr bool real_bodies = false, has_flow = false;
+  MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
   Vec3 gravity;
   float friction = 0;
 
@@ -212,26 +282,50 @@ struct LandModel {
   }
 };
 
-// Any combination. Parts that are not there are skipped or have coefficients of zero.
+// Any combination, and any bodies. Parts that are not there are skipped or have coefficients of zero.
 struct GeneralModel : OceanModel {
-  static constexpr bool has_contacts = true, has_ground = true;
-  float drag = 0, friction = 0;
-  bool face_drag = false, ground = false;
+  static constexpr bool has_contacts = true, has_ground = true, real_bodies = true;
+  float drag = 0, friction = 0, normal = 0;
+  bool face_drag = false, ground = false, is_resistive = false;
 
   explicit GeneralModel(const Environment& environment)
       : OceanModel(face_drag_of(environment), environment.gravity), face_drag(has_face_forces(environment)),
-        ground(mercury::has_ground(environment)) {
+        ground(mercury::has_ground(environment)),
+        is_resistive(std::holds_alternative<ResistiveDrag>(environment.water)) {
     flow = flow_of(environment);
     if (const auto* water = std::get_if<PointDrag>(&environment.water)) drag = water->point_drag;
+    if (const auto* water = std::get_if<ResistiveDrag>(&environment.water)) normal = water->normal_coefficient;
     if (const auto* plane = std::get_if<Plane>(&environment.ground)) friction = plane->friction;
   }
 
-  template <class Vector>
-  MERCURY_HOST_DEVICE Vector on_mass(Vector v) const {
-    return {multiply_add(drag, flow.x - v.x, gravity.x), multiply_add(drag, flow.y - v.y, gravity.y),
-            multiply_add(drag, flow.z - v.z, gravity.z)};
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE Vector on_mass(Vector v, Real weight) const {
+    return {multiply_add(drag, flow.x - v.x, weight * gravity.x), multiply_add(drag, flow.y - v.y, weight * gravity.y),
+            multiply_add(drag, flow.z - v.z, weight * gravity.z)};
   }
   MERCURY_HOST_DEVICE bool acts_on_faces() const { return face_drag; }
+  MERCURY_HOST_DEVICE float dither() const { return is_resistive ? 1.0f : 0.0f; }
+  MERCURY_HOST_DEVICE bool sums_apart() const { return is_resistive; }
+  template <class Vector>
+  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
+    const Vector u = flow - velocity;
+    return on_face(area_normal, u, inner(u, u), coefficients());
+  }
+  // One of the two has coefficients of zero, and adds nothing.
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
+    return drag_and_lift(normal, u, speed_squared, by) + ResistiveModel::on_face(normal, u, speed_squared, by);
+  }
+  FaceCoefficients<float> of_sums(float scale) const {
+    FaceCoefficients<float> by = OceanModel::of_sums(scale);
+    by.normal = -half_density * scale / 54 * normal;
+    return by;
+  }
+  MERCURY_HOST_DEVICE FaceCoefficients<float> coefficients() const {
+    FaceCoefficients<float> by = OceanModel::coefficients();
+    by.normal = half_density * normal;
+    return by;
+  }
   MERCURY_HOST_DEVICE bool acts_on_ground() const { return ground; }
   template <class Vector>
   MERCURY_HOST_DEVICE auto touch_ground(Vector& x, Vector& displacement) const {
@@ -240,17 +334,30 @@ struct GeneralModel : OceanModel {
 
  private:
   static FaceDrag face_drag_of(const Environment& environment) {
-    const auto* water = std::get_if<FaceDrag>(&environment.water);
-    return water ? *water : FaceDrag{.density = 0};
+    if (const auto* water = std::get_if<FaceDrag>(&environment.water)) return *water;
+    if (const auto* water = std::get_if<ResistiveDrag>(&environment.water))
+      return {.density = water->density,
+              .drag_coefficient = 0,
+              .lift_coefficient = 0,
+              .drag_tangential = water->tangential_coefficient,
+              .flow = water->flow};
+    FaceDrag none;
+    none.density = 0;
+    return none;
   }
 };
 
 // The models that both backends compile their kernels for.
-using AnyEnvironmentModel = std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel, GeneralModel>;
+using AnyEnvironmentModel =
+    std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel, ResistiveModel, GeneralModel>;
 
-// The fastest model that describes an environment.
-inline AnyEnvironmentModel solver_model_of(const Environment& environment) {
+// The fastest model that describes an environment. `real_bodies`: whether a robot has masses other than 1 kg, fixed
+// masses, or springs with a relaxation time (points.h).
+inline AnyEnvironmentModel solver_model_of(const Environment& environment, bool real_bodies = false) {
   const Vec3 gravity = environment.gravity;
+  if (const auto* water = std::get_if<ResistiveDrag>(&environment.water); water && !has_ground(environment))
+    return ResistiveModel(*water, gravity);
+  if (real_bodies) return GeneralModel(environment);
   const auto* plane = std::get_if<Plane>(&environment.ground);
   if (!has_water(environment) && plane) return LandModel(*plane, gravity);
   if (has_ground(environment) || has_contacts(environment)) return GeneralModel(environment);
@@ -259,7 +366,8 @@ inline AnyEnvironmentModel solver_model_of(const Environment& environment) {
     if (FrictionlessOceanModel::fits(model)) return FrictionlessOceanModel{model};
     return model;
   }
-  if (const auto* water = std::get_if<PointDrag>(&environment.water)) return OceanSimpleModel(*water, gravity);
+  if (const auto* water = std::get_if<PointDrag>(&environment.water); water && water->flow == Vec3{})
+    return OceanSimpleModel(*water, gravity);
   if (!has_water(environment)) return OceanSimpleModel(PointDrag{.point_drag = 0}, gravity);
   return GeneralModel(environment);
 }
@@ -270,14 +378,21 @@ MERCURY_HOST_DEVICE float repulsion(float squared, float distance, float stiffne
   return squared < distance * distance ? stiffness * multiply_add(-distance, inverse_sqrt(squared), 1.0f) : 0.0f;
 }
 
-// k_c in a step [N/m], 0 without contacts. Repulsion is an explicit force, which can be unstable at long time steps,
-// while XPBD is stable at any. So with XPBD a contact moves a mass by at most 1/8 of the missing distance per step: k_c
-// dt^2 <= 1/8. That is stable with up to 16 contacts per mass. With the default parameters it changes nothing below dt
-// = 2.5e-3 s.
-inline float contact_stiffness_of(const Environment& environment, Solver solver, double dt) {
+// k_c [N/m], without the stiffness scale.
+inline float unlimited_contact_stiffness(const Contacts& contacts, float stiffest) {
+  return contacts.relative_stiffness > 0 ? contacts.relative_stiffness * stiffest : contacts.contact_stiffness;
+}
+
+// k_c of a robot in a step [N/m], 0 without contacts. `stiffest` is k of its stiffest spring [N/m] without the
+// stiffness scale, `lightest` the inertia of its lightest mass [kg]. Repulsion is an explicit force, which can be
+// unstable at long time steps, while XPBD is stable at any. So with XPBD a contact moves a mass by at most 1/8 of the
+// missing distance per step: k_c dt^2 <= m / 8. That is stable with up to 16 contacts per mass. With the default
+// parameters it changes nothing below dt = 2.5e-3 s.
+inline float contact_stiffness_of(const Environment& environment, Solver solver, double dt, float stiffest,
+                                  float lightest) {
   if (!has_contacts(environment)) return 0;
-  const float stiffness = environment.contacts->contact_stiffness * environment.stiffness_scale;
-  return solver == Solver::xpbd ? std::fmin(stiffness, static_cast<float>(0.125 / (dt * dt))) : stiffness;
+  const float stiffness = unlimited_contact_stiffness(*environment.contacts, stiffest) * environment.stiffness_scale;
+  return solver == Solver::xpbd ? std::fmin(stiffness, lightest * static_cast<float>(0.125 / (dt * dt))) : stiffness;
 }
 
 }  // namespace mercury

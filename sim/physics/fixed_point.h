@@ -20,6 +20,11 @@
 // 4. Accurate: a unit is a power of two, chosen per robot as the finest one at which no spring can exceed its 22 bits
 //    (fixed_point_scale() in measures.h).
 //
+// 5. Unbiased, where a model asks for it: slow water pushes a face with less than half a unit, which rounding would
+// make
+//    zero for ever. dithered() adds an offset to each force on a face that runs through [-1/2, 1/2) evenly from step to
+//    step, so that the sum over many steps is right to a unit or two.
+//
 // Sums may wrap around on the way: unsigned addition is modular, so the result is right whenever the total fits.
 #pragma once
 
@@ -58,6 +63,21 @@ MERCURY_HOST_DEVICE std::int32_t to_fixed_small(float value_per_distance, float 
   return static_cast<std::int32_t>(bits - static_cast<std::uint32_t>(rounding_magic_bits));
 }
 
+// The offset of a pair of faces in a step [units], times 2^32: multiples of irrational numbers fill the interval evenly
+// (Weyl's theorem), here the golden ratio over steps and the inverse plastic number over pairs.
+MERCURY_HOST_DEVICE std::uint32_t dither_of_step(std::int64_t step) {
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>(step)) * 0x9e3779b9u;
+}
+MERCURY_HOST_DEVICE std::uint32_t dither_of_pair(std::uint32_t pair) { return pair * 0xc13fa9a9u; }
+// Adds the offset to a force, before it is rounded. `factor` is 1, or 0 to leave the force as it is. The second face of
+// a pair gets the offset half a unit further on. Word is a 32-bit number or a vector of them.
+inline constexpr std::uint32_t second_face_dither = 0x80000000u;
+template <class Vector, class Word, class Real>
+MERCURY_HOST_DEVICE Vector dithered(Vector units, Word offset, Real factor) {
+  const auto by = factor * (float_of_signed(offset) * 2.3283064365386963e-10f);  // 2^-32
+  return {units.x + by, units.y + by, units.z + by};
+}
+
 // Whether the force of a face or contact, in units, is within its limit. False for NaN.
 template <class Vector>
 MERCURY_HOST_DEVICE auto fits(Vector units) {
@@ -65,10 +85,13 @@ MERCURY_HOST_DEVICE auto fits(Vector units) {
                 absolute(units.z) < face_limit_units);
 }
 
-// Units of one robot, powers of two. The force solver sums forces, XPBD corrections of positions.
+// Units of one robot, powers of two. The force solver sums forces, XPBD corrections of positions. Resistive water sums
+// the forces of the environment apart, in units that do not depend on how stiff the springs are; elsewhere they are
+// summed together, in one unit.
 struct FixedPointScale {
-  float force = 1;       // [1/N]
-  float correction = 1;  // [1/m]
+  float force = 1;        // of springs [1/N]
+  float correction = 1;   // [1/m]
+  float environment = 1;  // of all other forces [1/N]
 };
 
 }  // namespace mercury

@@ -11,19 +11,30 @@
 #include "mercury/robot.h"
 #include "mercury/state.h"
 #include "sim/physics/fixed_point.h"
+#include "sim/physics/points.h"
 
 namespace mercury {
 
 struct RobotMeasures {
-  float longest = 0;                                       // longest rest length [m]; 0 without springs
-  float shortest = 0;                                      // shortest rest length [m]
-  std::array<bool, max_materials> used{};                  // by material: whether a spring has it
-  float contact_distance() const { return shortest / 2; }  // [m]
+  float largest_face = 0;                  // area at rest [m2]
+  float longest = 0;                       // longest rest length [m]; 0 without springs
+  float shortest = 0;                      // shortest rest length [m]
+  std::array<bool, max_materials> used{};  // by material: whether a spring has it
   // No spring's |d|^2 may exceed this [m2].
   float squared_stretch_limit() const { return stretch_limit * longest * stretch_limit * longest; }
 };
 
 RobotMeasures measure(const Robot& robot);
+
+// k of the stiffest spring [N/m], without the stiffness scale.
+float stiffest_spring(const RobotMeasures& measures, std::span<const Material> materials);
+
+// Whether a spring has a relaxation time.
+bool has_viscous_springs(const RobotMeasures& measures, std::span<const Material> materials);
+
+// The distance within which two masses that no spring joins repel [m]; 0 without springs. Beyond half the shortest rest
+// length it is at most 0.95 of the smallest distance of two such masses at rest.
+float contact_distance(const Robot& robot, const RobotMeasures& measures, const Environment& environment);
 
 // Number of springs at each mass: s of the mass splitting (springs.h).
 std::vector<std::uint32_t> valences(const Robot& robot);
@@ -31,11 +42,23 @@ std::vector<std::uint32_t> valences(const Robot& robot);
 // The finest powers of two at which no spring within the stretch limit exceeds spring_limit_units:
 //
 //   force       2^22 units >= 18 L_max k_max             |d| <= 16 L_max, and L lies in [0, 2 L_max]
-//   correction  2^22 units >= 18 L_max / (2 + 1 / (k_max dt^2))
+//   correction  2^22 units >= 18 L_max / (2 / m_max + 1 / (k_max dt^2))
 //
-// Contacts and a minimum of 16 N extend the range of forces.
+// Viscous springs add at most viscous_limit rest lengths. Contacts and a minimum of 16 N, or of 16 N per kg of the
+// lightest mass, extend the range of forces. In resistive water the environment has units of its own:
+//
+//   environment 2^27 units >= k_c distance, the drag on a face of twice the size at 20 m/s, and 1000 N (per kg of the
+//                             lightest mass if that is below 1 kg)
 FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const Material> materials,
-                                  const Configuration& configuration);
+                                  const Configuration& configuration, float contact_distance,
+                                  const InertiaRange& inertia);
+
+// tau d|d|/dt is at most this many of the robot's longest rest lengths.
+inline constexpr float viscous_limit = 2;
+
+// The largest softening of a spring by XPBD, (w_a s_a + w_b s_b) k dt^2: springs behave as if their stiffness were k /
+// (1 + softening), another one at each dt (docs/physics.md).
+double xpbd_softening(const Robot& robot, const Configuration& configuration);
 
 // The spring that caused an explosion, as far as can be known: the first spring of `bad_mass`, if there is one; else,
 // of the springs beyond the stretch limit, the one with the largest strain; else the one with the largest strain of

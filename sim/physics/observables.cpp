@@ -58,9 +58,9 @@ FaceForce face_force(const Environment& environment, const Face& face, std::span
   const float third = 1.0f / 3;
   const Vec3 velocity = third * (velocities[face.a] + velocities[face.b] + velocities[face.c]);
   FaceForce result{.center = third * (a + b + c), .area = length(area_normal), .drag = {}, .lift = {}};
-  if (const auto* water = std::get_if<FaceDrag>(&environment.water)) {
-    const Vec3 force = OceanModel(*water, {}).on_face(area_normal, velocity);
-    const Vec3 flow = water->flow - velocity;
+  if (has_face_forces(environment)) {
+    const Vec3 force = GeneralModel(environment).on_face(area_normal, velocity);
+    const Vec3 flow = flow_of(environment) - velocity;
     const float squared = dot(flow, flow);
     result.drag = squared > 0 ? (dot(force, flow) / squared) * flow : Vec3{};
     result.lift = force - result.drag;
@@ -78,8 +78,9 @@ std::vector<FloorForce> floor_forces(const Robot& robot, const Configuration& co
   std::vector<FloorForce> forces;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (positions[i].z > 0) continue;
-    // The force that leaves a mass of 1 kg where it is.
-    const Vec3 hold = -(springs[i] + configuration.environment.gravity + inverse_dt * velocities[i]);
+    // The force that leaves the mass where it is.
+    const float mass = mass_of(robot, i);
+    const Vec3 hold = -(springs[i] + mass * (configuration.environment.gravity + inverse_dt * velocities[i]));
     if (!(hold.z > 0)) continue;
     const float along = std::hypot(hold.x, hold.y), most = plane->friction * hold.z;
     const float share = along > most ? most / along : 1;

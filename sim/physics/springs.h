@@ -22,6 +22,16 @@
 //          = (1 - L r) / (s_a + s_b + 1 / (k dt^2)) d                              xpbd()
 //
 // Equation 3 of the paper lacks `- L`; it is restored. The paper does not split the masses.
+//
+// Masses other than 1 kg have inverse masses w. Then lambda moves the first mass by w_a lambda, and the denominator is
+// w_a s_a + w_b s_b + 1 / (k dt^2).
+//
+// A relaxation time tau makes a spring resist its rate of length (Kelvin-Voigt). It acts as if L were shorter by
+// tau d|d|/dt:
+//   F_a    = k (|d| - L + tau d|d|/dt) d / |d|,   d|d|/dt = d . (v_b - v_a) / |d|      viscous_length()
+//   lambda = (C + tau d|d|/dt) / ((1 + tau / dt) (w_a s_a + w_b s_b) + 1 / (k dt^2))
+// The second line is XPBD's damping (Macklin et al. 2016, equation 26) with beta = k tau, where v is the velocity that
+// leads to the predicted positions.
 #pragma once
 
 #include "mercury/host_device.h"
@@ -48,7 +58,22 @@ MERCURY_HOST_DEVICE Real hooke(Real squared, Real length, Real stiffness, Real o
   return stiffness * constraint_ratio(squared, length, one);
 }
 
-// The first mass moves by this times d. `valence_sum` is s_a + s_b, the numbers of springs at the two ends.
+// tau d|d|/dt [m], at most `most`, so that a spring's force keeps within the range of its sums (fixed_point.h).
+// `approach` is d . (v_b - v_a). As in constraint_ratio(), `relaxation_time` and `most` may be multiplied by a power of
+// two.
+template <class Real>
+MERCURY_HOST_DEVICE Real viscous_length(Real squared, Real approach, Real relaxation_time, Real most) {
+  const Real longer = relaxation_time * (approach * inverse_sqrt(squared));
+  return select(longer > most, most, select(longer < -most, -most, longer));
+}
+
+// 1 + tau / dt [1].
+MERCURY_HOST_DEVICE float viscous_factor(float relaxation_time, float inverse_dt) {
+  return multiply_add(relaxation_time, inverse_dt, 1.0f);
+}
+
+// The first mass moves by this times d. `valence_sum` is s_a + s_b, the numbers of springs at the two ends, each times
+// the inverse mass there, and viscous_factor().
 template <class Real>
 MERCURY_HOST_DEVICE Real xpbd(Real squared, Real length, Real valence_sum, Real compliance, Real one = 1.0f) {
   return constraint_ratio(squared, length, one) * inverse(valence_sum + compliance);

@@ -83,10 +83,11 @@ TEST(Configuration, NamesAndParsingAreInverse) {
 TEST(Configuration, ErrorsForUnknownNamesListTheAcceptedOnes) {
   EXPECT_EQ(message_of([] { solver_named("euler"); }), "solver: \"euler\" is not a solver; give force or xpbd");
   EXPECT_EQ(message_of([] { environment_named("lava"); }),
-            "environment: \"lava\" is not an environment; give ocean, ocean-simple or land");
-  EXPECT_EQ(message_of([] { environment_named("ocean+lava"); }),
-            "environment: \"ocean+lava\" is not an environment; give ocean, ocean-simple, land or space, followed by "
-            "+ground or +contacts or both");
+            "environment: \"lava\" is not an environment; give ocean, ocean-simple, land or water");
+  EXPECT_EQ(
+      message_of([] { environment_named("ocean+lava"); }),
+      "environment: \"ocean+lava\" is not an environment; give ocean, ocean-simple, land, water or space, followed by "
+      "+ground or +contacts or both");
   EXPECT_EQ(message_of([] { device_named("gpu"); }),
             "device: \"gpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all; did you mean cuda?");
   for (const char* name : {"gpus", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})

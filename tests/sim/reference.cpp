@@ -25,9 +25,14 @@ Reference::Reference(const Configuration& configuration, const Robot& robot)
     springs_at_[spring.b] += 1;
     shortest = std::min(shortest, double{spring.rest_length});
   }
-  if (!robot.springs.empty()) contact_distance_ = shortest / 2;
+  if (!robot.springs.empty())
+    contact_distance_ =
+        shortest *
+        (configuration.environment.contacts ? double{configuration.environment.contacts->contact_distance} : 0.5);
   for (const Vec3 mass : robot.masses) x_.push_back(vector_of(mass));
   v_.assign(x_.size(), Vector::Zero());
+  for (std::size_t i = 0; i < robot.velocity.size(); ++i) v_[i] = vector_of(robot.velocity[i]);
+  set_inertia();
   if (has_ground(configuration.environment)) {
     double lowest = std::numeric_limits<double>::infinity();
     for (const Vector& x : x_) lowest = std::min(lowest, x.z());
@@ -61,28 +66,38 @@ void Reference::step(std::int64_t steps) {
       for (std::size_t i = 0; i < x_.size(); ++i) force[i] += elastic[i];
     }
     Field next(x_.size());
-    for (std::size_t i = 0; i < x_.size(); ++i) next[i] = x_[i] + dt * v_[i] + dt * dt * force[i];
+    for (std::size_t i = 0; i < x_.size(); ++i) next[i] = x_[i] + dt * v_[i] + dt * dt * inverse_inertia_[i] * force[i];
     if (configuration_.solver == Solver::xpbd) project_springs(next);
     resolve_contact(next);
-    for (std::size_t i = 0; i < x_.size(); ++i) v_[i] = zeta * (next[i] - x_[i]) / dt;
+    const Vector flow = vector_of(flow_of(configuration_.environment));
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      if (inverse_inertia_[i] == 0) {
+        next[i] = x_[i] + dt * v_[i];
+        continue;
+      }
+      v_[i] = flow + zeta * ((next[i] - x_[i]) / dt - flow);
+    }
     x_ = next;
   }
 }
 
-// Hooke's law, paper, equation 2.
+// Hooke's law, paper, equation 2, in parallel with a dashpot (Kelvin-Voigt).
 Field Reference::spring_forces() const {
   Field force(x_.size(), Vector::Zero());
   for (const Spring& spring : robot_.springs) {
     const Vector d = x_[spring.b] - x_[spring.a];
     if (d.norm() == 0) continue;
-    const Vector pull = stiffness(spring) * (d.norm() - length_now(spring)) * d.normalized();
+    const double rate = d.dot(v_[spring.b] - v_[spring.a]) / d.norm();
+    const double tau = materials_of(robot_)[spring.material].relaxation_time;
+    const Vector pull = stiffness(spring) * (d.norm() - length_now(spring) + tau * rate) * d.normalized();
     force[spring.a] += pull;
     force[spring.b] -= pull;
   }
   return force;
 }
 
-// Paper, equations 3 and 4, with - L restored and the masses split among their springs.
+// Paper, equations 3 and 4, with - L restored and the masses split among their springs. Viscous springs as in Macklin,
+// Mueller and Chentanez, XPBD (2016), equation 26: x - x^n is the way from the start of the step.
 void Reference::project_springs(Field& predicted) const {
   const double dt = configuration_.dt;
   Field correction(x_.size(), Vector::Zero());
@@ -91,17 +106,23 @@ void Reference::project_springs(Field& predicted) const {
     if (d.norm() == 0) continue;
     const double constraint = d.norm() - length_now(spring);
     const double compliance = 1 / (stiffness(spring) * dt * dt);
-    const double lambda = constraint / (springs_at_[spring.a] + springs_at_[spring.b] + compliance);
-    correction[spring.a] += lambda * d.normalized();
-    correction[spring.b] -= lambda * d.normalized();
+    const double gamma = double{materials_of(robot_)[spring.material].relaxation_time} / dt;
+    const Vector way = (predicted[spring.b] - x_[spring.b]) - (predicted[spring.a] - x_[spring.a]);
+    const double wa = inverse_inertia_[spring.a], wb = inverse_inertia_[spring.b];
+    const double lambda = (constraint + gamma * d.normalized().dot(way)) /
+                          ((1 + gamma) * (wa * springs_at_[spring.a] + wb * springs_at_[spring.b]) + compliance);
+    correction[spring.a] += wa * lambda * d.normalized();
+    correction[spring.b] -= wb * lambda * d.normalized();
   }
   for (std::size_t i = 0; i < x_.size(); ++i) predicted[i] += correction[i];
 }
 
 Field Reference::environment_forces() const {
   const Environment& environment = configuration_.environment;
-  Field force(x_.size(), vector_of(environment.gravity));
+  Field force(x_.size());
+  for (std::size_t i = 0; i < x_.size(); ++i) force[i] = weight_[i] * vector_of(environment.gravity);
   if (const auto* water = std::get_if<FaceDrag>(&environment.water)) add_surface_drag(*water, force);
+  if (const auto* water = std::get_if<ResistiveDrag>(&environment.water)) add_resistive_drag(*water, force);
   if (const auto* simple = std::get_if<PointDrag>(&environment.water))
     for (std::size_t i = 0; i < x_.size(); ++i)
       force[i] += double{simple->point_drag} * (vector_of(simple->flow) - v_[i]);
@@ -130,11 +151,53 @@ void Reference::add_surface_drag(const FaceDrag& ocean, Field& force) const {
   }
 }
 
+// Resistive theory: the parts of the flow across and along a face act apart.
+void Reference::add_resistive_drag(const ResistiveDrag& water, Field& force) const {
+  for (const Face& face : robot_.faces) {
+    const Vector u = vector_of(water.flow) - (v_[face.a] + v_[face.b] + v_[face.c]) / 3;
+    const Vector twice_area = (x_[face.b] - x_[face.a]).cross(x_[face.c] - x_[face.a]);
+    if (twice_area.norm() == 0) continue;
+    const Vector across = u.dot(twice_area.normalized()) * twice_area.normalized(), along = u - across;
+    const Vector total =
+        0.25 * water.density * twice_area.norm() *
+        (water.normal_coefficient * across.norm() * across + water.tangential_coefficient * along.norm() * along);
+    for (const int corner : {face.a, face.b, face.c}) force[static_cast<std::size_t>(corner)] += total / 3;
+  }
+}
+
+// A mass of the skin displaces the body's volume by its share of the skin's area.
+void Reference::set_inertia() {
+  std::vector<double> area(x_.size());
+  double skin = 0, volume = 0;
+  for (const Face& face : robot_.faces) {
+    const Vector a = vector_of(robot_.masses[face.a]), b = vector_of(robot_.masses[face.b]),
+                 c = vector_of(robot_.masses[face.c]);
+    const double own = (b - a).cross(c - a).norm() / 2;
+    for (const int corner : {face.a, face.b, face.c}) area[static_cast<std::size_t>(corner)] += own / 3;
+    skin += own;
+    volume += a.dot(b.cross(c)) / 6;
+  }
+  const auto* water = std::get_if<ResistiveDrag>(&configuration_.environment.water);
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double mass = mass_of(robot_, i);
+    const double displaced = water && skin > 0 ? water->density * volume * area[i] / skin : 0;
+    weight_.push_back(mass - displaced);
+    inverse_inertia_.push_back(1 / (mass + (water ? water->added_mass_coefficient * displaced : 0)));
+  }
+  for (const int point : robot_.fixed) inverse_inertia_[static_cast<std::size_t>(point)] = 0;
+}
+
 // Every pair is looked at: slow, but there is no grid to get wrong.
 void Reference::add_repulsion(const Contacts& contacts, Field& force) const {
   double k = double{contacts.contact_stiffness} * double{configuration_.environment.stiffness_scale};
+  if (contacts.relative_stiffness > 0) {
+    double stiffest = 0;
+    for (const Spring& spring : robot_.springs) stiffest = std::max(stiffest, stiffness(spring));
+    k = contacts.relative_stiffness * stiffest;
+  }
   const double dt = configuration_.dt;
-  if (configuration_.solver == Solver::xpbd) k = std::min(k, 1 / (8 * dt * dt));  // docs/physics.md, Contact
+  if (configuration_.solver == Solver::xpbd)  // docs/physics.md, Contact
+    k = std::min(k, 1 / (8 * dt * dt * std::ranges::max(inverse_inertia_)));
   for (std::size_t i = 0; i < x_.size(); ++i)
     for (std::size_t j = i + 1; j < x_.size(); ++j) {
       const Vector d = x_[j] - x_[i];
@@ -163,19 +226,21 @@ void Reference::resolve_contact(Field& next) const {
 
 Vector Reference::center_of_mass() const {
   Vector sum = Vector::Zero();
-  for (const Vector& x : x_) sum += x;
-  return sum / static_cast<double>(x_.size());
+  double mass = 0;
+  for (std::size_t i = 0; i < x_.size(); mass += mass_of(robot_, i++)) sum += double{mass_of(robot_, i)} * x_[i];
+  return sum / mass;
 }
 
 Vector Reference::center_velocity() const {
   Vector sum = Vector::Zero();
-  for (const Vector& v : v_) sum += v;
-  return sum / static_cast<double>(v_.size());
+  double mass = 0;
+  for (std::size_t i = 0; i < v_.size(); mass += mass_of(robot_, i++)) sum += double{mass_of(robot_, i)} * v_[i];
+  return sum / mass;
 }
 
 double Reference::kinetic_energy() const {
   double sum = 0;
-  for (const Vector& v : v_) sum += v.squaredNorm() / 2;
+  for (std::size_t i = 0; i < v_.size(); ++i) sum += double{mass_of(robot_, i)} * v_[i].squaredNorm() / 2;
   return sum;
 }
 

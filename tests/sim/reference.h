@@ -54,7 +54,9 @@ class Reference {
   double stiffness(const Spring& spring) const;
   double length_now(const Spring& spring) const;
   double strain(const Spring& spring) const;
+  void set_inertia();
   void add_surface_drag(const FaceDrag& ocean, Field& force) const;
+  void add_resistive_drag(const ResistiveDrag& water, Field& force) const;
   void add_repulsion(const Contacts& contacts, Field& force) const;
 
   Configuration configuration_;
@@ -62,6 +64,8 @@ class Reference {
   std::vector<Perturbation> perturbations_;
   std::set<std::pair<int, int>> joined_;  // both orders
   std::vector<double> springs_at_;        // s, one per mass
+  std::vector<double> inverse_inertia_;   // [1/kg], one per mass; 0 = fixed
+  std::vector<double> weight_;            // what gravity acts on [kg], one per mass
   double contact_distance_ = 0;           // [m]
   Field x_, v_;
   std::int64_t steps_ = 0;

@@ -50,6 +50,7 @@ struct GeneratorParameter {
   std::vector<std::string> words{};  // of a word
   std::optional<double> usual_highest{};  // end of a slider, where that is below `highest`
   bool advanced = false;                  // a window shows it on demand only
+  bool shared = false;                    // all generators have it
   ParameterValue initial{};               // the default; also says which kind of value it is
 };
 
@@ -102,7 +103,8 @@ struct Generator {
   std::function<void(const ParameterValues& values)> validate;
   // The index-th robot of a seed, named "KIND-SEED-INDEX". It depends on the arguments alone, bit for bit on every
   // machine. Its origin has its kind, the environment (the generator's own if that is empty), and what regrow() and
-  // mutate() need. Throws InputError if the values cannot be used, or if there is no such robot.
+  // mutate() need. With "physics" = "real" among the values it has a real body (real_body.h). Throws InputError if the
+  // values cannot be used, or if there is no such robot.
   std::function<Robot(const ParameterValues& values, const std::string& environment, std::uint64_t seed,
                       std::uint64_t index)>
       make;

@@ -48,13 +48,15 @@ struct BodyArrays {
   Pointers3<std::int32_t> own, reaction, taken;
   std::int32_t* scattered;
   const std::uint32_t* bias;
+  const float *inverse_inertia, *weight;
   std::size_t slots;            // without the spare tile
   std::size_t reaction_stride;  // from one reaction array to the next
 
   explicit BodyArrays(Body& body)
       : x(pointers(body.x)), v(pointers(body.v)), x_aos(body.x_aos.data()), v_aos(body.v_aos.data()),
         own(pointers(body.sums.own)), reaction(pointers(body.sums.reaction)), taken(pointers(body.sums.taken)),
-        scattered(body.sums.scattered.data()), bias(body.springs.bias.data()), slots(body.slots.mass_at.size()),
+        scattered(body.sums.scattered.data()), bias(body.springs.bias.data()),
+        inverse_inertia(body.inverse_inertia.data()), weight(body.weight.data()), slots(body.slots.mass_at.size()),
         reaction_stride(body.slots.size_with_spare()) {}
 
   HWY_INLINE void store_x_aos(Lanes3 value, std::size_t slot) const {

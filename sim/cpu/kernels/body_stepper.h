@@ -15,7 +15,7 @@ template <class EnvironmentModel, bool gathered_springs>
 class BodyStepper {
  public:
   BodyStepper(Body& body, const EnvironmentModel& model, const StepSetting& setting)
-      : body_(body), model_(model), constants_(setting.constants), contact_stiffness_(setting.contact_stiffness) {
+      : body_(body), model_(model), constants_(setting.constants) {
     if (needs_aos != body.sums.with_scattered) {
       clear(body.sums);
       body.sums.with_scattered = needs_aos;
@@ -31,7 +31,8 @@ class BodyStepper {
   }
 
   // Returns false if the robot has exploded.
-  bool step(Solver solver, const float* factors) {
+  bool step(Solver solver, const float* factors, std::int64_t number) {
+    dither_ = dither_of_step(number);
     return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
   }
 
@@ -42,6 +43,11 @@ class BodyStepper {
   // Algorithm 1.
   bool step_force(const float* factors) {
     if (!add_environment()) return false;
+    if constexpr (EnvironmentModel::real_bodies)
+      if (model_.sums_apart()) {
+        BodyMotion motion(body_, model_, constants_, body_.scale.environment);
+        for (std::size_t slot = 0; slot < body_.slots.mass_at.size(); slot += lane_count) motion.accelerate(slot);
+      }
     BodyMotion end(body_, model_, constants_, body_.scale.force);
     if (!add_springs(factors, body_.squared_diagonal, [&](std::size_t slot) HWY_ATTR { end.end_with_forces(slot); }))
       return false;
@@ -53,7 +59,7 @@ class BodyStepper {
   // Algorithm 2.
   bool step_xpbd(const float* factors) {
     if (!add_environment()) return false;
-    BodyMotion prediction(body_, model_, constants_, body_.scale.force);
+    BodyMotion prediction(body_, model_, constants_, body_.scale.environment);
     for (std::size_t slot = 0; slot < body_.slots.mass_at.size(); slot += lane_count) prediction.predict(slot);
     if (!prediction.is_finite()) return false;
     BodyMotion end(body_, model_, constants_, body_.scale.correction);
@@ -68,24 +74,30 @@ class BodyStepper {
   // No spring is longer than the diagonal of the box around all masses: springs need no check if that is short enough.
   template <class Finish>
   bool add_springs(const float* factors, float squared_diagonal, const Finish& finish) {
+    if constexpr (EnvironmentModel::real_bodies)
+      if (body_.viscous) return add_springs<true>(factors, squared_diagonal, finish);
+    return add_springs<false>(factors, squared_diagonal, finish);
+  }
+  template <bool viscous, class Finish>
+  bool add_springs(const float* factors, float squared_diagonal, const Finish& finish) {
     return squared_diagonal <= body_.measures.squared_stretch_limit()
-               ? HWY_NAMESPACE::add_springs<false, gathered_springs>(body_, factors, finish)
-               : HWY_NAMESPACE::add_springs<true, gathered_springs>(body_, factors, finish);
+               ? HWY_NAMESPACE::add_springs<false, gathered_springs, viscous>(body_, factors, finish)
+               : HWY_NAMESPACE::add_springs<true, gathered_springs, viscous>(body_, factors, finish);
   }
 
   // Adds all forces but those of springs and those on single masses.
   bool add_environment() {
     if (!body_.perturbations.empty()) add_perturbations(body_);
     if constexpr (EnvironmentModel::has_contacts) {
-      const float distance = body_.measures.contact_distance();
-      if (contact_stiffness_ != 0 && distance != 0) {
+      const float distance = body_.contact_distance;
+      if (body_.contact_stiffness != 0 && distance != 0) {
         if (!body_.near_pairs.listed() || moved_beyond(list_reach * distance)) search_near_pairs(body_);
-        add_contacts(body_, contact_stiffness_);
+        add_contacts(body_);
       }
     }
     if constexpr (EnvironmentModel::has_faces)
       if (model_.acts_on_faces()) {
-        const FaceTiles<EnvironmentModel> faces(body_, model_);
+        const FaceTiles<EnvironmentModel> faces(body_, model_, dither_);
         if (faces.add_forces()) return true;
         faces.for_each_bad_corner([&](std::size_t slot) { note_bad_mass(body_, slot); });
         return false;
@@ -120,20 +132,20 @@ class BodyStepper {
   Body& body_;
   const EnvironmentModel model_;
   const StepConstants constants_;
-  const float contact_stiffness_;
+  std::uint32_t dither_ = 0;
 };
 
 template <class EnvironmentModel, bool gathered_springs>
 std::int64_t advance_body(Body& body, const EnvironmentModel& model, const StepSetting& setting, Factors factors,
-                          std::int64_t steps) {
+                          StepRange steps) {
   BodyStepper<EnvironmentModel, gathered_springs> stepper(body, model, setting);
-  for (std::int64_t n = 0; n < steps; ++n)
-    if (!stepper.step(setting.solver, factors.of_step(n))) return n;
-  return steps;
+  for (std::int64_t n = 0; n < steps.count; ++n)
+    if (!stepper.step(setting.solver, factors.of_step(n), steps.first + n)) return n;
+  return steps.count;
 }
 
 // Kernel::advance.
-inline std::int64_t advance(Body& body, const StepSetting& setting, Factors factors, std::int64_t steps) {
+inline std::int64_t advance(Body& body, const StepSetting& setting, Factors factors, StepRange steps) {
   return with_model(setting, [&](const auto& model) {
     using EnvironmentModel = std::decay_t<decltype(model)>;
     return body.springs.has_gathered_rows()

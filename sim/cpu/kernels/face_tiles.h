@@ -13,6 +13,12 @@ struct FaceForces {
   Lanes3 first, second;
   Lanes fastest_squared;  // the larger of the squared sums of velocities of either face
 
+  // The same with the offsets of fixed_point.h.
+  HWY_INLINE FaceForces dithered(Words offset, Lanes factor) const {
+    return {mercury::dithered(first, offset, factor),
+            mercury::dithered(second, offset + Words(second_face_dither), factor), fastest_squared};
+  }
+
   HWY_INLINE Integers largest_component() const {
     const auto of = [](Lanes3 f) HWY_ATTR { return larger(magnitude(f.x), larger(magnitude(f.y), magnitude(f.z))); };
     return larger(of(first), of(second));
@@ -33,9 +39,11 @@ HWY_INLINE FaceForces face_forces(FaceCoefficients<Lanes> coefficients, Lanes3 t
 template <class EnvironmentModel>
 class FaceTiles {
  public:
-  FaceTiles(Body& body, const EnvironmentModel& model)
-      : arrays_(body), tiles_(body.face_tiles.data()), end_(tiles_ + body.face_tiles.size()),
-        coefficients_(model.of_sums(body.scale.force)),
+  // `dither` is dither_of_step().
+  FaceTiles(Body& body, const EnvironmentModel& model, std::uint32_t dither)
+      : arrays_(body), dither_of_pairs_(body.face_dither.data()), dither_(dither), dither_factor_(model.dither()),
+        tiles_(body.face_tiles.data()), end_(tiles_ + body.face_tiles.size()),
+        coefficients_(model.of_sums(body.scale.environment)),
         bound_per_squared_speed_(coefficients_.bound() * body.squared_diagonal),
         thrice_flow_(broadcast_aos(model.thrice_flow)) {}
 
@@ -44,7 +52,9 @@ class FaceTiles {
   bool add_forces() const {
     Lanes fastest_squared = 0.0f;
     for (const std::uint32_t* tile = tiles_; tile != end_; tile += 4 * lane_count) {
-      const FaceForces f = forces(tile);
+      FaceForces f = forces(tile);
+      if constexpr (EnvironmentModel::real_bodies)
+        f = f.dithered(load_aligned(dither_of_pairs_ + (tile - tiles_) / 4) + Words(dither_), dither_factor_);
       fastest_squared = larger(fastest_squared, f.fastest_squared);
       const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
       scatter_add(on_both, arrays_.scattered, tile);
@@ -74,7 +84,7 @@ class FaceTiles {
     Aos common = v(a) + v(c);
     if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow_;
     return face_forces<EnvironmentModel>(
-        FaceCoefficients<Lanes>{coefficients_.drag, coefficients_.lift, coefficients_.tangential},
+        FaceCoefficients<Lanes>{coefficients_.drag, coefficients_.lift, coefficients_.tangential, coefficients_.normal},
         components(x(b) - xa), components(x(c) - xa), components(x(d) - xa), components(common + v(b)),
         components(common + v(d)));
   }
@@ -88,6 +98,9 @@ class FaceTiles {
   HWY_INLINE Aos v(const std::uint32_t* corner) const { return gather(arrays_.v_aos, corner); }
 
   const BodyArrays arrays_;
+  const std::uint32_t* const dither_of_pairs_;
+  const std::uint32_t dither_;
+  const float dither_factor_;
   const std::uint32_t *const tiles_, *const end_;  // tile_faces()
   const FaceCoefficients<float> coefficients_;
   const float bound_per_squared_speed_;

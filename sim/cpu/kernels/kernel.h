@@ -29,10 +29,10 @@ struct Kernel {
 
   // Advances a body that has not exploded. Returns the number of complete steps; if it is less than `steps`, the body
   // exploded in the step after them.
-  std::int64_t (*advance)(Body& body, const StepSetting& setting, Factors factors, std::int64_t steps);
+  std::int64_t (*advance)(Body& body, const StepSetting& setting, Factors factors, StepRange steps);
 
   // Advances a group. Returns false if a member may have exploded on the way; the group's state is then undefined.
-  bool (*advance_group)(LockstepGroup& group, const StepSetting& setting, Factors factors, std::int64_t steps);
+  bool (*advance_group)(LockstepGroup& group, const StepSetting& setting, Factors factors, StepRange steps);
 };
 
 // One per source file kernel_*.cpp.

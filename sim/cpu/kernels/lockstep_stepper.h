@@ -42,17 +42,18 @@ class LockstepStepper {
  public:
   LockstepStepper(LockstepGroup& group, const EnvironmentModel& model, const StepSetting& setting)
       : group_(group), x_(group.x.data()), v_(group.v.data()), sums_(group.sums.data()), slots_(group.slots),
-        model_(model), constants_(setting.constants), contact_stiffness_(setting.contact_stiffness),
-        force_scale_(load_aligned(group.force_scale.data())),
+        model_(model), constants_(setting.constants), force_scale_(load_aligned(group.force_scale.data())),
         correction_scale_(load_aligned(group.correction_scale.data())), per_force_(inverse(force_scale_)),
+        per_environment_(inverse(load_aligned(group.environment_scale.data()))),
         per_correction_(inverse(correction_scale_)),
         squared_stretch_limit_(load_aligned(group.squared_stretch_limit.data())) {}
 
   // Returns false if a member may have exploded.
-  bool step(Solver solver, const float* factors) {
+  bool step(Solver solver, const float* factors, std::int64_t number) {
+    dither_ = dither_of_step(number);
     if (!group_.perturbations.empty()) add_perturbations(group_);
     if constexpr (EnvironmentModel::has_contacts)
-      if (contact_stiffness_ != 0 && group_.contact_distance[0] != 0) add_contact_forces();
+      if (group_.bodies.front()->contact_stiffness != 0 && group_.contact_distance[0] != 0) add_contact_forces();
     if constexpr (EnvironmentModel::has_faces)
       if (model_.acts_on_faces() && !add_faces()) return false;
     return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
@@ -61,12 +62,20 @@ class LockstepStepper {
  private:
   // Algorithm 1.
   bool step_force(const float* factors) {
+    const bool apart = accelerate_by_environment();
     Box box;
     const bool compact = is_compact(load_aligned(group_.squared_diagonal.data()));
     const bool within_limit = add_springs(factors, compact, [&](std::size_t slot, Integers3 sum) HWY_ATTR {
       const Lanes3 x0 = load_nth_slot(x_, slot), v0 = load_nth_slot(v_, slot);
-      Lanes3 v = accelerated_by(sum, per_force_, v0, model_, constants_), x = multiply_add(constants_.dt, v, x0);
-      end_step(x, v, model_, constants_);
+      const PointLanes point = point_at(slot);
+      Lanes3 v;
+      if constexpr (EnvironmentModel::real_bodies)
+        v = apart ? accelerated_by_springs(sum, per_force_, v0, point, constants_)
+                  : accelerated_by(sum, per_force_, v0, point, model_, constants_);
+      else
+        v = accelerated_by(sum, per_force_, v0, point, model_, constants_);
+      Lanes3 x = multiply_add(constants_.dt, v, x0);
+      end_step_of(x, v, point, model_, constants_);
       store_state(x, v, slot);
       box.add(x);
     });
@@ -74,11 +83,24 @@ class LockstepStepper {
     return within_limit && is_within_reach(box);
   }
 
+  // Algorithm 1, where the forces of the environment are summed apart. Returns whether they are.
+  bool accelerate_by_environment() {
+    if constexpr (!EnvironmentModel::real_bodies) return false;
+    if (!model_.sums_apart()) return false;
+    for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+      const Lanes3 v =
+          accelerated_by(take(slot), per_environment_, load_nth_slot(v_, slot), point_at(slot), model_, constants_);
+      store_aligned(v, slot_at(v_, 3 * lane_count * slot), 0);
+    }
+    return true;
+  }
+
   // Algorithm 2.
   bool step_xpbd(const float* factors) {
     Box predicted;
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
-      const Lanes3 v = accelerated_by(take(slot), per_force_, load_nth_slot(v_, slot), model_, constants_);
+      const Lanes3 v =
+          accelerated_by(take(slot), per_environment_, load_nth_slot(v_, slot), point_at(slot), model_, constants_);
       const Lanes3 x = multiply_add(constants_.dt, v, load_nth_slot(x_, slot));
       store_state(x, v, slot);
       predicted.add(x);
@@ -87,10 +109,11 @@ class LockstepStepper {
     Box box;
     const bool compact = is_compact(squared_diagonal(predicted));
     const bool within_limit = add_springs(factors, compact, [&](std::size_t slot, Integers3 sum) HWY_ATTR {
-      const Lanes3 correction = per_correction_ * float_of(sum);
+      const PointLanes point = point_at(slot);
+      const Lanes3 correction = correction_by<EnvironmentModel>(sum, per_correction_, point);
       Lanes3 x = load_nth_slot(x_, slot) + correction;
       Lanes3 v = multiply_add(constants_.inverse_dt, correction, load_nth_slot(v_, slot));
-      end_step(x, v, model_, constants_);
+      end_step_of(x, v, point, model_, constants_);
       store_state(x, v, slot);
       box.add(x);
     });
@@ -101,7 +124,7 @@ class LockstepStepper {
   void add_contact_forces() {
     const std::uint32_t lanes = group_.searches.empty() ? ~0u : bits_of(moved_beyond_reach());
     if (lanes != 0) search_near_pairs(group_, lanes, [](Body& body) { HWY_NAMESPACE::search_near_pairs(body); });
-    add_contacts(group_, contact_stiffness_);
+    add_contacts(group_);
   }
 
   // By lane: whether a mass has moved farther than lists reach, relative to the first mass, since near pairs were
@@ -166,45 +189,64 @@ class LockstepStepper {
     const float *const x = x_, *const v = v_;
     const float *drag = group_.face_drag.data() + first_coefficient,
                 *lift = group_.face_lift.data() + first_coefficient,
-                *tangential = group_.face_tangential.data() + first_coefficient;
+                *tangential = group_.face_tangential.data() + first_coefficient,
+                *normal = group_.face_normal.data() + first_coefficient;
+    const std::uint32_t* dither = group_.face_dither.data() + first_coefficient;
     const Lanes3 thrice_flow{model_.thrice_flow.x, model_.thrice_flow.y, model_.thrice_flow.z};
     for (const Corners& corners : tiles) {
       const auto& [a, b, c, d] = corners;
       const Lanes3 xa = load_slot(x, a);
       Lanes3 common = load_slot(v, a) + load_slot(v, c);
       if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow;
-      FaceCoefficients<Lanes> coefficients{load_aligned(drag), load_aligned(lift), 0.0f};
+      FaceCoefficients<Lanes> coefficients{load_aligned(drag), load_aligned(lift), 0.0f, 0.0f};
       if constexpr (EnvironmentModel::has_tangential_drag) coefficients.tangential = load_aligned(tangential);
-      visit(corners,
-            face_forces<EnvironmentModel>(coefficients, load_slot(x, b) - xa, load_slot(x, c) - xa,
-                                          load_slot(x, d) - xa, common + load_slot(v, b), common + load_slot(v, d)));
+      if constexpr (EnvironmentModel::real_bodies) coefficients.normal = load_aligned(normal);
+      FaceForces forces =
+          face_forces<EnvironmentModel>(coefficients, load_slot(x, b) - xa, load_slot(x, c) - xa, load_slot(x, d) - xa,
+                                        common + load_slot(v, b), common + load_slot(v, d));
+      if constexpr (EnvironmentModel::real_bodies)
+        forces = forces.dithered(load_aligned(dither) + Words(dither_), model_.dither());
+      visit(corners, forces);
       drag += lane_count;
       lift += lane_count;
       tangential += lane_count;
+      normal += lane_count;
+      dither += lane_count;
     }
   }
 
   template <class Finish>
   bool add_springs(const float* factors, bool compact, const Finish& finish) {
-    return compact ? add_springs<false>(factors, finish) : add_springs<true>(factors, finish);
+    if constexpr (EnvironmentModel::real_bodies)
+      if (group_.viscous)
+        return compact ? add_springs<false, true>(factors, finish) : add_springs<true, true>(factors, finish);
+    return compact ? add_springs<false, false>(factors, finish) : add_springs<true, false>(factors, finish);
   }
 
   // Calls finish(slot, sum of all that acts on it) for each slot. If `checked`, returns false if a spring is beyond the
   // stretch limit.
-  template <bool checked, class Finish>
+  template <bool checked, bool viscous, class Finish>
   bool add_springs(const float* factors, const Finish& finish) {
-    SpringRow<checked> next_row{factors, group_.rest_length.data(), group_.stiffness.data(), group_.factor.data(),
-                                0.0f};
-    const float* const x = x_;
+    SpringRow<checked, viscous> next_row{factors,
+                                         group_.rest_length.data(),
+                                         group_.stiffness.data(),
+                                         group_.relaxation_time.data(),
+                                         group_.factor.data(),
+                                         load_aligned(group_.viscous_limit.data()),
+                                         0.0f};
+    const float *const x = x_, *const v = v_;
     std::int32_t* const sums = sums_;
     const std::uint32_t* partner = group_.partners.data();
     std::size_t slot = 0;
     for (const auto& [owned, bias] : slots_) {
       const Lanes3 own = load_nth_slot(x_, slot);
+      Lanes3 velocity = own;
+      if constexpr (viscous) velocity = load_nth_slot(v_, slot);
       const Integers start = broadcast(bias);
       Integers3 sum{start, start, start};
       for (const std::uint32_t* const end = partner + owned; partner != end; ++partner) {
-        const Integers3 f = next_row(own - load_slot(x, *partner));
+        const Integers3 f =
+            next_row(own - load_slot(x, *partner), [&]() HWY_ATTR { return velocity - load_slot(v, *partner); });
         sum = sum - f;
         add_to_slot(sums, *partner, f);
       }
@@ -216,6 +258,13 @@ class LockstepStepper {
 
   static HWY_INLINE Lanes3 load_nth_slot(const float* values, std::size_t slot) {
     return load_slot(values, 3 * lane_count * slot);
+  }
+  HWY_INLINE PointLanes point_at(std::size_t slot) const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return {load_aligned(group_.inverse_inertia.data() + slot * lane_count),
+              load_aligned(group_.weight.data() + slot * lane_count)};
+    else
+      return {1.0f, 1.0f};
   }
   // Returns a slot's sum and sets it to zero.
   HWY_INLINE Integers3 take(std::size_t slot) const {
@@ -241,21 +290,21 @@ class LockstepStepper {
   const std::vector<LockstepGroup::Slot>& slots_;
   const EnvironmentModel model_;
   const StepConstants constants_;
-  const float contact_stiffness_;
-  const Lanes force_scale_, correction_scale_, per_force_, per_correction_, squared_stretch_limit_;
+  std::uint32_t dither_ = 0;
+  const Lanes force_scale_, correction_scale_, per_force_, per_environment_, per_correction_, squared_stretch_limit_;
 };
 
 template <class EnvironmentModel>
 bool advance_with(const EnvironmentModel& model, LockstepGroup& group, const StepSetting& setting, Factors factors,
-                  std::int64_t steps) {
+                  StepRange steps) {
   LockstepStepper stepper(group, model, setting);
-  for (std::int64_t n = 0; n < steps; ++n)
-    if (!stepper.step(setting.solver, factors.of_step(n))) return false;
+  for (std::int64_t n = 0; n < steps.count; ++n)
+    if (!stepper.step(setting.solver, factors.of_step(n), steps.first + n)) return false;
   return true;
 }
 
 // Kernel::advance_group.
-inline bool advance_group(LockstepGroup& group, const StepSetting& setting, Factors factors, std::int64_t steps) {
+inline bool advance_group(LockstepGroup& group, const StepSetting& setting, Factors factors, StepRange steps) {
   return with_model(setting, [&](const auto& model) { return advance_with(model, group, setting, factors, steps); });
 }
 

@@ -31,13 +31,46 @@ inline bool note_bad_mass(Body& body, std::size_t slot) {
   return mass != no_mass;
 }
 
+// PointProperties of a tile, or of the same mass of each member of a group.
+struct PointLanes {
+  Lanes inverse_inertia, weight;
+};
+
 // The velocity before damping. `sum` counts units of `per_unit` newtons, a power of two: multiplying by it is exact, so
 // it does not matter when that happens.
 template <class EnvironmentModel>
-HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, const EnvironmentModel& model,
-                                 const StepConstants& constants) {
+HWY_INLINE Lanes3 accelerated_by(Integers3 sum, Lanes per_unit, Lanes3 v, PointLanes point,
+                                 const EnvironmentModel& model, const StepConstants& constants) {
   if constexpr (EnvironmentModel::still_water) return multiply_add(constants.dt * per_unit, float_of(sum), v);
-  return accelerated(v, per_unit * float_of(sum) + model.on_mass(v), constants);
+  if constexpr (EnvironmentModel::real_bodies)
+    return accelerated(v, point.inverse_inertia * (per_unit * float_of(sum) + model.on_mass(v, point.weight)),
+                       constants);
+  else
+    return accelerated(v, per_unit * float_of(sum) + model.on_mass(v), constants);
+}
+
+// The same with springs alone, after the forces of the environment.
+HWY_INLINE Lanes3 accelerated_by_springs(Integers3 sum, Lanes per_unit, Lanes3 v, PointLanes point,
+                                         const StepConstants& constants) {
+  return accelerated(v, point.inverse_inertia * (per_unit * float_of(sum)), constants);
+}
+
+// XPBD's correction of a mass [m]; `sum` counts units of `per_unit` kg m.
+template <class EnvironmentModel>
+HWY_INLINE Lanes3 correction_by(Integers3 sum, Lanes per_unit, PointLanes point) {
+  const Lanes3 correction = per_unit * float_of(sum);
+  if constexpr (EnvironmentModel::real_bodies) return point.inverse_inertia * correction;
+  return correction;
+}
+
+// Ground and damping at the end of a step.
+template <class EnvironmentModel>
+HWY_INLINE void end_step_of(Lanes3& x, Lanes3& v, PointLanes point, const EnvironmentModel& model,
+                            const StepConstants& constants) {
+  if constexpr (EnvironmentModel::real_bodies)
+    end_step(x, v, point.inverse_inertia, model, constants);
+  else
+    end_step(x, v, model, constants);
 }
 
 // Calls call(model) with the environment's model, or with StillWaterOceanModel where that gives the same bits faster.
@@ -63,30 +96,48 @@ class Motion {
   // Algorithm 1: the end of the step.
   HWY_INLINE void end_with_forces(std::size_t slot) {
     const Lanes3 x0 = load_aligned(arrays_.x, slot), v0 = load_aligned(arrays_.v, slot);
-    Lanes3 v = accelerated_by(take<true>(slot), inverse_scale_, v0, model_, constants_);
+    const PointLanes point = point_at(slot);
+    Lanes3 v;
+    if constexpr (EnvironmentModel::real_bodies) {
+      const Integers3 sum = take<true>(slot);
+      v = model_.sums_apart() ? accelerated_by_springs(sum, inverse_scale_, v0, point, constants_)
+                              : accelerated_by(sum, inverse_scale_, v0, point, model_, constants_);
+    } else {
+      v = accelerated_by(take<true>(slot), inverse_scale_, v0, point, model_, constants_);
+    }
     Lanes3 x = multiply_add(constants_.dt, v, x0);
-    end_step(x, v, model_, constants_);
+    end_step_of(x, v, point, model_, constants_);
     store_state(x, v, x0, v0, slot);
     box_.add(x);
     store_aos_of(x, v, slot);
   }
 
+  // Algorithm 1: adds the forces of the environment to the velocity, where they are summed apart.
+  HWY_INLINE void accelerate(std::size_t slot) {
+    const Lanes3 v = accelerated_by(take<false>(slot), inverse_scale_, load_aligned(arrays_.v, slot), point_at(slot),
+                                    model_, constants_);
+    store_aligned(v, arrays_.v, slot);
+    if constexpr (gathered_springs) arrays_.store_v_aos(v, slot);
+  }
+
   // Algorithm 2: replaces the position by the prediction and the velocity by v + dt F.
   HWY_INLINE void predict(std::size_t slot) {
     const Lanes3 x0 = load_aligned(arrays_.x, slot), v0 = load_aligned(arrays_.v, slot);
-    Lanes3 v = accelerated_by(take<false>(slot), inverse_scale_, v0, model_, constants_);
+    Lanes3 v = accelerated_by(take<false>(slot), inverse_scale_, v0, point_at(slot), model_, constants_);
     Lanes3 x = multiply_add(constants_.dt, v, x0);
     store_state(x, v, x0, v0, slot);
     box_.add(x);
     if constexpr (gathered_springs) arrays_.store_x_aos(x, slot);
+    if constexpr (gathered_springs && EnvironmentModel::real_bodies) arrays_.store_v_aos(v, slot);
   }
   // Algorithm 2: the end of the step, after a prediction.
   HWY_INLINE void end_with_corrections(std::size_t slot) {
     const Lanes3 x0 = load_aligned(arrays_.x, slot), v0 = load_aligned(arrays_.v, slot);
-    const Lanes3 correction = Lanes(inverse_scale_) * float_of(take<true>(slot));
+    const PointLanes point = point_at(slot);
+    const Lanes3 correction = correction_by<EnvironmentModel>(take<true>(slot), inverse_scale_, point);
     Lanes3 x = x0 + correction;
     Lanes3 v = multiply_add(constants_.inverse_dt, correction, v0);
-    end_step(x, v, model_, constants_);
+    end_step_of(x, v, point, model_, constants_);
     store_state(x, v, x0, v0, slot);
     box_.add(x);
     store_aos_of(x, v, slot);
@@ -97,6 +148,12 @@ class Motion {
   HWY_INLINE float squared_diagonal() const { return box_.squared_diagonal(); }
 
  private:
+  HWY_INLINE PointLanes point_at(std::size_t slot) const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return {load_aligned(arrays_.inverse_inertia + slot), load_aligned(arrays_.weight + slot)};
+    else
+      return {1.0f, 1.0f};
+  }
   template <bool springs>
   HWY_INLINE Integers3 take(std::size_t slot) const {
     return arrays_.template take<springs, needs_aos>(slot);

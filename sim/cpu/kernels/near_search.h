@@ -13,7 +13,7 @@ namespace mercury::cpu::HWY_NAMESPACE {
 // Searches from the positions in body.x.
 inline void search_near_pairs(Body& body) {
   NearPairs& list = body.near_pairs;
-  const float distance = body.measures.contact_distance();
+  const float distance = body.contact_distance;
   if (!list.few()) return list.search_grid(body.x.x, body.x.y, body.x.z, distance);
   list.start(body.x.x, body.x.y, body.x.z);
   const BodyArrays arrays(body);

@@ -9,22 +9,30 @@ namespace mercury::cpu::HWY_NAMESPACE {
 
 // Reads the springs of one row after the other. The same equation serves both solvers: XPBD's stiffness is
 // xpbd_stiffness().
-template <bool checked>
+template <bool checked, bool viscous>
 struct SpringRow {
   const float* factors;
   const float* rest_length;
   const float* stiffness;
+  const float* relaxation_time;  // if `viscous`
   const FactorId* factor;
+  Lanes viscous_limit;    // [m], if `viscous`
   Lanes longest_squared;  // of all springs so far, if `checked`
 
   // What the next row's springs add to their partners, in units, plus rounding_magic_bits. `d` points from partner to
-  // owner. Moves on to the row after it.
-  HWY_INLINE Integers3 operator()(Lanes3 d) {
+  // owner; `rate()` is the difference of their velocities in the same sense, if `viscous`. Moves on to the row after
+  // it.
+  template <class Rate>
+  HWY_INLINE Integers3 operator()(Lanes3 d, const Rate& rate) {
     const Lanes squared = squared_length(d);
     const Lanes rest = load_aligned(rest_length);
     const Mask is_spring = rest > 0.0f;
     if constexpr (checked) longest_squared = select((squared > longest_squared) & is_spring, squared, longest_squared);
-    const Lanes length = rest * look_up(factors, factor, is_spring);
+    Lanes length = rest * look_up(factors, factor, is_spring);
+    if constexpr (viscous) {
+      length = length - viscous_length(squared, inner(d, rate()), load_aligned(relaxation_time), viscous_limit);
+      relaxation_time += lane_count;
+    }
     const Lanes per_distance = hooke(squared, length, load_aligned(stiffness));
     rest_length += lane_count;
     stiffness += lane_count;
@@ -40,28 +48,37 @@ struct SpringRow {
 // That is one tile after the springs, so that the sums have left the store buffer when they are read. With gathered
 // rows, whose partners are in any tile, it is after all springs; so it is if `checked`, since no mass may move before
 // all springs have passed.
-template <bool checked, bool gathered_springs, class Finish>
+template <bool checked, bool gathered_springs, bool viscous, class Finish>
 bool add_springs(Body& body, const float* factors, const Finish& finish) {
   constexpr bool finish_early = !checked && !gathered_springs;
   const BodyArrays arrays(body);
   const SpringSchedule& schedule = body.springs;
-  SpringRow<checked> next_row{factors, schedule.rest_length.data(), schedule.stiffness.data(), schedule.factor.data(),
-                              0.0f};
+  SpringRow<checked, viscous> next_row{factors,
+                                       schedule.rest_length.data(),
+                                       schedule.stiffness.data(),
+                                       schedule.relaxation_time.data(),
+                                       schedule.factor.data(),
+                                       viscous_limit * body.measures.longest,
+                                       0.0f};
   const Run* run = schedule.runs.data();
   const std::uint32_t* partners = schedule.partners.data();
   std::size_t slot = 0;
   for (const auto& [runs, gathered_rows] : schedule.tiles) {
     const Lanes3 own = load_aligned(arrays.x, slot);
+    Lanes3 velocity = own;
+    if constexpr (viscous) velocity = load_aligned(arrays.v, slot);
     Integers3 sum{zeros(), zeros(), zeros()};
     for (const Run* const end = run + runs; run != end; ++run) {
       const auto [partner, reaction] = *run;
-      const Integers3 f = next_row(own - load(arrays.x, partner));
+      const Integers3 f =
+          next_row(own - load(arrays.x, partner), [&]() HWY_ATTR { return velocity - load(arrays.v, partner); });
       sum = sum - f;
       add(f, arrays.reaction, reaction);
     }
     for (const std::uint32_t* const end = partners + (gathered_springs ? gathered_rows * lane_count : 0);
          partners != end; partners += lane_count) {
-      const Integers3 f = next_row(own - components(gather(arrays.x_aos, partners)));
+      const Integers3 f = next_row(own - components(gather(arrays.x_aos, partners)),
+                                   [&]() HWY_ATTR { return velocity - components(gather(arrays.v_aos, partners)); });
       sum = sum - f;
       scatter_add(f, arrays.scattered, partners);
     }

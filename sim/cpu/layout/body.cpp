@@ -5,16 +5,30 @@
 #include <limits>
 
 #include "mercury/telemetry.h"
+#include "sim/physics/environments.h"
+#include "sim/physics/fixed_point.h"
 #include "sim/physics/springs.h"
 
 namespace mercury::cpu {
 
 namespace {
 
-void set_scheduled_stiffness(Body& body) {
+// What springs and masses have in the schedule and the slots of a body that steps alone.
+void set_scheduled_parameters(Body& body) {
+  if (!body.steps_alone) return;
   SpringSchedule& springs = body.springs;
-  for (std::size_t i = 0; i < springs.stiffness.size(); ++i)
-    springs.stiffness[i] = springs.spring[i] == no_spring ? 0 : body.stiffness[springs.spring[i]];
+  for (std::size_t i = 0; i < springs.stiffness.size(); ++i) {
+    const std::uint32_t spring = springs.spring[i];
+    springs.stiffness[i] = spring == no_spring ? 0 : body.stiffness[spring];
+    springs.relaxation_time[i] =
+        spring == no_spring ? 0 : body.materials[body.robot->springs[spring].material].relaxation_time;
+  }
+  for (std::size_t slot = 0; slot < body.slots.mass_at.size(); ++slot) {
+    const std::uint32_t mass = body.slots.mass_at[slot];
+    const PointProperties point = mass == no_mass ? PointProperties{0, 0} : body.point(mass);
+    body.inverse_inertia[slot] = point.inverse_inertia;
+    body.weight[slot] = point.weight;
+  }
 }
 
 }  // namespace
@@ -39,9 +53,13 @@ void prepare_to_step_alone(Body& body) {
   if (body.steps_alone) return;
   body.steps_alone = true;
   body.springs = schedule_springs(*body.robot, body.slots);
-  set_scheduled_stiffness(body);
   body.face_tiles = tile_faces(body.face_pairs, body.slots);
+  body.face_dither.resize(body.face_tiles.size() / 4);
+  for (std::uint32_t pair = 0; pair < body.face_dither.size(); ++pair) body.face_dither[pair] = dither_of_pair(pair);
   const std::size_t size = body.slots.size_with_spare();
+  body.inverse_inertia.assign(size, 0);
+  body.weight.assign(size, 0);
+  set_scheduled_parameters(body);
   body.sums.own.assign(size, 0);
   body.sums.reaction.assign(reaction_arrays * size, 0);
   body.sums.scattered.assign(4 * size, 0);
@@ -71,11 +89,19 @@ void clear(Sums& sums) {
 
 void update_spring_parameters(Body& body, const Configuration& configuration) {
   const Robot& robot = *body.robot;
-  body.scale = fixed_point_scale(body.measures, body.materials, configuration);
-  const double scale = static_cast<double>(stiffness_scale_of(configuration.environment));
+  const Environment& environment = configuration.environment;
+  const bool real = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(environment.water);
+  body.points = real ? point_properties(robot, environment) : std::vector<PointProperties>();
+  const InertiaRange inertia = inertia_range(body.points);
+  body.contact_distance = contact_distance(robot, body.measures, environment);
+  body.contact_stiffness = contact_stiffness_of(environment, configuration.solver, configuration.dt,
+                                                stiffest_spring(body.measures, body.materials), inertia.lightest);
+  body.scale = fixed_point_scale(body.measures, body.materials, configuration, body.contact_distance, inertia);
+  const double scale = static_cast<double>(stiffness_scale_of(environment));
   const bool force = configuration.solver == Solver::force;
   // By material that springs have: stiffness (force solver) or compliance (XPBD), in units.
   std::array<float, max_materials> coefficient;
+  body.viscous = has_viscous_springs(body.measures, body.materials);
   for (std::size_t id = 0; id < body.materials.size(); ++id) {
     if (!body.measures.used[id]) continue;
     const double stiffness = scale * static_cast<double>(body.materials[id].stiffness);
@@ -86,14 +112,20 @@ void update_spring_parameters(Body& body, const Configuration& configuration) {
   coefficient[air] = force ? 0 : std::numeric_limits<float>::infinity();
 
   const std::vector<std::uint32_t> valence = force ? std::vector<std::uint32_t>() : valences(robot);
-  const float per_scale = 1 / body.scale.correction;
+  const float per_scale = 1 / body.scale.correction, inverse_dt = static_cast<float>(1 / configuration.dt);
   for (std::size_t s = 0; s < robot.springs.size(); ++s) {
     const Spring& spring = robot.springs[s];
-    const auto valence_sum = [&] { return static_cast<float>(valence[spring.a] + valence[spring.b]); };
+    const auto valence_at = [&](std::uint16_t mass) {
+      return static_cast<float>(valence[mass]) * body.point(mass).inverse_inertia;
+    };
+    const auto valence_sum = [&] {
+      return viscous_factor(body.materials[spring.material].relaxation_time, inverse_dt) *
+             (valence_at(spring.a) + valence_at(spring.b));
+    };
     body.stiffness[s] =
         force ? coefficient[spring.material] : xpbd_stiffness(valence_sum() * per_scale, coefficient[spring.material]);
   }
-  set_scheduled_stiffness(body);
+  set_scheduled_parameters(body);
 }
 
 void set_factors(Body& body, const std::array<FactorId, max_materials>& factors) {

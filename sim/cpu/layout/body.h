@@ -86,14 +86,19 @@ struct Body {
   std::vector<Material> changed_materials;  // max_materials elements if the caller has written or drives them
   Drives drives;
   FixedPointScale scale;
+  std::vector<PointProperties> points;                // by mass; empty = masses of 1 kg, none fixed
+  bool viscous = false;                               // a spring has a relaxation time
+  float contact_distance = 0, contact_stiffness = 0;  // [m], [N/m]; 0 = no contacts
   // By spring, in units: k of the force solver, or xpbd_stiffness(). 0 for springs of air.
   std::vector<float> stiffness;
 
   // What only bodies need that are stepped alone: from prepare_to_step_alone() on.
   bool steps_alone = false;
   SpringSchedule springs;
-  std::vector<std::uint32_t> face_tiles;  // tile_faces()
-  Aligned<float> x_aos, v_aos;            // [slot][x, y, z, unused]
+  std::vector<std::uint32_t> face_tiles;   // tile_faces()
+  Aligned<std::uint32_t> face_dither;      // dither_of_pair(), [face tile][lane]
+  Aligned<float> inverse_inertia, weight;  // PointProperties by slot; 0 in padding
+  Aligned<float> x_aos, v_aos;             // [slot][x, y, z, unused]
   Sums sums;
   // What only contacts need: from prepare_contacts() on.
   NearPairs near_pairs;
@@ -107,6 +112,7 @@ struct Body {
   RobotStatus status;
   std::vector<Perturbation> perturbations;
 
+  PointProperties point(std::size_t mass) const { return points.empty() ? PointProperties{} : points[mass]; }
   Vec3 position(std::size_t mass) const {
     return location.group ? location.at(location.x, mass) : at(x, slots.of_mass[mass]);
   }

@@ -75,13 +75,19 @@ void resize_arrays(LockstepGroup& group) {
   const std::size_t entries = group.partners.size() * group.lanes, slots = group.slots.size() * group.lanes;
   group.rest_length.resize(entries);
   group.stiffness.resize(entries);
+  group.relaxation_time.resize(entries);
   group.factor.resize(entries);
-  for (Aligned<float>* coefficients : {&group.face_drag, &group.face_lift, &group.face_tangential})
-    coefficients->resize((group.face_tiles.size() + group.split_face_tiles.size()) * group.lanes);
+  const std::size_t face_entries = (group.face_tiles.size() + group.split_face_tiles.size()) * group.lanes;
+  for (Aligned<float>* coefficients : {&group.face_drag, &group.face_lift, &group.face_tangential, &group.face_normal})
+    coefficients->resize(face_entries);
+  group.face_dither.resize(face_entries);
+  group.inverse_inertia.assign(slots, 0);
+  group.weight.assign(slots, 0);
   for (Aligned<float>* state : {&group.x, &group.v, &group.checkpoint_x, &group.checkpoint_v}) state->resize(3 * slots);
   group.sums.resize(3 * slots);
-  for (Aligned<float>* by_lane : {&group.force_scale, &group.correction_scale, &group.squared_stretch_limit,
-                                  &group.contact_distance, &group.face_force_bound, &group.squared_diagonal})
+  for (Aligned<float>* by_lane :
+       {&group.force_scale, &group.correction_scale, &group.environment_scale, &group.squared_stretch_limit,
+        &group.contact_distance, &group.viscous_limit, &group.face_force_bound, &group.squared_diagonal})
     by_lane->resize(group.lanes);
 }
 
@@ -128,9 +134,12 @@ void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& mode
   std::ranges::fill(group.rest_length, 0.0f);
   std::ranges::fill(group.factor, FactorId{0});
   std::ranges::fill(group.stiffness, 0.0f);
+  std::ranges::fill(group.relaxation_time, 0.0f);
+  group.viscous = false;
   std::ranges::fill(group.face_drag, 0.0f);
   std::ranges::fill(group.face_lift, 0.0f);
   std::ranges::fill(group.face_tangential, 0.0f);
+  std::ranges::fill(group.face_normal, 0.0f);
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     const std::size_t member = member_of(group, lane);
     const Body& body = *group.bodies[member];
@@ -141,20 +150,31 @@ void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& mode
       group.rest_length[entry] = spring.rest_length;
       group.stiffness[entry] = body.stiffness[s];
       group.factor[entry] = factors[member][spring.material];
+      group.relaxation_time[entry] = body.materials[spring.material].relaxation_time;
     }
-    if (const auto coefficients = face_coefficients_of(model, body.scale.force)) {
+    group.viscous = group.viscous || body.viscous;
+    for (std::size_t mass = 0; mass < index_map.slots.size(); ++mass) {
+      const PointProperties point = body.point(mass);
+      group.inverse_inertia[index_map.slots[mass] * group.lanes + lane] = point.inverse_inertia;
+      group.weight[index_map.slots[mass] * group.lanes + lane] = point.weight;
+    }
+    if (const auto coefficients = face_coefficients_of(model, body.scale.environment)) {
       group.face_force_bound[lane] = coefficients->bound();
-      for (const std::uint32_t pair : index_map.face_pairs) {
-        const std::size_t i = group.face_tile_of_pair[pair] * group.lanes + lane;
+      for (std::uint32_t own = 0; own < index_map.face_pairs.size(); ++own) {
+        const std::size_t i = group.face_tile_of_pair[index_map.face_pairs[own]] * group.lanes + lane;
+        group.face_dither[i] = dither_of_pair(own);
         group.face_drag[i] = coefficients->drag;
         group.face_lift[i] = coefficients->lift;
         group.face_tangential[i] = coefficients->tangential;
+        group.face_normal[i] = coefficients->normal;
       }
     }
     group.force_scale[lane] = body.scale.force;
     group.correction_scale[lane] = body.scale.correction;
+    group.environment_scale[lane] = body.scale.environment;
     group.squared_stretch_limit[lane] = body.measures.squared_stretch_limit();
-    group.contact_distance[lane] = body.measures.contact_distance();
+    group.contact_distance[lane] = body.contact_distance;
+    group.viscous_limit[lane] = viscous_limit * body.measures.longest;
   }
 }
 
@@ -211,7 +231,8 @@ void set_perturbations(LockstepGroup& group) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane)
     for (const Perturbation& perturbation : group.body_in(lane).perturbations)
       group.perturbations.push_back({group.offset_of(group.index_maps[lane]->slots[perturbation.mass], lane),
-                                     perturbation.target, perturbation.stiffness * group.body_in(lane).scale.force});
+                                     perturbation.target,
+                                     perturbation.stiffness * group.body_in(lane).scale.environment});
 }
 
 void add_perturbations(LockstepGroup& group) {
@@ -239,13 +260,13 @@ void search_near_pairs(LockstepGroup& group, std::uint32_t lanes, void (*search)
   group.searches = current_searches(group);
 }
 
-void add_contacts(LockstepGroup& group, float stiffness) {
+void add_contacts(LockstepGroup& group) {
   for (std::size_t lane = 0; lane < group.lanes; ++lane) {
     const Body& body = group.body_in(lane);
     const std::vector<std::uint32_t>& slots = group.index_maps[lane]->slots;
     const auto offset = [&](std::uint32_t slot) { return group.offset_of(slots[body.slots.mass_at[slot]], lane); };
     for_each_contact(
-        body, stiffness, [&](std::uint32_t slot) { return at(group, group.x, offset(slot)); },
+        body, [&](std::uint32_t slot) { return at(group, group.x, offset(slot)); },
         [&](std::uint32_t slot, Vec3 units) { add_to_sums(group, offset(slot), units); });
   }
 }

@@ -64,10 +64,14 @@ struct LockstepGroup {
   std::vector<std::uint32_t> face_tile_of_pair;  // by face pair of the topology
 
   // [entry][lane], as in SpringSchedule; stiffness 0 where a member has no spring.
-  Aligned<float> rest_length, stiffness;
+  Aligned<float> rest_length, stiffness, relaxation_time;
   Aligned<FactorId> factor;
   // [face tile][lane]: OceanModel::of_sums() in units; 0 where a member has no such faces.
-  Aligned<float> face_drag, face_lift, face_tangential;
+  Aligned<float> face_drag, face_lift, face_tangential, face_normal;
+  Aligned<std::uint32_t> face_dither;  // dither_of_pair() of the member's pair
+
+  Aligned<float> inverse_inertia, weight;  // [slot][lane]: PointProperties; 0 in padding
+  bool viscous = false;                    // a spring has a relaxation time
 
   // [slot][x, y, z][lane]
   Aligned<float> x, v;         // between XPBD's prediction and correction: the prediction and v + dt F
@@ -92,9 +96,10 @@ struct LockstepGroup {
   std::vector<LanePerturbation> perturbations;
 
   // By lane.
-  Aligned<float> force_scale, correction_scale;  // FixedPointScale
-  Aligned<float> squared_stretch_limit;          // [m2]
-  Aligned<float> contact_distance;               // [m]
+  Aligned<float> force_scale, correction_scale, environment_scale;  // FixedPointScale
+  Aligned<float> squared_stretch_limit;                             // [m2]
+  Aligned<float> contact_distance;                                  // [m]
+  Aligned<float> viscous_limit;                                     // of tau d|d|/dt [m]
   Aligned<float> face_force_bound;  // no face's force exceeds this times |2 A n| |sum of velocities|^2 [units]
   Aligned<float> squared_diagonal;  // of the box around all masses of the lane [m2]; infinite if not known
 
@@ -126,7 +131,7 @@ void add_perturbations(LockstepGroup& group);
 // Searches near pairs in these lanes, one bit per lane. `search` does it for a body, from the positions in body.x.
 void search_near_pairs(LockstepGroup& group, std::uint32_t lanes, void (*search)(Body&));
 // Adds the forces of all lanes' contacts.
-void add_contacts(LockstepGroup& group, float stiffness);
+void add_contacts(LockstepGroup& group);
 
 void make_checkpoint(LockstepGroup& group);
 void return_to_checkpoint(LockstepGroup& group);

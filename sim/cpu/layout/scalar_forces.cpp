@@ -17,14 +17,14 @@ void add(Sums& sums, std::size_t slot, Vec3 units) {
 void add_perturbations(Body& body) {
   for (const Perturbation& perturbation : body.perturbations) {
     const Vec3 units =
-        perturbation.stiffness * body.scale.force * (perturbation.target - body.position(perturbation.mass));
+        perturbation.stiffness * body.scale.environment * (perturbation.target - body.position(perturbation.mass));
     if (fits(units)) add(body.sums, body.slots.of_mass[perturbation.mass], units);
   }
 }
 
-void add_contacts(Body& body, float stiffness) {
+void add_contacts(Body& body) {
   for_each_contact(
-      body, stiffness, [&](std::uint32_t slot) { return Body::at(body.x, slot); },
+      body, [&](std::uint32_t slot) { return Body::at(body.x, slot); },
       [&](std::uint32_t slot, Vec3 units) { add(body.sums, slot, units); });
 }
 

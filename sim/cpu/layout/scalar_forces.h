@@ -14,17 +14,17 @@ inline void add_units(std::int32_t& sum, float units) {
 
 void add_perturbations(Body& body);
 // Of the listed pairs.
-void add_contacts(Body& body, float stiffness);
+void add_contacts(Body& body);
 
 // Calls add(slot, units) for both masses of each listed pair that touches, their positions being positions(slot).
 template <class Positions, class Add>
-void for_each_contact(const Body& body, float stiffness, const Positions& positions, const Add& add) {
-  const float distance = body.measures.contact_distance();
+void for_each_contact(const Body& body, const Positions& positions, const Add& add) {
+  const float distance = body.contact_distance;
   for (const auto& [i, j] : body.near_pairs.pairs()) {
     const Vec3 d = positions(j) - positions(i);
     const float squared = squared_length(d);
     if (!(squared < distance * distance)) continue;
-    const Vec3 units = repulsion(squared, distance, stiffness * body.scale.force) * d;
+    const Vec3 units = repulsion(squared, distance, body.contact_stiffness * body.scale.environment) * d;
     add(i, units);
     add(j, -units);
   }

@@ -35,6 +35,7 @@ class Scheduler {
       append_gathered_rows(tile);
     }
     schedule_.stiffness.resize(schedule_.rest_length.size());
+    schedule_.relaxation_time.resize(schedule_.rest_length.size());
     schedule_.factor.resize(schedule_.rest_length.size());
   }
 

@@ -51,6 +51,7 @@ struct SpringSchedule {
   Aligned<float> rest_length;         // [m]; 0 in padding
   std::vector<std::uint32_t> spring;  // index in Robot::springs; no_spring in padding
   Aligned<float> stiffness;           // Body::stiffness; 0 in padding
+  Aligned<float> relaxation_time;     // [s]; 0 in padding
   Aligned<FactorId> factor;           // of the spring's material
 
   // [slot] Removes rounding_magic_bits from the sums, which carry it once per contribution (see body.h).

@@ -2,7 +2,8 @@
 // What a step of the CPU is given besides the robots.
 #pragma once
 
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "sim/physics/environments.h"
 #include "sim/physics/integration.h"
@@ -12,19 +13,18 @@ namespace mercury::cpu {
 struct StepSetting {
   Solver solver = Solver::force;
   AnyEnvironmentModel model = solver_model_of(Ocean{});
-  float contact_stiffness = 0;  // k_c times the stiffness scale [N/m]; 0 = no contacts
   StepConstants constants;
 };
 
-inline StepSetting setting_of(const Configuration& configuration) {
-  StepSetting setting;
-  setting.solver = configuration.solver;
-  setting.model = solver_model_of(configuration.environment);
-  setting.contact_stiffness = contact_stiffness_of(configuration.environment, configuration.solver, configuration.dt);
-  setting.constants = {static_cast<float>(configuration.dt), static_cast<float>(1 / configuration.dt),
-                       static_cast<float>(std::exp(-configuration.damping * configuration.dt))};
-  return setting;
+// `real_bodies` as in solver_model_of().
+inline StepSetting setting_of(const Configuration& configuration, bool real_bodies) {
+  return {configuration.solver, solver_model_of(configuration.environment, real_bodies), step_constants(configuration)};
 }
+
+// `count` steps from step `first` of the simulation on.
+struct StepRange {
+  std::int64_t first = 0, count = 0;
+};
 
 // L(t) / L0 of all muscles, for several steps: [step][muscle].
 struct Factors {

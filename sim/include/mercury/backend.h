@@ -132,9 +132,9 @@ class Backend {
   // which is done when the function returns. The defaults are right unless one CUDA device holds all robots.
   virtual std::shared_ptr<void> allocate_shared(std::size_t bytes) const;
   virtual void copy_shared(void* to, const void* from, std::size_t bytes) const;
-  // Writes the current state of all robots into shared arrays. Returns when it is done. `mass_offsets`: as
-  // Simulation::mass_offsets(). The default reads everything back.
-  virtual void publish(std::span<const std::size_t> mass_offsets, const PublishedArrays& arrays) const;
+  // Writes the current state of all robots of the batch into shared arrays. Returns when it is done. The default reads
+  // everything back.
+  virtual void publish(std::span<const Robot* const> robots, const PublishedArrays& arrays) const;
   // From now on every step begins with reading these. They stay valid until the next call, load(), add() or keep(),
   // after which there are none. Returns false if the backend does not; Simulation then changes materials instead.
   virtual bool set_actuation(const ActuationSources& /*sources*/) { return false; }

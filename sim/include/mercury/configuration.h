@@ -26,6 +26,10 @@ struct Device {
       Parameter("threads", &Device::threads, "", Accepts::at_least_zero, {0, 256}, "CPU threads; 0 = all cores")};
 };
 
+// What bodies are made of: masses of 1 kg and springs of 50 N/m, as in the paper, or a real material's modulus, density
+// and damping.
+enum class Physics { paper, real };
+
 struct Configuration {
   double dt = 1e-3;      // time step [s]
   double damping = 0.1;  // velocities shrink by exp(-damping dt) per step [1/s]
@@ -41,6 +45,13 @@ struct Configuration {
                 "Damping; velocities shrink by exp(-damping dt) per step")};
 };
 
+// The configuration that such bodies begin with in the environment of this name, or in their own if it is empty: the
+// ocean, or water. Real bodies have damping inside, so none outside; no factor for their stiffness; and contacts that
+// follow it. Throws as environment_named().
+Configuration default_configuration(Physics physics, std::string_view environment = "");
+
+// "paper", "real".
+std::string_view name_of(Physics physics);
 // "force", "xpbd"; "auto", "cpu", "cuda", "cuda:1", "cuda:all".
 std::string_view name_of(Solver solver);
 std::string name_of(const Device& device);

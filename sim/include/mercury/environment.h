@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What robots live in. An environment is composed of parts:
 //
-//   water      none, drag on faces, or drag on masses
+//   water      none, drag on faces (as in the paper, or resistive), or drag on masses
 //   ground     none, or a plane
 //   contacts   none, or masses of one robot that repel each other
 //   gravity, and a factor for every stiffness
 //
 // A part is a struct with a name and a table of its parameters (parameters.h); its equations are in
-// sim/physics/environments.h. Ocean, OceanSimple and Land are presets: names for often used combinations.
+// sim/physics/environments.h. Ocean, OceanSimple, Land and Water are presets: names for often used combinations.
 //
 //   Configuration{.environment = Ocean{.density = 900}}
 //   Configuration{.environment = Environment{.water = FaceDrag{}, .ground = Plane{}, .gravity = {0, 0, -1}}}
@@ -54,6 +54,30 @@ struct FaceDrag {
       Parameter("flow", &FaceDrag::flow, "m/s", Accepts::any, {-2, 2}, "Velocity of the water")};
 };
 
+// Water by resistive theory: each face feels its motion across itself and along itself apart, as the segments of a
+// swimmer's body do (Gray and Hancock 1955; Taylor 1952). Water that a body displaces weighs less on it (buoyancy) and
+// moves along with it (added mass).
+struct ResistiveDrag {
+  static constexpr std::string_view name = "resistive";
+  float density = 1000;                  // rho [kg/m3]
+  float normal_coefficient = 1;          // C_N [1]
+  float tangential_coefficient = 0.02f;  // C_T [1]
+  float added_mass_coefficient = 0.5f;   // C_A [1]
+  Vec3 flow;                             // velocity of the water [m/s]
+  friend bool operator==(const ResistiveDrag&, const ResistiveDrag&) = default;
+
+  static constexpr std::tuple parameters{
+      Parameter("density", &ResistiveDrag::density, "kg/m3", Accepts::at_least_zero, {0, 2000},
+                "Density of the water, rho"),
+      Parameter("normal_coefficient", &ResistiveDrag::normal_coefficient, "", Accepts::at_least_zero, {0, 3},
+                "Drag coefficient of a face that moves across itself, C_N"),
+      Parameter("tangential_coefficient", &ResistiveDrag::tangential_coefficient, "", Accepts::at_least_zero, {0, 1},
+                "Drag coefficient of a face that moves along itself, C_T"),
+      Parameter("added_mass_coefficient", &ResistiveDrag::added_mass_coefficient, "", Accepts::at_least_zero, {0, 2},
+                "Share of the displaced water that moves along with the body, C_A"),
+      Parameter("flow", &ResistiveDrag::flow, "m/s", Accepts::any, {-2, 2}, "Velocity of the water")};
+};
+
 // Water that drags each mass on its own (paper, II.E).
 struct PointDrag {
   static constexpr std::string_view name = "ocean-simple";
@@ -88,6 +112,8 @@ struct Contacts {
   static constexpr std::string_view name = "contacts";
   bool self_collision = true;
   float contact_stiffness = 100;  // k_c [N/m], times the stiffness scale
+  float relative_stiffness = 0;   // if above 0, k_c is this many times the robot's stiffest spring
+  float contact_distance = 0.5f;  // in shortest rest lengths of the robot
   friend bool operator==(const Contacts&, const Contacts&) = default;
 
   static constexpr std::tuple parameters{
@@ -95,11 +121,17 @@ struct Contacts {
                 "Repulsion between masses of one robot that no spring joins"),
       Parameter("contact_stiffness", &Contacts::contact_stiffness, "N/m", Accepts::at_least_zero, {0, 1000},
                 "Stiffness of that repulsion, k_c, times the stiffness scale")
+          .only_if(&Contacts::self_collision),
+      Parameter("relative_stiffness", &Contacts::relative_stiffness, "", Accepts::at_least_zero, {0, 2},
+                "Stiffness of that repulsion in stiffest springs of the robot; 0 = contact_stiffness counts")
+          .only_if(&Contacts::self_collision),
+      Parameter("contact_distance", &Contacts::contact_distance, "", Accepts::between(0.1, 1.5), {0.1f, 1.5f},
+                "Distance within which they repel, in shortest rest lengths of the robot")
           .only_if(&Contacts::self_collision)};
 };
 
 struct Environment {
-  std::variant<NoWater, FaceDrag, PointDrag> water;
+  std::variant<NoWater, FaceDrag, PointDrag, ResistiveDrag> water;
   std::variant<NoGround, Plane> ground;
   std::optional<Contacts> contacts;
   Vec3 gravity;               // [m/s2]
@@ -210,6 +242,20 @@ struct Land {
   }
 };
 
+// Resistive water with contacts, for robots of real materials.
+struct Water {
+  static constexpr std::string_view name = "water", help = "resistive drag, added mass, contacts";
+  ResistiveDrag drag;
+  Vec3 gravity;  // [m/s2]
+  // As stiff as the body, at 0.9 of the distance of neighbors: the middle between four masses of a lattice is 0.71 of
+  // it from each, so what passes there has to push them aside.
+  Contacts contacts{.relative_stiffness = 1, .contact_distance = 0.9f};
+
+  constexpr operator Environment() const {
+    return {.water = drag, .ground = {}, .contacts = contacts, .gravity = gravity, .stiffness_scale = 1};
+  }
+};
+
 struct EnvironmentPreset {
   std::string_view name, help;
   Environment environment;
@@ -221,9 +267,9 @@ struct EnvironmentPreset {
 
 // Names, options, panels and files follow from this list.
 inline constexpr std::array environment_presets{EnvironmentPreset(Ocean{}), EnvironmentPreset(OceanSimple{}),
-                                                EnvironmentPreset(Land{})};
+                                                EnvironmentPreset(Land{}), EnvironmentPreset(Water{})};
 
-// "ocean", "ocean-simple", "land".
+// "ocean", "ocean-simple", "land", "water".
 std::vector<std::string_view> environment_names();
 // The preset that has the same parts; for other combinations the water and the parts that are added to it, as
 // "ocean+ground+contacts", or "space+ground" without water.
@@ -241,11 +287,13 @@ inline bool has_water(const Environment& environment) { return !std::holds_alter
 inline bool has_ground(const Environment& environment) { return !std::holds_alternative<NoGround>(environment.ground); }
 // Whether the environment acts on faces.
 inline bool has_face_forces(const Environment& environment) {
-  return std::holds_alternative<FaceDrag>(environment.water);
+  return std::holds_alternative<FaceDrag>(environment.water) ||
+         std::holds_alternative<ResistiveDrag>(environment.water);
 }
 // Whether masses that no spring joins repel each other.
 inline bool has_contacts(const Environment& environment) {
-  return environment.contacts && environment.contacts->self_collision && environment.contacts->contact_stiffness > 0;
+  return environment.contacts && environment.contacts->self_collision &&
+         (environment.contacts->contact_stiffness > 0 || environment.contacts->relative_stiffness > 0);
 }
 // The velocity of the water [m/s]; 0 without water.
 Vec3 flow_of(const Environment& environment);

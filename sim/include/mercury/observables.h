@@ -94,7 +94,7 @@ inline float muscle_power(const Spring& spring, const MaterialNow& material, flo
   return muscle_power(material.stiffness, stretch, spring.rest_length, material.length_rate);
 }
 
-// The forces of all springs on each mass [N], one per mass. `materials` by id.
+// The elastic forces of all springs on each mass [N], one per mass. `materials` by id.
 std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,
                                 std::span<const Vec3> positions);
 
@@ -105,8 +105,8 @@ struct FaceForce {
   Vec3 drag;       // parallel to the flow past the face [N]
   Vec3 lift;       // perpendicular to it [N]
 };
-// Equation 1 of the paper as the solvers compute it (sim/physics/environments.h), with positions and velocities of the
-// robot's masses. Drag and lift are 0 in an environment that does not act on faces.
+// Equation 1 of the paper or resistive drag as the solvers compute them (sim/physics/environments.h), with positions
+// and velocities of the robot's masses. Drag and lift are 0 in an environment that does not act on faces.
 FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,
                      std::span<const Vec3> velocities);
 

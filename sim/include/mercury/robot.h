@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot as plain data: masses of 1 kg, springs that join them, and a skin of triangles (paper, II.A).
+// A robot as plain data: point masses, springs that join them, and a skin of triangles (paper, II.A).
 #pragma once
 
 #include <cstddef>
@@ -43,10 +43,16 @@ struct Robot {
   std::vector<Vec3> masses;                 // positions at rest [m]
   std::vector<Spring> springs;
   std::vector<Face> faces;
-  std::string origin;               // how the robot was made, as JSON text; empty = unknown
-  std::vector<Actuator> actuators;  // empty = those that actuators_of() finds
+  std::vector<float> mass;           // of each point [kg]; empty = 1 kg each, as in the paper
+  std::vector<Vec3> velocity;        // of each point at the start [m/s]; empty = at rest
+  std::vector<std::uint16_t> fixed;  // points that never move, each once
+  std::string origin;                // how the robot was made, as JSON text; empty = unknown
+  std::vector<Actuator> actuators;   // empty = those that actuators_of() finds
   friend bool operator==(const Robot&, const Robot&) = default;
 };
+
+// The mass of a point [kg].
+inline float mass_of(const Robot& robot, std::size_t point) { return robot.mass.empty() ? 1.0f : robot.mass[point]; }
 
 // The robot's own materials, or the default materials. Refers to the robot.
 std::span<const Material> materials_of(const Robot& robot);
@@ -66,6 +72,9 @@ void add_actuator(Robot& robot, const std::string& name, std::span<const std::ui
 // Distance of two masses at rest [m], the default of Spring::rest_length.
 float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b);
 
+// The volume within the skin at rest [m3]: negative if its faces show inwards, 0 without a skin.
+double skin_volume(const Robot& robot);
+
 // Two robots have the same topology if their springs join the same masses and their faces have the same corners, in the
 // same order. Materials, rest lengths and positions may differ. The keys of robots of the same topology are equal;
 // other robots rarely have equal keys.
@@ -74,6 +83,9 @@ std::uint64_t topology_key(const Robot& robot);
 
 // Throws InputError with the place as a JSON pointer ("/springs/7: mass 912 is out of range, the robot has 300") unless
 // - there are 1 to max_masses masses, with finite positions within 1e6 m of the origin,
+// - there are as many numbers in `mass` as points, or none, all finite and above zero,
+// - there are as many velocities as points, or none, all finite,
+// - every fixed point is one of the robot's, and is listed once,
 // - every spring joins two different masses, has a material of the table other than air, and a finite rest length of at
 //   least min_rest_length,
 // - every face has three different masses,

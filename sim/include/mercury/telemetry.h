@@ -14,7 +14,7 @@ namespace mercury {
 struct Telemetry {
   Vec3 center_of_mass;                       // [m]
   Vec3 velocity;                             // of the center of mass [m/s]
-  double kinetic_energy = 0;                 // sum of |v|^2 / 2 [J]
+  double kinetic_energy = 0;                 // sum of m |v|^2 / 2, without added mass [J]
   double elastic_energy = 0;                 // sum of k (|d| - L)^2 / 2, L the current rest lengths [J]
   double muscle_power = 0;                   // that the muscles deliver now: sum of -k (|d| - L) dL/dt [W]
   float largest_strain = 0;                  // max | |d| - L0 | / L0 over the springs [1]

@@ -45,7 +45,7 @@ std::vector<Vec3> positions_of(const Simulation& simulation) {
 }
 
 // The robots have just been put in; their first steps are those of a simulation.
-void expect_first_steps(Physics& physics, const std::vector<LiveRobot>& robots) {
+void expect_first_steps(PhysicsThread& physics, const std::vector<LiveRobot>& robots) {
   physics.step(5);
   physics.wait_until_done();
   Simulation simulation = alone(robots, in_environment());
@@ -56,7 +56,7 @@ void expect_first_steps(Physics& physics, const std::vector<LiveRobot>& robots) 
 // A time step that no simulation takes, and with it all that a user may change at the same moment.
 TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
   Messages messages;
-  Physics physics(in_environment(), messages);
+  PhysicsThread physics(in_environment(), messages);
   const auto robots = some_robots(2);
   physics.set_scene(robots, in_environment());
   physics.set_speed(unlimited_speed);
@@ -83,7 +83,7 @@ TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
 TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
   for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})}) {
     Messages messages;
-    Physics physics(in_environment(environment), messages);
+    PhysicsThread physics(in_environment(environment), messages);
     const auto robots = some_robots(3);
     physics.set_scene(robots, in_environment(environment));
     physics.step(500);
@@ -103,7 +103,7 @@ TEST(LivePhysics, StepsGiveTheStatesOfTheSimulation) {
 // Otherwise robots would start at a step that depends on how long they took to load.
 TEST(LivePhysics, TimeStandsStillWithoutRobots) {
   Messages messages;
-  Physics physics(in_environment(), messages);
+  PhysicsThread physics(in_environment(), messages);
   physics.set_speed(unlimited_speed);
   physics.play();
   physics.step(5);
@@ -119,7 +119,7 @@ TEST(LivePhysics, TimeStandsStillWithoutRobots) {
 
 TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
   Messages messages;
-  Physics physics(in_environment(), messages);
+  PhysicsThread physics(in_environment(), messages);
   const auto robots = some_robots(2);
   physics.set_scene(robots, in_environment());
   physics.set_speed(unlimited_speed);
@@ -136,7 +136,7 @@ TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
 
 TEST(LivePhysics, ResetReturnsToRestAtTimeZero) {
   Messages messages;
-  Physics physics(in_environment(), messages);
+  PhysicsThread physics(in_environment(), messages);
   const auto robots = some_robots(2);
   physics.set_scene(robots, in_environment());
   physics.wait_until_done();
@@ -153,7 +153,7 @@ TEST(LivePhysics, ResetReturnsToRestAtTimeZero) {
 
 TEST(LivePhysics, RobotsKeepTheirStateWhenOthersAreAddedAndRemoved) {
   Messages messages;
-  Physics physics(in_environment(), messages);
+  PhysicsThread physics(in_environment(), messages);
   const auto robots = some_robots(3);
   physics.set_scene({robots[0], robots[1]}, in_environment());
   physics.step(40);
@@ -181,7 +181,7 @@ TEST(LivePhysics, PerturbationMovesTheCenterOfMassByItsForce) {
   Configuration space = in_environment(OceanSimple{.point_drag = 0});
   space.damping = 0;
   Messages messages;
-  Physics physics(space, messages);
+  PhysicsThread physics(space, messages);
   Robot point{.name = "point", .masses = {{0, 0, 0}}};
   physics.set_scene({{.id = 7, .robot = std::make_shared<const Robot>(point)}}, space);
   physics.set_perturbations({{.robot = 7, .mass = 0, .target = {1, 0, 0}, .stiffness = 20}, {.robot = 8, .mass = 3}});
@@ -200,7 +200,7 @@ TEST(LivePhysics, ExplosionIsReportedOnceAndPausesOnRequest) {
   Configuration wild = in_environment();
   wild.dt = 1;
   Messages messages;
-  Physics physics(wild, messages);
+  PhysicsThread physics(wild, messages);
   const auto robots = some_robots(1);
   physics.pause_on_explosion(true);
   physics.set_scene(robots, wild);
@@ -229,7 +229,7 @@ TEST(LivePhysics, ExplosionIsReportedOnceAndPausesOnRequest) {
 
 TEST(LivePhysics, FailedSceneIsReportedAndTheNextOneIsSimulated) {
   Messages messages;
-  Physics physics(in_environment(), messages);
+  PhysicsThread physics(in_environment(), messages);
   auto robots = some_robots(2);
   physics.set_scene(robots, in_environment());
   physics.step(5);
@@ -247,7 +247,7 @@ TEST(LivePhysics, FailedSceneIsReportedAndTheNextOneIsSimulated) {
 
 TEST(LivePhysics, DetailsThatTheEnvironmentLacksAreIgnored) {
   Messages messages;
-  Physics physics(in_environment(), messages);
+  PhysicsThread physics(in_environment(), messages);
   ViewSettings view{.color = &color_quantity("pressure")};
   view.shown.arrows.drag = true;
   physics.set_view(view);

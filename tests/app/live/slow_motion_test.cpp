@@ -37,7 +37,7 @@ TEST(SlowMotion, MovesEvenlyAtAnyRateOfSteps) {
     std::int64_t published = 0;
     int pictures = 0;
     for (double wall = 0; wall < std::max(1.0, 12 * period); wall += picture) {
-      // Physics publishes the newest step one picture late.
+      // The physics thread publishes the newest step one picture late.
       const auto steps = static_cast<std::int64_t>(std::floor(std::max(0.0, wall - picture) / period + 1e-9));
       if (steps > published) motion.take(snapshot_at(published = steps, speed));
       const SlowMotion::Shown shown = motion.at(wall);

@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/real_body.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "mercury/error.h"
+#include "robots/number_text.h"
+#include "robots/origin_member.h"
+
+namespace mercury {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* member = "real";
+// The median stiffness of the muscles among these materials, one per spring or voxel; 50 N/m as in the paper if none
+// moves.
+double muscle_stiffness(std::span<const Material> laws, const std::vector<MaterialId>& ids) {
+  std::vector<float> moving;
+  for (const MaterialId id : ids)
+    if (laws[id].amplitude != 0 && laws[id].stiffness > 0) moving.push_back(laws[id].stiffness);
+  if (moving.empty()) return 50;
+  const auto middle = moving.begin() + static_cast<std::ptrdiff_t>(moving.size() / 2);
+  std::ranges::nth_element(moving, middle);
+  return static_cast<double>(*middle);
+}
+
+std::uint32_t pair_of(std::uint32_t a, std::uint32_t b) { return std::min(a, b) << 16 | std::max(a, b); }
+
+// Cubes whose 8 corners are masses, joined by all 28 springs.
+class Voxels {
+ public:
+  struct Voxel {
+    std::array<std::uint16_t, 8> corners;  // x fastest
+    MaterialId material;
+  };
+
+  explicit Voxels(const Robot& robot) : robot_(robot) {
+    if (robot.springs.empty()) return;
+    edge_ = robot.springs.front().rest_length;
+    for (const Spring& spring : robot.springs) edge_ = std::min(edge_, spring.rest_length);
+    for (const Spring& spring : robot.springs) material_.emplace(pair_of(spring.a, spring.b), spring.material);
+    if (material_.size() != robot.springs.size() || !number_points()) return;
+    find_voxels();
+    std::set<std::uint32_t> covered;
+    for (const Voxel& voxel : voxels_)
+      for_each_pair([&](std::size_t i, std::size_t j) { covered.insert(pair_of(voxel.corners[i], voxel.corners[j])); });
+    if (covered.size() != robot.springs.size()) voxels_.clear();
+  }
+
+  // Empty if the robot has springs of another kind.
+  const std::vector<Voxel>& all() const { return voxels_; }
+  float edge() const { return edge_; }
+
+  // Calls visit(i, j) for the 28 pairs of corners.
+  template <class Visit>
+  static void for_each_pair(const Visit& visit) {
+    for (std::size_t i = 0; i < 8; ++i)
+      for (std::size_t j = i + 1; j < 8; ++j) visit(i, j);
+  }
+
+ private:
+  using Place = std::array<int, 3>;  // in edges
+
+  // Whether all masses stand on a lattice, one per place.
+  bool number_points() {
+    const Vec3 first = robot_.masses.front();
+    for (std::size_t i = 0; i < robot_.masses.size(); ++i) {
+      const Vec3 d = robot_.masses[i] - first;
+      Place place;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float along = (axis == 0 ? d.x : axis == 1 ? d.y : d.z) / edge_;
+        if (!(std::abs(along) < 1e6f) || std::abs(along - std::round(along)) > 0.01f) return false;
+        place[axis] = static_cast<int>(std::lround(along));
+      }
+      if (!point_.emplace(place, static_cast<std::uint16_t>(i)).second) return false;
+      places_.push_back(place);
+    }
+    return true;
+  }
+
+  void find_voxels() {
+    for (const Place& low : places_) {
+      Voxel voxel{};
+      bool complete = true;
+      for (std::size_t corner = 0; corner < 8 && complete; ++corner) {
+        const auto found =
+            point_.find({low[0] + (corner & 1 ? 1 : 0), low[1] + (corner & 2 ? 1 : 0), low[2] + (corner & 4 ? 1 : 0)});
+        complete = found != point_.end();
+        if (complete) voxel.corners[corner] = found->second;
+      }
+      if (!complete) continue;
+      for_each_pair([&](std::size_t i, std::size_t j) {
+        complete = complete && material_.contains(pair_of(voxel.corners[i], voxel.corners[j]));
+      });
+      if (!complete) continue;
+      // No other voxel shares the springs through the middle.
+      voxel.material = material_.at(pair_of(voxel.corners[0], voxel.corners[7]));
+      voxels_.push_back(voxel);
+    }
+  }
+
+  const Robot& robot_;
+  float edge_ = 0;
+  std::unordered_map<std::uint32_t, MaterialId> material_;  // by pair of masses
+  std::map<Place, std::uint16_t> point_;
+  std::vector<Place> places_;
+  std::vector<Voxel> voxels_;
+};
+
+// Faces of a sealed cavity show into it: their shell, joined edge by edge, has a negative volume.
+void drop_cavities(Robot& robot) {
+  std::vector<std::size_t> shell(robot.faces.size());
+  for (std::size_t f = 0; f < shell.size(); ++f) shell[f] = f;
+  const auto root = [&](std::size_t f) {
+    while (shell[f] != f) f = shell[f] = shell[shell[f]];
+    return f;
+  };
+  std::unordered_map<std::uint32_t, std::vector<std::size_t>> faces_at;  // by edge
+  for (std::size_t f = 0; f < robot.faces.size(); ++f) {
+    const auto [a, b, c] = robot.faces[f];
+    for (const std::uint32_t edge : {pair_of(a, b), pair_of(b, c), pair_of(c, a)}) faces_at[edge].push_back(f);
+  }
+  // Where more than two faces meet, shells touch without being one.
+  for (const auto& [edge, faces] : faces_at)
+    if (faces.size() == 2) shell[root(faces[0])] = root(faces[1]);
+  std::map<std::size_t, Robot> shells;
+  for (std::size_t f = 0; f < robot.faces.size(); ++f) shells[root(f)].faces.push_back(robot.faces[f]);
+  if (shells.size() < 2) return;
+  std::set<std::size_t> cavities;
+  for (auto& [first, part] : shells) {
+    part.masses = robot.masses;
+    if (skin_volume(part) < 0) cavities.insert(first);
+  }
+  std::vector<Face> outer;
+  for (std::size_t f = 0; f < robot.faces.size(); ++f)
+    if (!cavities.contains(root(f))) outer.push_back(robot.faces[f]);
+  robot.faces = std::move(outer);
+}
+
+std::string name_of_material(const Robot& robot, MaterialId id) {
+  return robot.material_names.empty()
+             ? robot.materials.empty() ? default_material_name(id) : "material " + std::to_string(id)
+             : robot.material_names[id];
+}
+
+void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMaterial& material, Robot& real) {
+  // By the number of axes along which a spring runs: an edge, a diagonal across a side, one through the middle.
+  constexpr std::array<double, 4> share{0, 0.15, 0.10, 0.15};
+  constexpr std::array<const char*, 4> kind{"", "edge", "side", "middle"};
+  struct Spot {
+    std::uint32_t pair;
+    MaterialId material;
+    auto operator<=>(const Spot&) const = default;
+  };
+  struct Shared {
+    unsigned axes = 0;
+    int voxels = 0;
+  };
+  std::map<Spot, Shared> spots;
+  real.mass.assign(robot.masses.size(), 0);
+  std::vector<int> voxels_at(robot.masses.size());
+  for (const auto& [corners, id] : voxels.all()) {
+    for (const std::uint16_t corner : corners) ++voxels_at[corner];
+    Voxels::for_each_pair([&, &corners = corners, id = id](std::size_t i, std::size_t j) {
+      Shared& shared = spots[{pair_of(corners[i], corners[j]), id}];
+      shared.axes = static_cast<unsigned>(std::popcount(i ^ j));
+      ++shared.voxels;
+    });
+  }
+  const double edge = static_cast<double>(voxels.edge());
+  for (std::size_t point = 0; point < real.mass.size(); ++point)
+    real.mass[point] =
+        static_cast<float>(static_cast<double>(material.density) * edge * edge * edge * voxels_at[point] / 8);
+  const std::span<const Material> laws = materials_of(robot);
+  std::vector<MaterialId> of_voxels;
+  for (const Voxels::Voxel& voxel : voxels.all()) of_voxels.push_back(voxel.material);
+  const double modulus_per_stiffness = static_cast<double>(material.modulus) / muscle_stiffness(laws, of_voxels);
+  real.materials.assign(1, Material{});
+  real.material_names.assign(1, "air");
+  std::map<std::tuple<MaterialId, unsigned, int>, MaterialId> ids;
+  real.springs.clear();
+  for (const auto& [spot, shared] : spots) {
+    const auto [entry, is_new] =
+        ids.try_emplace({spot.material, shared.axes, shared.voxels}, static_cast<MaterialId>(real.materials.size()));
+    if (is_new) {
+      if (real.materials.size() == max_materials)
+        throw InputError("/materials", "the voxels have too many materials for one table of springs");
+      Material law = laws[spot.material];
+      const double modulus = modulus_per_stiffness * static_cast<double>(law.stiffness);
+      law.stiffness = static_cast<float>(shared.voxels * share[shared.axes] * modulus * edge);
+      law.relaxation_time = material.relaxation_time;
+      real.materials.push_back(law);
+      real.material_names.push_back(name_of_material(robot, spot.material) + ", " + std::to_string(shared.voxels) +
+                                    " x " + kind[shared.axes]);
+    }
+    const auto length = static_cast<float>(edge * std::sqrt(static_cast<double>(shared.axes)));
+    real.springs.push_back({static_cast<std::uint16_t>(spot.pair >> 16), static_cast<std::uint16_t>(spot.pair & 0xffff),
+                            entry->second, length});
+  }
+}
+
+void set_network_springs(const Robot& robot, const RealMaterial& material, Robot& real) {
+  const double volume = skin_volume(real);
+  if (!(volume > 0)) throw InputError("/faces", "a real body needs a skin around a volume; this one encloses none");
+  if (robot.springs.empty()) throw InputError("/springs", "a real body needs springs");
+  const std::span<const Material> laws = materials_of(robot);
+  double sum = 0;
+  std::vector<double> share(robot.masses.size());
+  for (const Spring& spring : robot.springs) {
+    const double squared = static_cast<double>(spring.rest_length) * static_cast<double>(spring.rest_length);
+    share[spring.a] += squared;
+    share[spring.b] += squared;
+    sum += squared;
+  }
+  std::vector<MaterialId> of_springs;
+  for (const Spring& spring : robot.springs) of_springs.push_back(spring.material);
+  const double stiffness_factor =
+      6 * static_cast<double>(material.modulus) * volume / (sum * muscle_stiffness(laws, of_springs));
+  const double mass = static_cast<double>(material.density) * volume;
+  // A mass that no spring holds has a hundredth of the mean.
+  const double least = 0.01 * mass / static_cast<double>(share.size());
+  real.mass.clear();
+  for (const double s : share) real.mass.push_back(static_cast<float>(std::max(least, mass * s / (2 * sum))));
+  real.materials.assign(laws.begin(), laws.end());
+  for (Material& law : real.materials) {
+    law.stiffness = static_cast<float>(static_cast<double>(law.stiffness) * stiffness_factor);
+    law.relaxation_time = law.stiffness > 0 ? material.relaxation_time : 0;
+  }
+  if (robot.material_names.empty() && robot.materials.empty())
+    for (std::size_t id = 0; id < laws.size(); ++id)
+      real.material_names.push_back(default_material_name(static_cast<MaterialId>(id)));
+}
+
+// [[stiffness, amplitude, frequency, phase, half wave], ...]
+std::string text_of(std::span<const Material> materials) {
+  std::string text = "[";
+  for (const Material& law : materials) {
+    if (text.size() > 1) text += ',';
+    text += '[';
+    for (const float value : {law.stiffness, law.amplitude, law.frequency, law.phase})
+      text.append(shortest_text(value)).append(",");
+    text.append(law.half_wave ? "true]" : "false]");
+  }
+  return text + "]";
+}
+
+[[noreturn]] void refuse(const std::string& place, const std::string& what) {
+  throw InputError("/origin/real" + place, what);
+}
+
+std::optional<Json> real_in(const Robot& robot) {
+  const std::optional<Json> real = origin_member(robot, member);
+  if (real && !real->is_object()) refuse("", "a JSON object is expected");
+  return real;
+}
+
+}  // namespace
+
+Robot with_real_body(const Robot& robot, const RealMaterial& material) {
+  check_parameters(material);
+  if (real_material_of(robot)) throw InputError("/origin/real", "the robot has a real body already");
+  Robot real = robot;
+  drop_cavities(real);
+  const Voxels voxels(robot);
+  if (voxels.all().empty())
+    set_network_springs(robot, material, real);
+  else
+    set_voxel_springs(robot, voxels, material, real);
+  std::string record = "{\"modulus\":" + shortest_text(material.modulus) +
+                       ",\"density\":" + shortest_text(material.density) +
+                       ",\"relaxation_time\":" + shortest_text(material.relaxation_time);
+  if (!robot.materials.empty()) record.append(",\"materials\":").append(text_of(robot.materials));
+  if (!robot.material_names.empty()) record.append(",\"material_names\":").append(Json(robot.material_names).dump());
+  real.origin = with_origin_member(robot.origin, member, record + "}");
+  // Groups of muscles name materials that are others now; those that move alike still form one.
+  if (!voxels.all().empty()) real.actuators.clear();
+  return real;
+}
+
+std::optional<RealMaterial> real_material_of(const Robot& robot) {
+  const std::optional<Json> real = real_in(robot);
+  if (!real) return std::nullopt;
+  const auto number = [&](const char* key) {
+    const auto found = real->find(key);
+    if (found == real->end() || !found->is_number()) refuse(std::string("/") + key, "a number is expected");
+    return found->get<float>();
+  };
+  const RealMaterial material{number("modulus"), number("density"), number("relaxation_time")};
+  try {
+    check_parameters(material);
+  } catch (const ParameterError& error) {
+    refuse("", error.what());
+  }
+  return material;
+}
+
+namespace {
+
+class PhysicsOfAll {
+ public:
+  void add(const Robot& robot) {
+    (real_material_of(robot) ? real_ : paper_) = &robot;
+    if (real_ && paper_)
+      throw InputError(real_->name + " and " + paper_->name,
+                       "one has a real body, the other that of the paper; --physics real gives all a real one");
+  }
+  Physics physics() const { return real_ ? Physics::real : Physics::paper; }
+
+ private:
+  const Robot *real_ = nullptr, *paper_ = nullptr;
+};
+
+}  // namespace
+
+Physics physics_of(std::span<const Robot> robots) {
+  PhysicsOfAll all;
+  for (const Robot& robot : robots) all.add(robot);
+  return all.physics();
+}
+Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots) {
+  PhysicsOfAll all;
+  for (const auto& robot : robots) all.add(*robot);
+  return all.physics();
+}
+
+Robot without_real_body(const Robot& robot) {
+  const std::optional<Json> real = real_in(robot);
+  if (!real) return robot;
+  Robot paper = robot;
+  paper.mass.clear();
+  paper.materials.clear();
+  paper.material_names.clear();
+  paper.actuators.clear();
+  paper.origin = with_origin_member(robot.origin, member, "");
+  if (const auto laws = real->find("materials"); laws != real->end()) {
+    if (!laws->is_array() || laws->size() > max_materials) refuse("/materials", "an array of at most 256 is expected");
+    for (const Json& law : *laws) {
+      const auto is_law = [](const Json& row) {
+        return row.is_array() && row.size() == 5 && row[4].is_boolean() &&
+               std::all_of(row.begin(), row.begin() + 4, [](const Json& value) { return value.is_number(); });
+      };
+      if (!is_law(law)) refuse("/materials", "[stiffness, amplitude, frequency, phase, half_wave] is expected");
+      paper.materials.push_back(
+          {law[0].get<float>(), law[1].get<float>(), law[2].get<float>(), law[3].get<float>(), law[4].get<bool>()});
+      validate(paper.materials.back(), "/origin/real/materials/" + std::to_string(paper.materials.size() - 1));
+    }
+  }
+  if (const auto names = real->find("material_names"); names != real->end()) {
+    if (!names->is_array() || names->size() != paper.materials.size())
+      refuse("/material_names", "one per material is expected");
+    for (const Json& name : *names) {
+      if (!name.is_string()) refuse("/material_names", "texts are expected");
+      paper.material_names.push_back(name.get<std::string>());
+    }
+  }
+  return paper;
+}
+
+}  // namespace mercury

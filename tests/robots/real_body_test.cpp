@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real bodies against the theory of elasticity: the static equilibrium of bars by linear algebra, independent of the
+// solvers.
+#include "mercury/real_body.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "mercury/error.h"
+#include "mercury/generator.h"
+#include "mercury/origin.h"
+#include "mercury/voxel.h"
+
+namespace mercury {
+namespace {
+
+Robot bar(int long_side, int side, float edge, MaterialId material = tissue) {
+  VoxelGrid grid(long_side, side, side, material);
+  grid.edge = edge;
+  return make_voxel_robot(grid);
+}
+
+double total_mass(const Robot& robot) {
+  double sum = 0;
+  for (const float m : robot.mass) sum += m;
+  return sum;
+}
+
+// The displacements of all masses under these forces, for small ones: K u = f, with a little stiffness against rigid
+// motion, which balanced forces do not excite.
+Eigen::VectorXd equilibrium(const Robot& robot, const Eigen::VectorXd& force) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto n = static_cast<int>(3 * robot.masses.size());
+  for (const Spring& spring : robot.springs) {
+    const Vec3 d = robot.masses[spring.b] - robot.masses[spring.a];
+    const Eigen::Vector3d along = Eigen::Vector3d(d.x, d.y, d.z).normalized();
+    const Eigen::Matrix3d k = robot.materials[spring.material].stiffness * along * along.transpose();
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const int a = 3 * spring.a, b = 3 * spring.b;
+        entries.emplace_back(a + i, a + j, k(i, j));
+        entries.emplace_back(b + i, b + j, k(i, j));
+        entries.emplace_back(a + i, b + j, -k(i, j));
+        entries.emplace_back(b + i, a + j, -k(i, j));
+      }
+  }
+  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1e-3);
+  Eigen::SparseMatrix<double> stiffness(n, n);
+  stiffness.setFromTriplets(entries.begin(), entries.end());
+  return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(stiffness).solve(force);
+}
+
+struct Pulled {
+  double modulus, poisson;
+};
+
+// Pulls a bar along x by a stress at both ends, an equal share of a voxel's side at each of its corners.
+Pulled pull(const Robot& robot, int side, double edge) {
+  const double stress = 10;  // [Pa]
+  double low = 1e9, high = -1e9;
+  for (const Vec3 x : robot.masses) {
+    low = std::min(low, double{x.x});
+    high = std::max(high, double{x.x});
+  }
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(static_cast<int>(3 * robot.masses.size()));
+  const auto sides_at = [&](double y) { return std::abs(std::abs(y) - side * edge / 2) < edge / 4 ? 1.0 : 2.0; };
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) {
+    const Vec3 x = robot.masses[i];
+    const double share = stress * edge * edge / 4 * sides_at(x.y) * sides_at(x.z);
+    if (x.x < low + edge / 4) force[static_cast<int>(3 * i)] = -share;
+    if (x.x > high - edge / 4) force[static_cast<int>(3 * i)] = share;
+  }
+  const Eigen::VectorXd u = equilibrium(robot, force);
+  // Mean stretch between the ends, and mean narrowing in the middle.
+  double ends = 0, across = 0;
+  int at_ends = 0, at_sides = 0;
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) {
+    const Vec3 x = robot.masses[i];
+    const int row = static_cast<int>(3 * i);
+    if (x.x > high - edge / 4) ends += u[row], ++at_ends;
+    if (x.x < low + edge / 4) ends -= u[row];
+    if (x.y > side * edge / 2 - edge / 4) across += u[row + 1], ++at_sides;
+    if (x.y < -side * edge / 2 + edge / 4) across -= u[row + 1];
+  }
+  const double strain = ends / at_ends / (high - low);
+  return {stress / strain, -across / at_sides / (side * edge) / strain};
+}
+
+TEST(RealBody, ABarHasTheModulusThatTheUserSaysAtEveryResolution) {
+  for (const int side : {1, 2, 4, 8}) {
+    const double edge = 0.2 / side;
+    const Robot real = with_real_body(bar(3 * side, side, static_cast<float>(edge), 1), {.modulus = 2e5f});
+    const Pulled found = pull(real, side, edge);
+    EXPECT_NEAR(found.modulus / 2e5, 1, 0.03) << side;
+    EXPECT_NEAR(found.poisson, 0.25, 0.01) << side;
+  }
+}
+
+TEST(RealBody, TissueAndBoneAreAsStiffBesideMuscleAsInThePaper) {
+  for (const auto& [material, ratio] : {std::pair{tissue, 0.8}, std::pair{bone, 2.0}}) {
+    const Robot real = with_real_body(bar(4, 2, 0.1f, material), {.modulus = 1e5f});
+    EXPECT_NEAR(pull(real, 2, 0.1).modulus / 1e5, ratio, 0.03) << int{material};
+  }
+}
+
+TEST(RealBody, ItsMassIsThatOfItsVolumeAtEveryResolution) {
+  for (const int side : {1, 2, 4}) {
+    const Robot real = with_real_body(bar(4 * side, side, 0.2f / static_cast<float>(side)), {.density = 1100});
+    EXPECT_NEAR(total_mass(real), 1100 * 0.8 * 0.2 * 0.2, 1e-3);
+    EXPECT_NEAR(skin_volume(real), 0.8 * 0.2 * 0.2, 1e-6);
+  }
+}
+
+TEST(RealBody, VoxelsOfTwoMaterialsGiveEachItsOwnSpring) {
+  VoxelGrid grid(2, 1, 1, 1);
+  grid.cell(1, 0, 0) = bone;
+  const Robot paper = make_voxel_robot(grid), real = with_real_body(paper, {.modulus = 1e5f});
+  // The side between them has 6 pairs of masses, which both voxels join.
+  EXPECT_EQ(paper.springs.size(), 50u);
+  EXPECT_EQ(real.springs.size(), 56u);
+  for (const Spring& spring : real.springs) {
+    const Material& law = real.materials[spring.material];
+    const bool is_muscle = law.amplitude != 0;
+    const double length = spring.rest_length / 0.1, modulus = is_muscle ? 1e5 : 2e5;
+    const double share = std::abs(length - std::sqrt(2)) < 0.01 ? 0.10 : 0.15;
+    EXPECT_NEAR(law.stiffness, share * modulus * 0.1, 1e-2 * law.stiffness);
+    EXPECT_EQ(law.frequency, is_muscle ? default_materials()[1].frequency : 0);
+  }
+}
+
+TEST(RealBody, SealedCavitiesHaveNoFaces) {
+  VoxelGrid hollow(3, 3, 3, tissue);
+  hollow.cell(1, 1, 1) = air;
+  const Robot paper = make_voxel_robot(hollow), real = with_real_body(paper, {});
+  EXPECT_EQ(paper.faces.size(), 12u * 9 + 12);
+  EXPECT_EQ(real.faces.size(), 12u * 9);
+  // Water is displaced by the cavity, too; it has no mass.
+  EXPECT_NEAR(skin_volume(real), 27e-3, 1e-6);
+  EXPECT_NEAR(total_mass(real), 1070 * 26e-3, 1e-3);
+}
+
+TEST(RealBody, AnyOtherNetworkHasTheModulusOnAverageAndTheMassOfItsVolume) {
+  const Robot paper = find_generator("shell")->make({}, "", 3, 0);
+  const Robot real = with_real_body(paper, {.modulus = 3e5f, .density = 900});
+  double sum = 0;  // of k L0^2, as if all were muscles of 50 N/m in the paper
+  for (const Spring& spring : real.springs)
+    sum += real.materials[spring.material].stiffness / (materials_of(paper)[spring.material].stiffness / 50.0) *
+           spring.rest_length * spring.rest_length;
+  EXPECT_NEAR(sum / (6 * skin_volume(real)) / 3e5, 1, 1e-3);
+  EXPECT_NEAR(total_mass(real), 900 * skin_volume(real), 1e-3 * total_mass(real));
+}
+
+TEST(RealBody, TheOriginSaysWhatTheBodyIsOfAndChildrenAreOfTheSame) {
+  const RealMaterial material{.modulus = 5e4f, .density = 1000, .relaxation_time = 0.02f};
+  for (const Generator& generator : generators()) {
+    SCOPED_TRACE(generator.kind);
+    ParameterValues values{{"physics", std::string("real")},
+                           {"modulus", material.modulus},
+                           {"body_density", material.density},
+                           {"relaxation_time", material.relaxation_time}};
+    const Robot parent = generator.make(values, "", 1, 0);
+    EXPECT_EQ(real_material_of(parent), material);
+    EXPECT_FALSE(parent.mass.empty());
+    const Robot paper = generator.make({}, "", 1, 0);
+    EXPECT_EQ(with_real_body(paper, material), parent);
+    EXPECT_EQ(real_material_of(paper), std::nullopt);
+    EXPECT_EQ(generator.regrow(parent), parent);
+    const Robot child = generator.mutate(parent, {.strength = 1, .seed = 5}, "child");
+    EXPECT_EQ(real_material_of(child), material);
+    validate(child);
+    if (generator.cross) {
+      EXPECT_EQ(real_material_of(generator.cross(parent, child, 2, "cross")), material);
+    }
+  }
+}
+
+TEST(RealBody, ErrorsSayWhatIsMissing) {
+  const Robot real = with_real_body(bar(2, 1, 0.1f), {});
+  EXPECT_THROW(with_real_body(real, {}), InputError);
+  EXPECT_THROW(with_real_body(bar(2, 1, 0.1f), {.modulus = -1}), ParameterError);
+  Robot open = find_generator("shell")->make({}, "", 3, 0);
+  open.faces.clear();
+  EXPECT_THROW(with_real_body(open, {}), InputError);
+  Robot damaged = real;
+  damaged.origin = R"({"real":{"modulus":"soft","density":1000,"relaxation_time":0}})";
+  EXPECT_THROW(real_material_of(damaged), InputError);
+}
+
+}  // namespace
+}  // namespace mercury
