@@ -9,6 +9,7 @@
 #include "mercury/material.h"
 #include "mercury/random.h"
 #include "mercury/voxel.h"
+#include "robots/carried_points.h"
 
 namespace mercury {
 namespace {
@@ -28,7 +29,9 @@ Robot without_some_voxels(const Robot& robot, double share, Random& random) {
   for (MaterialId& cell : damaged.cells)
     if (random.chance(share)) cell = air;
   if (std::ranges::all_of(damaged.cells, [](MaterialId cell) { return cell == air; })) damaged = whole;
-  return make_voxel_robot(damaged, {.name = robot.name, .materials = robot.materials});
+  Robot changed = make_voxel_robot(damaged, {.name = robot.name, .materials = robot.materials});
+  carry_points(robot, changed);
+  return changed;
 }
 
 void delay_muscles(Robot& robot, double delay) {

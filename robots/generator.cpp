@@ -8,6 +8,7 @@
 #include "mercury/error.h"
 #include "mercury/names.h"
 #include "mercury/origin.h"
+#include "robots/carried_points.h"
 #include "robots/make_all.h"
 #include "robots/number_text.h"
 
@@ -29,12 +30,14 @@ void keep_actuators(Robot& grown, const Robot& from) {
   if (same_table) grown.actuators = from.actuators;
 }
 
-// What holds for all of them: children name their parents, and a robot that is grown again keeps its origin.
+// What holds for all of them: children name their parents, a robot that is grown again keeps its origin, and both keep
+// what was said of the masses.
 Generator with_records(Generator generator) {
   generator.regrow = [regrow = std::move(generator.regrow)](const Robot& robot) {
     Robot again = regrow(robot);
     again.origin = robot.origin;
     keep_actuators(again, robot);
+    carry_points(robot, again);
     return again;
   };
   generator.mutate = [mutate = std::move(generator.mutate)](const Robot& parent, const MutationRequest& request,
@@ -46,6 +49,7 @@ Generator with_records(Generator generator) {
                                                 .strength = request.strength,
                                                 .muscles = request.muscles});
     keep_actuators(child, parent);
+    carry_points(parent, child);
     return child;
   };
   if (generator.cross)
@@ -54,6 +58,7 @@ Generator with_records(Generator generator) {
       Robot child = cross(a, b, seed, name);
       child.origin = with_ancestry(child.origin, {.parents = {a.name, b.name}, .crossover_seed = seed});
       keep_actuators(child, a);
+      carry_points(a, child);
       return child;
     };
   return generator;

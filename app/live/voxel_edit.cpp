@@ -8,6 +8,7 @@
 
 #include "mercury/error.h"
 #include "mercury/origin.h"
+#include "robots/carried_points.h"
 
 namespace mercury {
 namespace {
@@ -114,6 +115,7 @@ Robot with_voxel(const Robot& robot, const VoxelSide& side, const VoxelEdit& edi
                                                               .materials = robot.materials,
                                                               .material_names = robot.material_names});
   changed.actuators = robot.actuators;
+  carry_points(robot, changed);
   return changed;
 }
 

@@ -104,7 +104,8 @@ class BodySpace : public GenomeSpace {
     GenesPointer genes = context_->kind.of(founder);
     const Robot grown = genes->grown(founder.name, "");
     if (!std::ranges::equal(materials_of(grown).subspan(1), materials_of(founder).subspan(1)) ||
-        grown.springs != founder.springs || grown.masses != founder.masses)
+        grown.springs != founder.springs || grown.masses != founder.masses || grown.mass != founder.mass ||
+        grown.velocity != founder.velocity || grown.fixed != founder.fixed)
       throw InputError("/origin", "leads to another robot; evolve its muscles alone");
     return genes;
   } catch (const InputError& error) {
