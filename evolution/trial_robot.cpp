@@ -8,7 +8,9 @@
 #include "mercury/error.h"
 #include "mercury/material.h"
 #include "mercury/random.h"
+#include "mercury/real_body.h"
 #include "mercury/voxel.h"
+#include "robots/carried_points.h"
 
 namespace mercury {
 namespace {
@@ -28,7 +30,11 @@ Robot without_some_voxels(const Robot& robot, double share, Random& random) {
   for (MaterialId& cell : damaged.cells)
     if (random.chance(share)) cell = air;
   if (std::ranges::all_of(damaged.cells, [](MaterialId cell) { return cell == air; })) damaged = whole;
-  return make_voxel_robot(damaged, {.name = robot.name, .materials = robot.materials});
+  Robot changed = make_voxel_robot(damaged, {.name = robot.name, .materials = without_real_body(robot).materials});
+  if (const std::optional<RealMaterial> material = real_material_of(robot))
+    changed = with_real_body(changed, *material);
+  carry_points(robot, changed);
+  return changed;
 }
 
 void delay_muscles(Robot& robot, double delay) {

@@ -9,6 +9,7 @@
 #include "mercury/names.h"
 #include "mercury/origin.h"
 #include "mercury/real_body.h"
+#include "robots/carried_points.h"
 #include "robots/make_all.h"
 #include "robots/number_text.h"
 
@@ -60,8 +61,8 @@ const std::vector<GeneratorParameter>& real_body_parameters() {
   return all;
 }
 
-// What holds for all of them: children name their parents, a robot that is grown again keeps its origin, and real
-// bodies stay real.
+// What holds for all of them: children name their parents, a robot that is grown again keeps its origin, real bodies
+// stay real, and what was said of the masses is kept.
 Generator with_records(Generator generator) {
   const std::vector<GeneratorParameter>& common = real_body_parameters();
   generator.parameters.insert(generator.parameters.end(), common.begin(), common.end());
@@ -79,6 +80,7 @@ Generator with_records(Generator generator) {
     Robot again = with_body_of(robot, regrow(without_real_body(robot)));
     again.origin = robot.origin;
     keep_actuators(again, robot);
+    carry_points(robot, again);
     return again;
   };
   generator.mutate = [mutate = std::move(generator.mutate)](const Robot& parent, const MutationRequest& request,
@@ -90,6 +92,7 @@ Generator with_records(Generator generator) {
                                                 .strength = request.strength,
                                                 .muscles = request.muscles});
     keep_actuators(child, parent);
+    carry_points(parent, child);
     return child;
   };
   if (generator.cross)
@@ -98,6 +101,7 @@ Generator with_records(Generator generator) {
       Robot child = with_body_of(a, cross(without_real_body(a), without_real_body(b), seed, name));
       child.origin = with_ancestry(child.origin, {.parents = {a.name, b.name}, .crossover_seed = seed});
       keep_actuators(child, a);
+      carry_points(a, child);
       return child;
     };
   return generator;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
@@ -44,11 +45,15 @@ MaterialGenes crossed(const MaterialGenes& a, const MaterialGenes& b, std::uint6
   return of_a.size() == of_b.size() ? cross_muscle_laws(of_a, of_b, seed) : a;
 }
 
-// A stiffness has no sign, so its sign says that the material moves by half waves. Genomes without such materials have
-// the bytes that they had before there were any.
+// Announces a relaxation time. No stiffness is infinite, so older programs refuse it.
+constexpr float relaxation_mark = std::numeric_limits<float>::infinity();
+
+// A stiffness has no sign, so its sign says that the material moves by half waves. A relaxation time stands before it,
+// after its mark. Genomes without such materials have the bytes that they had before there were any.
 void write(ByteWriter& writer, const MaterialGenes& genes) {
   writer.add(static_cast<std::uint8_t>(genes.size()));
   for (const Material& gene : genes) {
+    if (gene.relaxation_time != 0) writer.add(relaxation_mark), writer.add(gene.relaxation_time);
     const float stiffness = std::copysign(gene.stiffness, gene.half_wave ? -1.f : 1.f);
     for (const float number : {stiffness, gene.amplitude, gene.frequency, gene.phase}) writer.add(number);
   }
@@ -59,8 +64,12 @@ MaterialGenes read_material_genes(ByteReader& reader) {
   reader.expect(count, 4 * sizeof(float));
   MaterialGenes genes(count);
   for (std::size_t i = 0; i < genes.size(); ++i) {
-    for (float* number : {&genes[i].stiffness, &genes[i].amplitude, &genes[i].frequency, &genes[i].phase})
-      *number = reader.read<float>();
+    genes[i].stiffness = reader.read<float>();
+    if (genes[i].stiffness == relaxation_mark) {
+      genes[i].relaxation_time = reader.read<float>();
+      genes[i].stiffness = reader.read<float>();
+    }
+    for (float* number : {&genes[i].amplitude, &genes[i].frequency, &genes[i].phase}) *number = reader.read<float>();
     genes[i].half_wave = std::signbit(genes[i].stiffness);
     genes[i].stiffness = std::abs(genes[i].stiffness);
     validate(genes[i], "genome: base material " + std::to_string(i + 1));
@@ -75,6 +84,7 @@ void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vec
     if (only_used && !in_use[i]) continue;
     for (const float number : {all[i].stiffness, all[i].amplitude, all[i].frequency, all[i].phase}) hash.add(number);
     if (all[i].half_wave) hash.add(std::uint8_t{1});
+    if (all[i].relaxation_time != 0) hash.add(std::uint8_t{2}), hash.add(all[i].relaxation_time);
   }
 }
 

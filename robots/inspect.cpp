@@ -142,8 +142,18 @@ std::uint64_t body_hash(const Robot& robot) {
   for (const Face& face : robot.faces) add(face.a), add(face.b), add(face.c);
   for (const Material& material : materials_of(robot)) {
     hash.add(material.stiffness).add(material.amplitude).add(material.frequency).add(material.phase);
-    if (material.half_wave) add(1);  // robots without it keep the hash that they had before there was any
+    // Robots without these keep the hash that they had before there were any.
+    if (material.half_wave) add(1);
+    if (material.relaxation_time != 0) add(2), hash.add(material.relaxation_time);
   }
+  const auto add_list = [&](std::uint32_t kind, const auto& list) {
+    if (list.empty()) return;
+    add(kind);
+    for (const auto& value : list) hash.add(value);
+  };
+  add_list(3, robot.mass);
+  add_list(4, robot.velocity);
+  add_list(5, robot.fixed);
   return hash.value();
 }
 

@@ -19,6 +19,7 @@
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/recording/trajectory_reader.h"
+#include "mercury/body_properties.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/generator.h"
 #include "mercury/inspect.h"
@@ -83,9 +84,7 @@ std::string kilobytes(std::size_t bytes) { return fmt::format("{:.1f} kB", stati
 // of this machine.
 void describe_fit(const Robot& robot) {
   constexpr std::size_t smallest = 48 * 1024;  // every CUDA device has at least this per block
-  Configuration configuration;
-  if (const std::string name = environment_of(robot); is_environment(name))
-    configuration.environment = environment_named(name);
+  const Configuration configuration{.environment = environment_made_for(robot)};
   const std::size_t bytes = chip_bytes(robot, configuration);
   print_line("on a chip", fmt::format("needs {} of a CUDA block's memory {}: {}", kilobytes(bytes),
                                       has_ground(configuration.environment) ? "on land" : "in water",
@@ -100,6 +99,29 @@ void describe_fit(const Robot& robot) {
                                kilobytes(fit.most_bytes), where, fit.robots_at_once));
   }
   print_line("", "the CPU takes any size");
+}
+
+// "12 kPa"
+std::string pascals(double value) {
+  if (value >= 1e6) return fmt::format("{:.3g} MPa", value / 1e6);
+  if (value >= 1e3) return fmt::format("{:.3g} kPa", value / 1e3);
+  return fmt::format("{:.3g} Pa", value);
+}
+
+// What it is made of, and how fast it vibrates (docs/formats.md).
+void describe_mechanics(const Robot& robot) {
+  const double scale = static_cast<double>(stiffness_scale_of(environment_made_for(robot)));
+  const BodyProperties body = body_properties(robot, scale);
+  const std::string scaled = scale == 1 ? "" : fmt::format(", with a stiffness scale of {:.6g}", scale);
+  const std::size_t fixed = robot.fixed.size();
+  print_line("mass", fmt::format("{:.4g} kg{}", body.mass,
+                                 fixed == 0 ? "" : fmt::format(", {} point{} fixed", fixed, fixed == 1 ? "" : "s")));
+  print_line("density", body.density ? fmt::format("{:.4g} kg/m3", *body.density) : "-");
+  print_line("modulus", body.modulus ? pascals(*body.modulus) + scaled : "-");
+  print_line("vibrates",
+             body.lowest_frequency ? fmt::format("from {:.3g} Hz on{}", *body.lowest_frequency, scaled) : "-");
+  print_line("largest dt",
+             body.largest_dt ? fmt::format("{:.3g} s with the force solver{}", *body.largest_dt, scaled) : "-");
 }
 
 void describe(const Robot& robot, const std::filesystem::path&) {
@@ -122,6 +144,7 @@ void describe(const Robot& robot, const std::filesystem::path&) {
   print_line("materials", materials_text(found));
   if (!robot.actuators.empty()) print_actuators(found);
   print_line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
+  describe_mechanics(robot);
   describe_fit(robot);
   if (found.components > 1) print_line("parts", fmt::format("{} that no spring joins", found.components));
 }

@@ -9,6 +9,7 @@
 
 #include "app/options/generator_options.h"
 #include "app/recording/configuration_json.h"
+#include "mercury/body_properties.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/generator.h"
 #include "mercury/import.h"
@@ -37,14 +38,13 @@ Json json_of(const MaterialUse& use) {
           {"frequency", shortest(use.material.frequency)},
           {"phase", shortest(use.material.phase)},
           {"half_wave", use.material.half_wave},
+          {"relaxation_time", shortest(use.material.relaxation_time)},
           {"springs", use.springs}};
 }
 
 // Whether GPUs can step it in the fast memory of a block, see docs/performance.md.
 Json chip_of(const Robot& robot) {
-  Configuration configuration;
-  if (const std::string name = environment_of(robot); is_environment(name))
-    configuration.environment = environment_named(name);
+  const Configuration configuration{.environment = environment_made_for(robot)};
   Json devices = Json::array();
   for (int device = 0; device < cuda_device_count(); ++device) {
     const ChipFit fit = chip_fit(robot, configuration, device);
@@ -120,10 +120,17 @@ Json files_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
+Environment environment_made_for(const Robot& robot) {
+  const std::string name = environment_of(robot);
+  return is_environment(name) ? environment_named(name) : Configuration{}.environment;
+}
+
 Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
 Json info_of(const Robot& robot, const std::filesystem::path& file) {
   const Inspection found = inspect(robot);
+  const float stiffness_scale = stiffness_scale_of(environment_made_for(robot));
+  const BodyProperties body = body_properties(robot, static_cast<double>(stiffness_scale));
   Json materials = Json::array(), actuators = Json::array();
   for (const MaterialUse& use : found.materials) materials.push_back(json_of(use));
   if (!robot.actuators.empty())
@@ -154,6 +161,12 @@ Json info_of(const Robot& robot, const std::filesystem::path& file) {
           {"euler_characteristic", found.euler_characteristic},
           {"area", found.area},
           {"volume", found.volume},
+          {"mass", body.mass},
+          {"density", value_or_null(body.density)},
+          {"stiffness_scale", shortest(stiffness_scale)},
+          {"modulus", value_or_null(body.modulus)},
+          {"lowest_frequency", value_or_null(body.lowest_frequency)},
+          {"largest_dt", value_or_null(body.largest_dt)},
           {"chip", chip_of(robot)}};
 }
 

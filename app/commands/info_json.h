@@ -10,10 +10,14 @@
 #include "app/options/scene_file.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_reader.h"
+#include "mercury/environment.h"
 #include "mercury/robot.h"
 #include "mercury/run_folder.h"
 
 namespace mercury {
+
+// The environment that the robot says it was made for, else the default.
+Environment environment_made_for(const Robot& robot);
 
 // The text, or null if it is empty.
 nlohmann::ordered_json text_or_null(const std::string& text);

@@ -18,7 +18,9 @@ float suitable_stiffness(const LiveRobot& robot, const Configuration& configurat
   for (const Spring& spring : robot.robot->springs)
     stiffest = std::max(stiffest, materials_of(robot)[spring.material].stiffness);
   const float per_mass = length(gravity_of(configuration.environment)) > 0 ? 60.0f : 4.0f;
-  const float of_body = per_mass * static_cast<float>(robot.robot->masses.size());
+  float mass = 0;  // [kg]
+  for (std::size_t i = 0; i < robot.robot->masses.size(); ++i) mass += mass_of(*robot.robot, i);
+  const float of_body = per_mass * mass;
   const float of_springs = 6 * stiffest * stiffness_scale_of(configuration.environment);
   const auto of_step = static_cast<float>(0.05 / (configuration.dt * configuration.dt));
   return std::max(1e-3f, std::min({of_body, of_springs, of_step}));

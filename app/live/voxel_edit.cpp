@@ -8,6 +8,8 @@
 
 #include "mercury/error.h"
 #include "mercury/origin.h"
+#include "mercury/real_body.h"
+#include "robots/carried_points.h"
 
 namespace mercury {
 namespace {
@@ -109,11 +111,16 @@ Robot with_voxel(const Robot& robot, const VoxelSide& side, const VoxelEdit& edi
   }
   if (std::ranges::all_of(grid.cells, [](MaterialId id) { return id == air; }))
     throw InputError(robot.name, "would have no voxel left");
+  const Robot paper = without_real_body(robot);
   Robot changed = make_voxel_robot(trimmed(std::move(grid)), {.name = robot.name,
                                                               .environment = environment_of(robot),
-                                                              .materials = robot.materials,
-                                                              .material_names = robot.material_names});
-  changed.actuators = robot.actuators;
+                                                              .materials = paper.materials,
+                                                              .material_names = paper.material_names});
+  if (const std::optional<RealMaterial> real = real_material_of(robot))
+    changed = with_real_body(changed, *real);
+  else
+    changed.actuators = robot.actuators;
+  carry_points(robot, changed);
   return changed;
 }
 

@@ -38,7 +38,8 @@ std::size_t content_bytes(const Robot& robot) {
   std::size_t bytes = sizeof(Robot) + robot.name.size() + robot.origin.size() +
                       robot.materials.size() * (sizeof(Material) + sizeof(std::string)) +
                       robot.masses.size() * sizeof(Vec3) + robot.springs.size() * sizeof(Spring) +
-                      robot.faces.size() * sizeof(Face);
+                      robot.faces.size() * sizeof(Face) + robot.mass.size() * sizeof(float) +
+                      robot.velocity.size() * sizeof(Vec3) + robot.fixed.size() * sizeof(std::uint16_t);
   for (const Actuator& actuator : robot.actuators) bytes += sizeof(Actuator) + actuator.materials.size();
   return bytes;
 }

@@ -36,14 +36,17 @@ Json json_of(std::span<const Perturbation> perturbations) {
   return list;
 }
 
-// The materials that changed, as [id, stiffness, amplitude, frequency, phase], and true after it for half waves.
+// The materials that changed, as [id, stiffness, amplitude, frequency, phase], followed where they are needed by true
+// or false for half waves, and by the relaxation time.
 Json changes_of(std::span<const Material> before, std::span<const Material> after) {
   Json list = Json::array();
   for (std::size_t id = 0; id < after.size(); ++id)
     if (id >= before.size() || before[id] != after[id]) {
       list.push_back({id, shortest(after[id].stiffness), shortest(after[id].amplitude), shortest(after[id].frequency),
                       shortest(after[id].phase)});
-      if (after[id].half_wave) list.back().push_back(true);
+      const bool relaxes = after[id].relaxation_time != 0;
+      if (after[id].half_wave || relaxes) list.back().push_back(after[id].half_wave);
+      if (relaxes) list.back().push_back(shortest(after[id].relaxation_time));
     }
   return list;
 }
@@ -110,14 +113,18 @@ std::vector<Perturbation> perturbations_of(const Json& json, const Robot& robot)
 
 void change_materials(const Json& json, std::vector<Material>& materials) {
   for (const Json& one : json) {
-    if (!one.is_array() || one.size() < 5 || one.size() > 6)
+    if (!one.is_array() || one.size() < 5 || one.size() > 7)
       throw InputError("[id, stiffness, amplitude, frequency, phase] is missing");
-    if (one.size() == 6 && !one[5].is_boolean()) throw InputError("true or false is missing for half_wave");
+    if (one.size() > 5 && !one[5].is_boolean()) throw InputError("true or false is missing for half_wave");
     const std::int64_t id = step_of(one[0], 0);
     if (id >= static_cast<std::int64_t>(materials.size())) throw InputError(fmt::format("there is no material {}", id));
     Material& material = materials[static_cast<std::size_t>(id)];
-    material = {number_of(one[1]), number_of(one[2]), number_of(one[3]), number_of(one[4]),
-                one.size() == 6 && one[5].get<bool>()};
+    material = {number_of(one[1]),
+                number_of(one[2]),
+                number_of(one[3]),
+                number_of(one[4]),
+                one.size() > 5 && one[5].get<bool>(),
+                one.size() > 6 ? number_of(one[6]) : 0};
     validate(material, fmt::format("material {}", id));
   }
 }

@@ -36,26 +36,6 @@ herr_t note(unsigned, const H5E_error2_t* error, void* data) {
   throw Error("HDF5: " + (failure.innermost.empty() ? "failed" : failure.innermost), failure.system_error);
 }
 
-// In both, half_wave follows the floats.
-static_assert(offsetof(Material, half_wave) == 4 * sizeof(float) && sizeof(bool) == 1);
-
-Handle material_compound(std::size_t size, bool half_wave) {
-  Handle type(H5Tcreate(H5T_COMPOUND, size));
-  const auto add = [&](const char* name, std::size_t offset) {
-    checked(H5Tinsert(type, name, offset, H5T_IEEE_F32LE));
-  };
-  add("stiffness", offsetof(Material, stiffness));
-  add("amplitude", offsetof(Material, amplitude));
-  add("frequency", offsetof(Material, frequency));
-  add("phase", offsetof(Material, phase));
-  if (!half_wave) return type;
-  const Handle boolean(H5Tenum_create(H5T_STD_I8LE));
-  for (const std::int8_t value : {std::int8_t{0}, std::int8_t{1}})
-    checked(H5Tenum_insert(boolean, value == 0 ? "FALSE" : "TRUE", &value));
-  checked(H5Tinsert(type, "half_wave", offsetof(Material, half_wave), boolean));
-  return type;
-}
-
 }  // namespace
 
 void prepare() {
@@ -115,8 +95,32 @@ NumberType number_type<std::int64_t>() {
   return {H5T_NATIVE_INT64, H5T_STD_I64LE};
 }
 
-Handle material_type(bool half_wave) { return material_compound(4 * sizeof(float) + (half_wave ? 1 : 0), half_wave); }
-Handle material_memory_type(bool half_wave) { return material_compound(sizeof(Material), half_wave); }
+static_assert(sizeof(bool) == 1);
+
+Handle material_memory_type(MaterialFields fields) {
+  Handle type(H5Tcreate(H5T_COMPOUND, sizeof(Material)));
+  const auto add = [&](const char* name, std::size_t offset) {
+    checked(H5Tinsert(type, name, offset, H5T_IEEE_F32LE));
+  };
+  add("stiffness", offsetof(Material, stiffness));
+  add("amplitude", offsetof(Material, amplitude));
+  add("frequency", offsetof(Material, frequency));
+  add("phase", offsetof(Material, phase));
+  if (fields.half_wave) {
+    const Handle boolean(H5Tenum_create(H5T_STD_I8LE));
+    for (const std::int8_t value : {std::int8_t{0}, std::int8_t{1}})
+      checked(H5Tenum_insert(boolean, value == 0 ? "FALSE" : "TRUE", &value));
+    checked(H5Tinsert(type, "half_wave", offsetof(Material, half_wave), boolean));
+  }
+  if (fields.relaxation_time) add("relaxation_time", offsetof(Material, relaxation_time));
+  return type;
+}
+
+Handle material_type(MaterialFields fields) {
+  Handle type = material_memory_type(fields);
+  checked(H5Tpack(type));
+  return type;
+}
 
 Handle text_type(std::size_t size) {
   Handle type(H5Tcopy(H5T_C_S1));

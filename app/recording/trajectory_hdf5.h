@@ -41,10 +41,13 @@ struct NumberType {
 template <class Number>
 NumberType number_type();
 
-// Materials as compounds of four floats, named as its members, and after them half_wave as h5py writes a bool: an enum
-// of FALSE and TRUE. Tables that need no half_wave do not have it.
-Handle material_type(bool half_wave);         // in the file
-Handle material_memory_type(bool half_wave);  // of a Material
+// Materials as compounds of four floats, named as its members. Where a table needs them, after them half_wave as h5py
+// writes a bool, an enum of FALSE and TRUE, and relaxation_time, a float.
+struct MaterialFields {
+  bool half_wave = false, relaxation_time = false;
+};
+Handle material_type(MaterialFields fields);         // in the file
+Handle material_memory_type(MaterialFields fields);  // of a Material
 // UTF-8 of a fixed length, padded with zeros.
 Handle text_type(std::size_t size);
 // ASCII of variable length.

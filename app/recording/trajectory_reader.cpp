@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_layout.h"
@@ -52,25 +53,29 @@ std::vector<Spring> read_springs(hid_t robot) {
   return springs;
 }
 
-// Recordings without such materials, as all that older programs wrote, lack the field.
-void read_half_waves(hid_t group, std::vector<Material>& materials) {
+// Reads a field that not every table has: older programs and tables that need none lack it.
+template <class Value>
+void read_field(hid_t group, const char* name, hid_t type_of_value, std::vector<Material>& materials,
+                Value Material::*field) {
   const Handle type(H5Dget_type(open_dataset(group, "materials")));
-  if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_member_index(type, "half_wave") < 0) {
+  if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_member_index(type, name) < 0) {
     H5Eclear2(H5E_DEFAULT);
     return;
   }
-  const Handle field(H5Tcreate(H5T_COMPOUND, 1));
-  checked(H5Tinsert(field, "half_wave", 0, H5T_NATIVE_UINT8));
-  const auto half_waves = read_rows<std::uint8_t>(group, "materials", field, {});
-  for (std::size_t i = 0; i < materials.size(); ++i) materials[i].half_wave = half_waves[i] != 0;
+  using Read = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t, Value>;
+  const Handle one(H5Tcreate(H5T_COMPOUND, sizeof(Read)));
+  checked(H5Tinsert(one, name, 0, type_of_value));
+  const auto values = read_rows<Read>(group, "materials", one, {});
+  for (std::size_t i = 0; i < materials.size(); ++i) materials[i].*field = static_cast<Value>(values[i]);
 }
 
 // A robot without materials of its own has the default table, so a table that equals it is dropped.
 void read_materials(hid_t group, Robot& robot) {
   for (const auto& [stiffness, amplitude, frequency, phase] :
-       read_rows<std::array<float, 4>>(group, "materials", material_type(false), {}))
+       read_rows<std::array<float, 4>>(group, "materials", material_type({}), {}))
     robot.materials.push_back({stiffness, amplitude, frequency, phase});
-  read_half_waves(group, robot.materials);
+  read_field(group, "half_wave", H5T_NATIVE_UINT8, robot.materials, &Material::half_wave);
+  read_field(group, "relaxation_time", H5T_NATIVE_FLOAT, robot.materials, &Material::relaxation_time);
   if (has_member(group, "material_names")) robot.material_names = read_texts_dataset(group, "material_names");
   const auto has_default_name = [&, id = 0](const std::string& name) mutable {
     return name == default_material_name(static_cast<MaterialId>(id++));
@@ -80,6 +85,21 @@ void read_materials(hid_t group, Robot& robot) {
     robot.materials.clear();
     robot.material_names.clear();
   }
+}
+
+// Where every mass is 1 kg because the robot says nothing else, the file has no values of its own.
+void read_points(hid_t group, Robot& robot) {
+  if (has_member(group, "mass")) {
+    const Handle dataset = open_dataset(group, "mass");
+    if (extent_of(dataset) != Extent{robot.masses.size()}) throw Error("\"mass\" has another shape than its masses");
+    robot.mass.resize(robot.masses.size());
+    read_dataset(dataset, H5T_NATIVE_FLOAT, robot.mass.data());
+    const bool all_one = std::ranges::all_of(robot.mass, [](float mass) { return mass == 1; });
+    if (all_one && H5Dget_storage_size(dataset) == 0) robot.mass.clear();
+  }
+  if (has_member(group, "start_velocity"))
+    robot.velocity = read_rows<Vec3>(group, "start_velocity", H5T_NATIVE_FLOAT, {3});
+  if (has_member(group, "fixed")) robot.fixed = read_rows<std::uint16_t>(group, "fixed", H5T_NATIVE_UINT16, {});
 }
 
 void read_actuators(hid_t group, Robot& robot) {
@@ -225,6 +245,7 @@ RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group)
   Robot& robot = recorded.robot;
   robot.name = read_text(group, "name");
   robot.masses = read_rows<Vec3>(group, "rest_position", H5T_NATIVE_FLOAT, {3});
+  read_points(group, robot);
   robot.springs = read_springs(group);
   robot.faces = read_rows<Face>(group, "faces", H5T_NATIVE_UINT16, {3});
   read_materials(group, robot);

@@ -184,8 +184,8 @@ void TrajectoryWriter::write_header(const TrajectoryHeader& header) {
   const hsize_t chunk = std::clamp<hsize_t>(static_cast<hsize_t>(header.expected_frames), 1, 1024);
   create_growing(parameters_, "step", H5T_STD_I64LE, {.chunk = chunk});
   write_unit(create_growing(parameters_, "time", H5T_IEEE_F64LE, {.chunk = chunk}), "s");
-  write_dataset(parameters_, "materials", material_type(false), material_memory_type(false),
-                {default_materials().size()}, default_materials().data());
+  write_dataset(parameters_, "materials", material_type({}), material_memory_type({}), {default_materials().size()},
+                default_materials().data());
   std::vector<std::string> names;
   for (std::size_t id = 0; id < default_materials().size(); ++id)
     names.push_back(default_material_name(static_cast<MaterialId>(id)));
@@ -218,7 +218,7 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
   const Handle box = create_group(group, "box");
   write_attribute(box, "dimension", std::int32_t{3});
   write_texts(box, "boundary", {"none", "none", "none"});
-  write_unit(write_constant(group, "mass", 1, {robot.masses.size()}), "kg");
+  write_points(group, robot);
   write_unit(write_dataset(group, "rest_position", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {robot.masses.size(), 3},
                            robot.masses.data()),
              "m");
@@ -226,6 +226,21 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
   write_materials(group, robot, materials);
   write_actuators(group, robot);
   if (!robot.origin.empty()) write_text_dataset(group, "origin", robot.origin);
+}
+
+// What the robot says of its masses.
+void TrajectoryWriter::write_points(hid_t particles, const Robot& robot) {
+  const std::size_t masses = robot.masses.size();
+  write_unit(robot.mass.empty()
+                 ? write_constant(particles, "mass", 1, {masses})
+                 : write_dataset(particles, "mass", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {masses}, robot.mass.data()),
+             "kg");
+  if (!robot.velocity.empty())
+    write_unit(write_dataset(particles, "start_velocity", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {masses, 3},
+                             robot.velocity.data()),
+               "m s-1");
+  if (!robot.fixed.empty())
+    write_dataset(particles, "fixed", H5T_STD_U16LE, H5T_NATIVE_UINT16, {robot.fixed.size()}, robot.fixed.data());
 }
 
 // Springs and faces where H5MD expects them, with links beside the masses.
@@ -260,8 +275,10 @@ void TrajectoryWriter::write_materials(hid_t particles, const Robot& robot, std:
     link(parameters_, "material_names", particles, "material_names");
     return;
   }
-  const bool half_wave = std::ranges::any_of(materials, &Material::half_wave);
-  write_dataset(particles, "materials", material_type(half_wave), material_memory_type(half_wave), {materials.size()},
+  const MaterialFields fields{
+      .half_wave = std::ranges::any_of(materials, &Material::half_wave),
+      .relaxation_time = std::ranges::any_of(materials, [](const Material& m) { return m.relaxation_time != 0; })};
+  write_dataset(particles, "materials", material_type(fields), material_memory_type(fields), {materials.size()},
                 materials.data());
   if (!robot.material_names.empty()) write_text_dataset(particles, "material_names", robot.material_names);
 }

@@ -99,6 +99,7 @@ class TrajectoryWriter {
   void write_header(const TrajectoryHeader& header);
   void write_configuration(hdf5::Id parameters, const Configuration& configuration);
   void write_robot(std::size_t index, const Robot& robot, std::span<const Material> materials);
+  void write_points(hdf5::Id particles, const Robot& robot);
   void write_connectivity(const std::string& group, const Robot& robot, hdf5::Id particles);
   void write_materials(hdf5::Id particles, const Robot& robot, std::span<const Material> materials);
   void write_actuators(hdf5::Id particles, const Robot& robot);

@@ -126,7 +126,8 @@ class BodySpace : public GenomeSpace {
     Robot grown = genes->grown(founder.name, "");
     if (real) grown = with_real_body(grown, *real_material_of(founder));
     if (!std::ranges::equal(materials_of(grown).subspan(1), materials_of(founder).subspan(1)) ||
-        grown.springs != founder.springs || grown.masses != founder.masses)
+        grown.springs != founder.springs || grown.masses != founder.masses || grown.mass != founder.mass ||
+        grown.velocity != founder.velocity || grown.fixed != founder.fixed)
       throw InputError("/origin", "leads to another robot; evolve its muscles alone");
     return genes;
   } catch (const InputError& error) {

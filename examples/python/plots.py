@@ -17,8 +17,8 @@ figure, (map_of_paths, speeds) = plt.subplots(1, 2, figsize=(9, 4), constrained_
 with h5py.File(sys.argv[1]) as file:
     for robot in file["particles"].values():
         time = robot["position/time"][:]
-        center = robot["position/value"][:].mean(axis=1)  # masses weigh 1 kg each
-        speed = np.linalg.norm(robot["velocity/value"][:].mean(axis=1), axis=1)
+        center = np.average(robot["position/value"][:], axis=1, weights=robot["mass"][:])
+        speed = np.linalg.norm(np.average(robot["velocity/value"][:], axis=1, weights=robot["mass"][:]), axis=1)
         (line,) = map_of_paths.plot(center[:, 0], center[:, 1])
         map_of_paths.plot(*center[-1, :2], "o", color=line.get_color())
         speeds.plot(time, speed, label=robot.attrs["name"].decode())

@@ -4,9 +4,11 @@
 
 #include <nanobind/operators.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "mercury/body_properties.h"
 #include "mercury/error.h"
 #include "mercury/generator.h"
 #include "mercury/import.h"
@@ -22,14 +24,17 @@ namespace {
 
 SharedRobot shared(Robot robot) { return {std::make_shared<const Robot>(std::move(robot))}; }
 
-Robot robot_from(nb::handle masses, nb::handle springs, nb::handle faces, nb::handle materials, nb::handle actuators,
-                 nb::handle name) {
+Robot robot_from(nb::handle masses, nb::handle springs, nb::handle faces, nb::handle materials, nb::handle mass,
+                 nb::handle velocity, nb::handle fixed, nb::handle actuators, nb::handle name) {
   Robot robot;
   robot.name = text_from("name", name);
   robot.masses = masses_from(masses);
   if (!materials.is_none()) robot.materials = materials_from(materials);
   robot.springs = springs_from(springs, robot);
   if (!faces.is_none()) robot.faces = faces_from(faces, robot);
+  if (!mass.is_none()) robot.mass = mass_from(mass, robot);
+  if (!velocity.is_none()) robot.velocity = velocity_from(velocity, robot);
+  if (!fixed.is_none()) robot.fixed = fixed_from(fixed, robot);
   validate(robot);
   if (!actuators.is_none()) add_actuators(robot, actuators);
   return robot;
@@ -119,6 +124,7 @@ nb::dict info(const SharedRobot& self) {
     entry["frequency"] = use.material.frequency;
     entry["phase"] = use.material.phase;
     entry["half_wave"] = use.material.half_wave;
+    entry["relaxation_time"] = use.material.relaxation_time;
     entry["springs"] = use.springs;
     materials.append(entry);
   }
@@ -143,6 +149,13 @@ nb::dict info(const SharedRobot& self) {
   entry["euler_characteristic"] = found.euler_characteristic;
   entry["area"] = found.area;
   entry["volume"] = found.volume;
+  const BodyProperties body = body_properties(*self.robot);
+  entry["mass"] = body.mass;
+  entry["density"] = body.density;
+  entry["stiffness_scale"] = 1.0;
+  entry["modulus"] = body.modulus;
+  entry["lowest_frequency"] = body.lowest_frequency;
+  entry["largest_dt"] = body.largest_dt;
   return entry;
 }
 
@@ -170,15 +183,19 @@ nb::object view_of(nb::handle_t<SharedRobot> self) {
 }
 
 constexpr const char* about_robot =
-    R"(A robot as plain data: masses of 1 kg, springs that join them, and a skin of triangles. It never changes.
+    R"(A robot as plain data: point masses, springs that join them, and a skin of triangles. It never changes.
 
 masses     (n, 3): positions at rest [m], within 1e6 m of the origin; 1 to 65,535 of them
 springs    (m, 3) or (m, 4): the indices of two masses, a material, and the rest length [m] (default: their distance);
            or a structured array with the fields a, b, material, rest_length
 faces      (k, 3): indices of masses, counter-clockwise seen from outside
-materials  (l, 4) or (l, 5): stiffness [N/m], amplitude [1], frequency [rad/s], phase [rad], and 1 for muscles that move
-           by the negative half of the sine alone, else 0; or a structured array with the fields stiffness, amplitude,
-           frequency, phase, half_wave. Row 0 stands for air, which no spring has. Default: the 254 default materials
+materials  (l, 4) to (l, 6): stiffness [N/m], amplitude [1], frequency [rad/s], phase [rad]; 1 for muscles that move
+           by the negative half of the sine alone, else 0; relaxation time [s]; or a structured array with the fields
+           stiffness, amplitude, frequency, phase, half_wave, relaxation_time. Row 0 stands for air, which no spring
+           has. Default: the 254 default materials
+mass       (n,): the mass of each point [kg], or one number for all. Default: 1 kg each
+velocity   (n, 3): of each point at the start [m/s], or (3,) for all. Default: at rest
+fixed      indices of masses that never move, or a mask with one bool per mass. Default: none
 actuators  {name: springs}: groups of springs that a program drives together, as indices or as a mask with one bool
            per spring. Default: muscles of the same frequency, phase and half wave belong together
 name       a text
@@ -205,14 +222,18 @@ void bind_robot(nb::module_& module) {
       .def(
           "__init__",
           [](SharedRobot* self, nb::handle masses, nb::handle springs, nb::handle faces, nb::handle materials,
-             nb::handle actuators, nb::handle name) {
-            new (self) SharedRobot(shared(robot_from(masses, springs, faces, materials, actuators, name)));
+             nb::handle mass, nb::handle velocity, nb::handle fixed, nb::handle actuators, nb::handle name) {
+            new (self) SharedRobot(
+                shared(robot_from(masses, springs, faces, materials, mass, velocity, fixed, actuators, name)));
           },
           nb::arg("masses").none(), nb::arg("springs").none(), nb::arg("faces") = nb::none(),
-          nb::arg("materials") = nb::none(), nb::kw_only(), nb::arg("actuators") = nb::none(),
+          nb::arg("materials") = nb::none(), nb::kw_only(), nb::arg("mass") = nb::none(),
+          nb::arg("velocity") = nb::none(), nb::arg("fixed") = nb::none(), nb::arg("actuators") = nb::none(),
           nb::arg("name").none() = "",
           nb::sig("def __init__(self, masses: numpy.typing.ArrayLike, springs: numpy.typing.ArrayLike, "
                   "faces: numpy.typing.ArrayLike | None = None, materials: numpy.typing.ArrayLike | None = None, *, "
+                  "mass: numpy.typing.ArrayLike | None = None, velocity: numpy.typing.ArrayLike | None = None, "
+                  "fixed: numpy.typing.ArrayLike | None = None, "
                   "actuators: dict[str, numpy.typing.ArrayLike] | None = None, name: str = '') -> None"))
       .def_prop_ro(
           "name", [](const SharedRobot& self) { return self.robot->name; }, "The robot's name, possibly empty.")
@@ -232,13 +253,27 @@ void bind_robot(nb::module_& module) {
                    nb::sig("def half_wave(self) -> numpy.typing.NDArray[numpy.bool_]"),
                    "Whether only the negative half of the sine moves a material, (materials,) bool. Read-only; shares "
                    "memory with the robot.")
+      .def_prop_ro("relaxation_time", &view_of<relaxation_time_view>,
+                   nb::sig("def relaxation_time(self) -> numpy.typing.NDArray[numpy.float32]"),
+                   "How much a spring of a material resists its rate of length, (materials,) float32 [s]. Read-only; "
+                   "shares memory with the robot.")
+      .def_prop_ro("mass", &view_of<mass_view>, nb::sig("def mass(self) -> numpy.typing.NDArray[numpy.float32]"),
+                   "The mass of each point, (masses,) float32 [kg]. Read-only; shares memory with the robot, unless "
+                   "it says nothing of it: then an array of ones.")
+      .def_prop_ro("velocity", &view_of<velocity_view>,
+                   nb::sig("def velocity(self) -> numpy.typing.NDArray[numpy.float32]"),
+                   "The velocity of each point at the start, (masses, 3) float32 [m/s]. Read-only; shares memory with "
+                   "the robot, unless it says nothing of it: then an array of zeros.")
+      .def_prop_ro("fixed", &view_of<fixed_view>, nb::sig("def fixed(self) -> numpy.typing.NDArray[numpy.uint16]"),
+                   "Indices of the masses that never move, (fixed,) uint16. Read-only; shares memory with the robot.")
       .def_prop_ro("origin", &origin, nb::sig("def origin(self) -> dict[str, typing.Any] | None"),
                    "How the robot was made; None if that is unknown.")
       .def_prop_ro("actuators", &actuators, nb::sig("def actuators(self) -> dict[str, list[int]]"),
                    "Actuators in their order, by name: the materials whose springs each drives.")
       .def_prop_ro(
           "body_hash", [](const SharedRobot& self) { return body_hash(*self.robot); },
-          "FNV-1a over masses, springs, faces and materials, bit for bit, whatever the names and the origin.")
+          "FNV-1a over masses, springs, faces, materials, velocities and fixed points, bit for bit, whatever the "
+          "names and the origin.")
       .def(
           "save",
           [](const SharedRobot& self, nb::handle given) {
@@ -260,10 +295,11 @@ void bind_robot(nb::module_& module) {
            "A child of two robots that one generator made; body and muscles are mixed. Its name is NAME-xSEED by "
            "default. The same arguments give the same child on every machine. Raises InputError for two robots that "
            "cannot be mixed.")
-      .def(
-          "info", &info, nb::sig("def info(self) -> dict[str, typing.Any]"),
-          "Measures: counts, the materials in use, sizes [m], and whether the skin is closed, its area [m2] and volume "
-          "[m3].")
+      .def("info", &info, nb::sig("def info(self) -> dict[str, typing.Any]"),
+           "Measures: counts, the materials in use, sizes [m], whether the skin is closed, its area [m2] and volume "
+           "[m3], "
+           "and the body's mass [kg], density [kg/m3], modulus [Pa], slowest vibration [Hz] and largest stable dt [s], "
+           "None where there is none.")
       .def(
           "with_actuators", &with_actuators, nb::arg("actuators").none(),
           nb::sig("def with_actuators(self, actuators: dict[str, numpy.typing.ArrayLike]) -> Robot"),

@@ -62,7 +62,7 @@ class Table {
     if (dimensions == 1 && shape[0] == 0) return;  // [] is a table without rows
     if (dimensions != 2 || shape[1] > fields.size() || shape[1] + optional < fields.size()) {
       std::string wanted = "(n, " + std::to_string(fields.size() - optional) + ")";
-      if (optional > 0) wanted += " or (n, " + std::to_string(fields.size()) + ")";
+      if (optional > 0) wanted += (optional > 1 ? " to (n, " : " or (n, ") + std::to_string(fields.size()) + ")";
       throw InputError(what, "must have the shape " + wanted + ", not " + shape_of(array));
     }
     numbers_ = nb::cast<Numbers>(copied(array, "C"));
@@ -83,10 +83,16 @@ class Table {
       if (std::ranges::find(fields, name) == fields.end())
         throw InputError(what, "has no field \"" + name + "\"" + suggestion(name, fields));
     nb::list columns;
+    const std::size_t rows = nb::len(array);
+    // An optional field that is missing before one that is there is a column of zeros.
+    std::size_t last = 0;
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (std::ranges::find(names, fields[i]) != names.end()) last = i;
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (std::ranges::find(names, fields[i]) == names.end()) {
-        if (i + optional >= fields.size()) continue;
-        throw InputError(what, "the field \"" + fields[i] + "\" is missing");
+        if (i + optional < fields.size()) throw InputError(what, "the field \"" + fields[i] + "\" is missing");
+        if (i < last) columns.append(numpy().attr("zeros")(rows));
+        continue;
       }
       const nb::object column = array[fields[i].c_str()];
       require_numbers(what + "[\"" + fields[i] + "\"]", column);
@@ -125,15 +131,17 @@ std::uint16_t mass_from(const std::string& list, std::size_t row, double number,
   return static_cast<std::uint16_t>(number);
 }
 
-std::vector<std::uint32_t> spring_indices_from(const std::string& what, nb::handle given, const Robot& robot) {
+// Indices of a robot's springs or masses, or a mask with one bool for each. `thing`: "spring".
+std::vector<std::uint32_t> indices_from(const std::string& what, nb::handle given, const char* thing,
+                                        const char* things, std::size_t count) {
   nb::object array = as_array(what, given);
-  const std::size_t count = robot.springs.size();
   if (nb::cast<std::size_t>(array.attr("ndim")) != 1)
-    throw InputError(what, "must be a list of spring indices, or a mask with one bool per spring");
+    throw InputError(what,
+                     std::string("must be a list of ") + thing + " indices, or a mask with one bool per " + thing);
   if (kind_of(array) == 'b') {
     if (nb::len(array) != count)
-      throw InputError(what, "a mask of " + std::to_string(nb::len(array)) +
-                                 " springs is not accepted, the robot has " + std::to_string(count));
+      throw InputError(what, "a mask of " + std::to_string(nb::len(array)) + " " + things +
+                                 " is not accepted, the robot has " + std::to_string(count));
     array = numpy().attr("flatnonzero")(array);
   }
   require_numbers(what, array);
@@ -142,10 +150,24 @@ std::vector<std::uint32_t> spring_indices_from(const std::string& what, nb::hand
   std::vector<std::uint32_t> indices(numbers.shape(0));
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const double number = numbers.data()[i];
-    if (!is_index(number, count)) refuse_index(what, "spring", number, "robot", count);
+    if (!is_index(number, count)) refuse_index(what, thing, number, "robot", count);
     indices[i] = static_cast<std::uint32_t>(number);
   }
   return indices;
+}
+
+// One number or row per mass. A single one stands for all.
+nb::object for_all_masses(const std::string& what, nb::handle given, const nb::tuple& shape) {
+  const nb::object array = as_array(what, given);
+  require_numbers(what, array);
+  const auto dimensions = nb::cast<std::size_t>(array.attr("ndim"));
+  if (dimensions + 1 == nb::len(shape)) {
+    if (dimensions == 0 || array.attr("shape")[nb::int_(-1)].equal(shape[nb::len(shape) - 1]))
+      return copied(numpy().attr("broadcast_to")(array, shape), "C");
+  } else if (array.attr("shape").equal(shape)) {
+    return copied(array, "C");
+  }
+  throw InputError(what, "must have the shape " + as_text(shape) + ", one per mass, not " + shape_of(array));
 }
 
 // A read-only array over `rows` structs.
@@ -205,7 +227,8 @@ std::vector<Face> faces_from(nb::handle array, const Robot& robot) {
 }
 
 std::vector<Material> materials_from(nb::handle array) {
-  const Table table("materials", array, {"stiffness", "amplitude", "frequency", "phase", "half_wave"}, 1);
+  const Table table("materials", array,
+                    {"stiffness", "amplitude", "frequency", "phase", "half_wave", "relaxation_time"}, 2);
   if (table.rows() > max_materials)
     throw InputError("/materials", std::to_string(table.rows()) + " materials, at most 256 are accepted");
   if (table.rows() == 0) throw InputError("/materials", "a table needs at least row 0, which stands for air");
@@ -218,8 +241,33 @@ std::vector<Material> materials_from(nb::handle array) {
     if (row[4] != 0 && row[4] != 1)
       throw InputError("/materials/" + std::to_string(i), "half_wave must be 0 or 1, not " + text_of(row[4]));
     materials[i].half_wave = row[4] != 0;
+    if (table.columns() > 5) materials[i].relaxation_time = static_cast<float>(row[5]);
   }
   return materials;
+}
+
+std::vector<float> mass_from(nb::handle given, const Robot& robot) {
+  using Numbers = nb::ndarray<nb::numpy, const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+  const auto numbers = nb::cast<Numbers>(for_all_masses("mass", given, nb::make_tuple(robot.masses.size())));
+  std::vector<float> mass(numbers.shape(0));
+  for (std::size_t i = 0; i < mass.size(); ++i) mass[i] = static_cast<float>(numbers.data()[i]);
+  return mass;
+}
+
+std::vector<Vec3> velocity_from(nb::handle given, const Robot& robot) {
+  using Numbers = nb::ndarray<nb::numpy, const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+  const auto numbers = nb::cast<Numbers>(for_all_masses("velocity", given, nb::make_tuple(robot.masses.size(), 3)));
+  std::vector<Vec3> velocity(numbers.shape(0));
+  for (std::size_t i = 0; i < velocity.size(); ++i) {
+    const double* v = numbers.data() + 3 * i;
+    velocity[i] = {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+  }
+  return velocity;
+}
+
+std::vector<std::uint16_t> fixed_from(nb::handle given, const Robot& robot) {
+  const auto indices = indices_from("fixed", given, "mass", "masses", robot.masses.size());
+  return {indices.begin(), indices.end()};
 }
 
 VoxelGrid grid_from(nb::handle given) {
@@ -250,7 +298,7 @@ void add_actuators(Robot& robot, nb::handle actuators) {
   // A copy, since making arrays may run code that changes the dict.
   for (const nb::handle item : nb::list(actuators.attr("items")())) {
     const std::string name = text_from("actuators", item[0]);
-    add_actuator(robot, name, spring_indices_from("actuator " + name, item[1], robot));
+    add_actuator(robot, name, indices_from("actuator " + name, item[1], "spring", "springs", robot.springs.size()));
   }
 }
 
@@ -287,6 +335,29 @@ nb::object half_wave_view(nb::handle owner, const Robot& robot) {
   const std::span<const Material> materials = materials_of(robot);
   return nb::cast(nb::ndarray<nb::numpy, const bool, nb::ndim<1>>(
       &materials.data()->half_wave, {materials.size()}, owner, {static_cast<std::int64_t>(sizeof(Material))}));
+}
+
+nb::object relaxation_time_view(nb::handle owner, const Robot& robot) {
+  const std::span<const Material> materials = materials_of(robot);
+  return nb::cast(
+      nb::ndarray<nb::numpy, const float, nb::ndim<1>>(&materials.data()->relaxation_time, {materials.size()}, owner,
+                                                       {static_cast<std::int64_t>(sizeof(Material) / sizeof(float))}));
+}
+
+nb::object mass_view(nb::handle owner, const Robot& robot) {
+  if (robot.mass.empty()) return numpy().attr("ones")(robot.masses.size(), nb::arg("dtype") = "float32");
+  return nb::cast(nb::ndarray<nb::numpy, const float, nb::ndim<1>>(robot.mass.data(), {robot.mass.size()}, owner));
+}
+
+nb::object velocity_view(nb::handle owner, const Robot& robot) {
+  if (robot.velocity.empty())
+    return numpy().attr("zeros")(nb::make_tuple(robot.masses.size(), 3), nb::arg("dtype") = "float32");
+  return view(owner, robot.velocity.data(), robot.velocity.size(), "float32", 3);
+}
+
+nb::object fixed_view(nb::handle owner, const Robot& robot) {
+  return nb::cast(
+      nb::ndarray<nb::numpy, const std::uint16_t, nb::ndim<1>>(robot.fixed.data(), {robot.fixed.size()}, owner));
 }
 
 }  // namespace mercury::python

@@ -85,6 +85,91 @@ def test_half_waves_are_a_fifth_column():
         tetrahedron(materials=table, springs=springs)
 
 
+def test_relaxation_times_are_a_sixth_column():
+    table = np.array([[0, 0, 0, 0, 0, 0], [100, 0.25, 6, 0, 1, 0.02], [200, 0, 0, 0, 0, 0.5]], np.float32)
+    springs = SPRINGS.copy()
+    springs[:, 2] = [1, 1, 2, 2, 2, 2]
+    robot = tetrahedron(materials=table, springs=springs)
+    np.testing.assert_array_equal(robot.relaxation_time, table[:, 5])
+    np.testing.assert_array_equal(robot.materials, table[:, :4])
+    assert not tetrahedron(materials=table[:, :5], springs=springs).relaxation_time.any()
+    assert tetrahedron(materials=table[:, :5], springs=springs) != robot
+    assert [material["relaxation_time"] for material in robot.info()["materials"]] == table[1:, 5].tolist()
+    # A field that is missing before one that is there is zero.
+    fields = ["stiffness", "amplitude", "frequency", "phase", "relaxation_time"]
+    structured = np.zeros(3, dtype=[(field, "f4") for field in fields])
+    for field, column in zip(fields, table[:, [0, 1, 2, 3, 5]].T, strict=True):
+        structured[field] = column
+    table[:, 4] = 0
+    assert tetrahedron(materials=structured, springs=springs) == tetrahedron(materials=table, springs=springs)
+    assert pickle.loads(pickle.dumps(robot)) == robot
+    table[1, 5] = -1
+    with pytest.raises(InputError, match=r"/materials/1: relaxation_time must be a finite number >= 0 s"):
+        tetrahedron(materials=table, springs=springs)
+
+
+def test_masses_velocities_and_fixed_points():
+    plain = tetrahedron()
+    np.testing.assert_array_equal(plain.mass, np.ones(4, np.float32))
+    np.testing.assert_array_equal(plain.velocity, np.zeros((4, 3), np.float32))
+    assert plain.fixed.dtype == np.uint16 and plain.fixed.tolist() == []
+    mass, velocity = np.array([0.5, 1, 2, 3], np.float32), np.arange(12, dtype=np.float32).reshape(4, 3)
+    robot = tetrahedron(mass=mass, velocity=velocity, fixed=[3, 0])
+    np.testing.assert_array_equal(robot.mass, mass)
+    np.testing.assert_array_equal(robot.velocity, velocity)
+    assert robot.fixed.tolist() == [3, 0]
+    assert robot != plain and robot.body_hash != plain.body_hash
+    assert pickle.loads(pickle.dumps(robot)) == robot
+    for name in ("mass", "velocity", "fixed"):
+        assert getattr(robot, name).ctypes.data == getattr(robot, name).ctypes.data
+        assert not getattr(robot, name).flags.writeable
+    one_for_all = tetrahedron(mass=0.25, velocity=[0, 0, 1], fixed=np.array([True, False, False, True]))
+    assert one_for_all.mass.tolist() == [0.25] * 4
+    assert one_for_all.velocity.tolist() == [[0, 0, 1]] * 4
+    assert one_for_all.fixed.tolist() == [0, 3]
+
+
+def test_info_says_mass_and_vibrations():
+    # w = sqrt(k (1/m + 1/m')), and the force solver is stable up to 2 / w.
+    robot = Robot([[0, 0, 0], [0.1, 0, 0]], [[0, 1, 1]], materials=[[0, 0, 0, 0], [30, 0, 0, 0]], mass=[0.5, 2])
+    info = robot.info()
+    w = np.sqrt(30 * (1 / 0.5 + 1 / 2))
+    assert info["mass"] == 2.5 and info["density"] is None and info["modulus"] is None
+    assert info["lowest_frequency"] == pytest.approx(w / (2 * np.pi))
+    assert info["largest_dt"] == pytest.approx(2 / w)
+    cube = mercurysim.voxel(np.ones((1, 1, 1), np.uint8), edge=0.1).info()
+    assert cube["density"] == pytest.approx(8 / 0.1**3)
+    assert cube["modulus"] == pytest.approx(8 * 50 / 0.1)
+
+
+@pytest.mark.parametrize(("arguments", "message"), [
+    ({"mass": [1, 1]}, r"mass: must have the shape (4,), one per mass, not (2,)"),
+    ({"mass": [1, 1, 0, 1]}, "/mass/2: a mass must be a finite number above 0 kg"),
+    ({"mass": float("nan")}, "/mass/0: a mass must be a finite number above 0 kg"),
+    ({"velocity": np.zeros((3, 3))}, r"velocity: must have the shape (4, 3), one per mass, not (3, 3)"),
+    ({"velocity": np.zeros(4)}, r"velocity: must have the shape (4, 3), one per mass, not (4,)"),
+    ({"velocity": [0, 0, float("inf")]}, "/velocity/0: a velocity must be finite"),
+    ({"fixed": [4]}, "fixed: mass 4 is out of range, the robot has 4"),
+    ({"fixed": [1, 1]}, "/fixed/1: mass 1 is listed twice"),
+    ({"fixed": [0.5]}, "fixed: mass 0.5 is not a whole number"),
+    ({"fixed": [True]}, "fixed: a mask of 1 masses is not accepted, the robot has 4"),
+    ({"fixed": 0}, "fixed: must be a list of mass indices, or a mask with one bool per mass"),
+])
+def test_what_masses_may_not_be(arguments, message):
+    with pytest.raises(InputError) as refused:
+        tetrahedron(**arguments)
+    assert str(refused.value) == message
+
+
+def test_fixed_points_stay_and_a_start_velocity_moves():
+    robot = tetrahedron(velocity=[0.5, 0, 0], fixed=[0])
+    batch = mercurysim.Batch(robot, device="cpu")
+    np.testing.assert_array_equal(batch.velocities.numpy()[:2], np.array([[0, 0, 0], [0.5, 0, 0]], np.float32))
+    batch.step(10)
+    np.testing.assert_array_equal(batch.positions.numpy()[0], np.zeros(3))
+    assert batch.positions.numpy()[1, 0] > TETRAHEDRON[1, 0]
+
+
 def test_the_robot_copies_what_it_is_given():
     masses = TETRAHEDRON.astype(np.float32)
     robot = tetrahedron(masses=masses)
@@ -92,7 +177,7 @@ def test_the_robot_copies_what_it_is_given():
     np.testing.assert_array_equal(robot.masses, TETRAHEDRON.astype(np.float32))
 
 
-@pytest.mark.parametrize("name", ["masses", "springs", "faces", "materials", "half_wave"])
+@pytest.mark.parametrize("name", ["masses", "springs", "faces", "materials", "half_wave", "relaxation_time"])
 def test_views_are_read_only_and_share_memory(name):
     robot = tetrahedron()
     view = getattr(robot, name)
@@ -169,7 +254,7 @@ def nan(array, value=np.nan):
         ({"faces": [[0, 1, 1]]}, InputError, "^/faces/0: a face needs three different masses$"),
         ({"materials": []}, InputError, "^/materials: a table needs at least row 0, which stands for air$"),
         ({"materials": np.zeros((257, 4))}, InputError, "^/materials: 257 materials, at most 256 are accepted$"),
-        ({"materials": np.zeros((22, 3))}, InputError, r"^materials: must have the shape \(n, 4\) or \(n, 5\), not \(22, 3\)$"),
+        ({"materials": np.zeros((22, 3))}, InputError, r"^materials: must have the shape \(n, 4\) to \(n, 6\), not \(22, 3\)$"),
         ({"materials": nan(np.zeros((22, 4)))}, InputError, "^/materials/21: "),
         ({"name": 5}, TypeError, "^name: must be a text, not int$"),
         ({"name": "\ud800"}, InputError, "^name: is not valid Unicode$"),

@@ -60,6 +60,13 @@ class ActuatorReader : public DocumentEvents {
   std::array<bool, max_materials> taken_{};
 };
 
+// What a file may say that it requires ("requires"): the parts of a robot that a version without them would leave out,
+// and then run another robot. Files name those that they have. Parts that came before there was this list are not in
+// it.
+inline constexpr std::array<std::string_view, 4> known_requirements{"mass", "velocity", "fixed", "relaxation_time"};
+// Those of them that a robot has, in their order.
+std::vector<std::string_view> requirements_of(const Robot& robot);
+
 // Sends the robot's document. Throws InputError("/origin: ...") if its origin is no JSON object.
 void write_robot(const Robot& robot, DocumentEvents& events);
 
@@ -82,9 +89,26 @@ class RobotReader : public DocumentEvents {
   Robot take();
 
  private:
-  enum Section : unsigned { format, version, name, materials, masses, springs, faces, actuators, origin, unknown };
-  static constexpr std::string_view section_names[] = {"format",  "version", "name",      "materials", "masses",
-                                                       "springs", "faces",   "actuators", "origin"};
+  // Lists of rows from `materials` on, lists of values from `requirements` on.
+  enum Section : unsigned {
+    format,
+    version,
+    name,
+    materials,
+    masses,
+    springs,
+    faces,
+    velocity,
+    requirements,
+    mass,
+    fixed,
+    actuators,
+    origin,
+    unknown
+  };
+  static constexpr std::string_view section_names[] = {"format",  "version",   "name",     "materials", "masses",
+                                                       "springs", "faces",     "velocity", "requires",  "mass",
+                                                       "fixed",   "actuators", "origin"};
   struct MaterialEntry {
     Material material;
     std::string name;
@@ -92,6 +116,7 @@ class RobotReader : public DocumentEvents {
   };
 
   bool has(Section section) const { return (seen_ >> section & 1) != 0; }
+  bool in_values() const { return depth_ == 2 && section_ >= requirements && section_ <= fixed; }
   std::string place() const;
   [[noreturn]] void refuse(const std::string& what) const;
   [[noreturn]] void wrong_type(const std::string& given) const;
@@ -102,7 +127,11 @@ class RobotReader : public DocumentEvents {
   float finite(const Number& value) const;
   std::uint16_t mass_index(const Number& value) const;
   void row_number(const Number& value);
+  void value_number(const Number& value);
+  void require_known(std::string_view requirement);
+  void require_room() const;
   void end_row();
+  void refuse_if_empty();
   void material_key(std::string_view key_name);
   void end_material();
 
@@ -112,7 +141,7 @@ class RobotReader : public DocumentEvents {
   int depth_ = 0;           // of arrays and objects open: 1 = the document, 2 = a list, 3 = a row of it
   std::size_t row_ = 0;     // which row of the list
   std::size_t column_ = 0;  // how many elements of the row are read
-  Vec3 position_;
+  Vec3 vector_;
   Spring spring_;
   Face face_;
   MaterialEntry entry_;

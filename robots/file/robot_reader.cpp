@@ -9,8 +9,9 @@
 namespace mercury {
 namespace {
 
-constexpr std::string_view material_keys[] = {"name", "stiffness", "amplitude", "frequency", "phase", "half_wave"};
-constexpr unsigned half_wave_key = 5, unknown_key = 6;
+constexpr std::string_view material_keys[] = {"name",  "stiffness",       "amplitude", "frequency",
+                                              "phase", "relaxation_time", "half_wave"};
+constexpr unsigned half_wave_key = 6, unknown_key = 7;
 
 // Hostile files may have keys of any length; messages show the beginning.
 std::string shown(std::string_view text) {
@@ -27,7 +28,7 @@ std::string RobotReader::place() const {
   if (depth_ == 0 || section_ == unknown) return "";
   std::string place("/");
   place += section_names[section_];
-  if (section_ == origin || depth_ < 3) return place;
+  if (section_ == origin || (depth_ < 3 && !in_values())) return place;
   place.append("/").append(std::to_string(row_));
   if (section_ == materials && field_ < unknown_key) place.append("/").append(material_keys[field_]);
   return place;
@@ -45,6 +46,11 @@ void RobotReader::wrong_type(const std::string& given) const {
     if (section_ == version) refuse("must be a whole number, not " + given);
     refuse(std::string(section_ == origin ? "must be an object" : "must be an array") + ", not " + given);
   }
+  if (in_values())
+    refuse(std::string(section_ == mass    ? "must be a number"
+                       : section_ == fixed ? "must be a whole number"
+                                           : "must be a text") +
+           ", not " + given);
   if (depth_ == 2)
     refuse("holds " + given + " at " + std::to_string(row_) + ", not " +
            (section_ == materials ? "an object" : "an array"));
@@ -115,6 +121,8 @@ void RobotReader::text(std::string_view value) {
   } else if (depth_ == 3 && section_ == materials && field_ == 0) {
     entry_.name = value;
     json_text(value);
+  } else if (depth_ == 2 && section_ == requirements) {
+    require_known(value);
   } else {
     wrong_type("a text");
   }
@@ -136,10 +144,12 @@ void RobotReader::number(const Number& value) {
                                        : "is not known; this program reads version 1");
   } else if (depth_ == 3 && section_ == materials && field_ > 0 && field_ < half_wave_key) {
     float* const fields[] = {&entry_.material.stiffness, &entry_.material.amplitude, &entry_.material.frequency,
-                             &entry_.material.phase};
+                             &entry_.material.phase, &entry_.material.relaxation_time};
     *fields[field_ - 1] = finite(value);
-  } else if (depth_ == 3 && section_ >= masses && section_ <= faces) {
+  } else if (depth_ == 3 && section_ >= masses && section_ <= velocity) {
     row_number(value);
+  } else if (in_values() && section_ != requirements) {
+    value_number(value);
   } else {
     wrong_type("a number");
   }
@@ -157,7 +167,10 @@ void RobotReader::row_number(const Number& value) {
   const std::size_t column = column_++;
   if (section_ == masses) {
     if (column > 2) refuse("a mass has three coordinates [x, y, z]");
-    (column == 0 ? position_.x : column == 1 ? position_.y : position_.z) = finite(value);
+    (column == 0 ? vector_.x : column == 1 ? vector_.y : vector_.z) = finite(value);
+  } else if (section_ == velocity) {
+    if (column > 2) refuse("a velocity has three components [x, y, z]");
+    (column == 0 ? vector_.x : column == 1 ? vector_.y : vector_.z) = finite(value);
   } else if (section_ == faces) {
     if (column > 2) refuse("a face has three masses [a, b, c]");
     (column == 0 ? face_.a : column == 1 ? face_.b : face_.c) = mass_index(value);
@@ -176,21 +189,49 @@ void RobotReader::row_number(const Number& value) {
   }
 }
 
+// Lists with one element per mass.
+void RobotReader::require_room() const {
+  if (row_ == max_masses)
+    refuse("more than 65535 " + std::string(section_ == masses ? "masses" : "elements") +
+           ", at most 65535 are accepted");
+}
+
+// An element of `mass` or `fixed`.
+void RobotReader::value_number(const Number& value) {
+  if (row_ == max_masses) --depth_, require_room();
+  if (section_ == mass)
+    robot_.mass.push_back(finite(value));
+  else
+    robot_.fixed.push_back(mass_index(value));
+  ++row_;
+}
+
+void RobotReader::require_known(std::string_view requirement) {
+  if (std::ranges::find(known_requirements, requirement) == known_requirements.end()) {
+    std::string known;
+    for (const std::string_view each : known_requirements) known.append(known.empty() ? "" : ", ").append(each);
+    refuse("requires \"" + shown(requirement) + "\", which this version does not know; it knows " + known);
+  }
+  ++row_;
+}
+
 void RobotReader::begin_list(std::size_t announced) {
   row_ = 0;
-  const std::size_t limit = section_ == masses      ? max_masses
+  const bool per_mass = section_ == masses || section_ == velocity || section_ == mass || section_ == fixed;
+  const std::size_t limit = per_mass                ? max_masses
                             : section_ == materials ? std::size_t{max_materials}
                             : section_ == actuators ? max_actuators
                                                     : unknown_length;
-  if (announced != unknown_length && announced > limit)
-    refuse(std::to_string(announced) + " " + std::string(section_names[section_]) + ", at most " +
-           std::to_string(limit) + " are accepted");
+  if (announced != unknown_length && announced > limit) {
+    const std::string what(per_mass && section_ != masses ? "elements" : section_names[section_]);
+    refuse(std::to_string(announced) + " " + what + ", at most " + std::to_string(limit) + " are accepted");
+  }
   ++depth_;
 }
 
 void RobotReader::begin_row(bool is_array) {
   if (is_array == (section_ == materials)) wrong_type(is_array ? "an array" : "an object");
-  if (section_ == masses && row_ == max_masses) refuse("more than 65535 masses, at most 65535 are accepted");
+  if (section_ == masses || section_ == velocity) require_room();
   if (section_ == materials && row_ == max_materials) refuse("more than 256 materials, at most 256 are accepted");
   column_ = 0;
   spring_.rest_length = std::numeric_limits<float>::quiet_NaN();
@@ -203,7 +244,7 @@ void RobotReader::begin_array(std::size_t announced) {
   if (passes_by(1)) return;
   if (DocumentEvents* const to = part(1)) return to->begin_array(announced);
   if (depth_ == 1 && section_ >= materials && section_ <= actuators) return begin_list(announced);
-  if (depth_ == 2) return begin_row(true);
+  if (depth_ == 2 && !in_values()) return begin_row(true);
   wrong_type("an array");
 }
 
@@ -218,7 +259,7 @@ void RobotReader::begin_object(std::size_t announced) {
     return origin_.begin_object(announced);
   }
   if (DocumentEvents* const to = part(1)) return to->begin_object(announced);
-  if (depth_ == 2) return begin_row(false);
+  if (depth_ == 2 && !in_values()) return begin_row(false);
   wrong_type("an object");
 }
 
@@ -255,7 +296,10 @@ void RobotReader::end_material() {
 void RobotReader::end_row() {
   if (section_ == masses) {
     if (column_ != 3) refuse("a mass has three coordinates [x, y, z]");
-    robot_.masses.push_back(position_);
+    robot_.masses.push_back(vector_);
+  } else if (section_ == velocity) {
+    if (column_ != 3) refuse("a velocity has three components [x, y, z]");
+    robot_.velocity.push_back(vector_);
   } else if (section_ == springs) {
     if (column_ < 3) refuse("a spring is [a, b, material] or [a, b, material, rest_length]");
     robot_.springs.push_back(spring_);
@@ -269,11 +313,21 @@ void RobotReader::end_row() {
   ++row_;
 }
 
+// Called after a list without elements. Where a missing list has a meaning of its own, an empty one is a mistake.
+void RobotReader::refuse_if_empty() {
+  if (section_ < materials || section_ > actuators) return;
+  --depth_;  // the place is the list
+  if (section_ == materials) refuse("an empty table; leave it out for the 254 defaults");
+  if (section_ == mass) refuse("an empty list; leave it out for 1 kg per mass");
+  if (section_ == velocity) refuse("an empty list; leave it out for a robot at rest");
+  ++depth_;
+}
+
 void RobotReader::end_array() {
   if (passes_by(-1)) return;
   if (DocumentEvents* const to = part(-1)) return to->end_array();
   if (depth_ == 3) return end_row();
-  if (section_ == materials && row_ == 0) refuse("an empty table; leave it out for the 254 defaults");
+  if (row_ == 0) refuse_if_empty();
   --depth_;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -49,17 +50,29 @@ class RobotWriter {
   RobotWriter(const Robot& robot, DocumentEvents& events) : robot_(robot), events_(events) {}
 
   void run() {
-    const bool has_materials = !robot_.materials.empty(), has_actuators = !robot_.actuators.empty(),
-               has_origin = !robot_.origin.empty();
-    events_.begin_object(6u + has_materials + has_actuators + has_origin);
+    const bool has_materials = !robot_.materials.empty(), has_mass = !robot_.mass.empty(),
+               has_velocity = !robot_.velocity.empty(), has_fixed = !robot_.fixed.empty(),
+               has_actuators = !robot_.actuators.empty(), has_origin = !robot_.origin.empty();
+    const std::vector<std::string_view> requirements = requirements_of(robot_);
+    events_.begin_object(6u + !requirements.empty() + has_materials + has_mass + has_velocity + has_fixed +
+                         has_actuators + has_origin);
     field("format", "mercury-robot");
     field("version", 1u);
+    if (!requirements.empty())
+      write_values("requires", requirements, [&](std::string_view name) { events_.text(name); });
     field("name", robot_.name);
     if (has_materials) write_materials();
     write_list("masses", robot_.masses, [&](const Vec3& x) {
       events_.begin_array(3);
       real(x.x), real(x.y), real(x.z);
     });
+    if (has_mass) write_values("mass", robot_.mass, [&](float mass) { real(mass); });
+    if (has_velocity)
+      write_list("velocity", robot_.velocity, [&](const Vec3& v) {
+        events_.begin_array(3);
+        real(v.x), real(v.y), real(v.z);
+      });
+    if (has_fixed) write_values("fixed", robot_.fixed, [&](std::uint16_t point) { natural(point); });
     // Lengths are written for all springs or for none; a mixture would confuse readers of the file.
     bool at_rest = true;
     for (const Spring& spring : robot_.springs)
@@ -96,18 +109,28 @@ class RobotWriter {
     events_.end_array();
   }
 
+  template <class List, class Write>
+  void write_values(std::string_view key, const List& list, Write write) {
+    events_.key(key);
+    events_.begin_array(list.size());
+    for (const auto& value : list) write(value);
+    events_.end_array();
+  }
+
   void write_materials() {
     events_.key("materials");
     events_.begin_array(robot_.materials.size());
     const bool has_names = !robot_.material_names.empty();
     for (std::size_t i = 0; i < robot_.materials.size(); ++i) {
       const Material& material = robot_.materials[i];
-      events_.begin_object(4u + has_names + material.half_wave);
+      const bool has_relaxation_time = material.relaxation_time != 0;
+      events_.begin_object(4u + has_names + has_relaxation_time + material.half_wave);
       if (has_names) field("name", robot_.material_names[i]);
       field("stiffness", material.stiffness);
       field("amplitude", material.amplitude);
       field("frequency", material.frequency);
       field("phase", material.phase);
+      if (has_relaxation_time) field("relaxation_time", material.relaxation_time);
       if (material.half_wave) events_.key("half_wave"), events_.boolean(true);
       events_.end_object();
     }
@@ -120,10 +143,7 @@ class RobotWriter {
     for (const Actuator& actuator : robot_.actuators) {
       events_.begin_object(2);
       field("name", actuator.name);
-      events_.key("materials");
-      events_.begin_array(actuator.materials.size());
-      for (const MaterialId id : actuator.materials) natural(id);
-      events_.end_array();
+      write_values("materials", actuator.materials, [&](MaterialId id) { natural(id); });
       events_.end_object();
     }
     events_.end_array();
@@ -145,6 +165,16 @@ class RobotWriter {
 };
 
 }  // namespace
+
+std::vector<std::string_view> requirements_of(const Robot& robot) {
+  const bool relaxes = std::ranges::any_of(robot.materials, [](const Material& m) { return m.relaxation_time != 0; });
+  const std::array<bool, known_requirements.size()> has{!robot.mass.empty(), !robot.velocity.empty(),
+                                                        !robot.fixed.empty(), relaxes};
+  std::vector<std::string_view> found;
+  for (std::size_t i = 0; i < has.size(); ++i)
+    if (has[i]) found.push_back(known_requirements[i]);
+  return found;
+}
 
 void write_robot(const Robot& robot, DocumentEvents& events) { RobotWriter(robot, events).run(); }
 

@@ -9,12 +9,17 @@
 namespace mercury::fuzz {
 namespace {
 
-std::string checkpoint_of(bool measured, bool recorded) {
+std::string checkpoint_of(bool measured, bool recorded, bool own_points = false) {
   Robot robot;
   robot.name = "own";
   robot.masses = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
   robot.springs = {{0, 1, 1, 0.1f}, {0, 2, 1, 0.1f}, {1, 2, 2, 0.14f}};
   robot.faces = {{0, 1, 2}};
+  if (own_points) {
+    robot.mass = {0.5f, 1, 3};
+    robot.velocity = {{}, {0, 0, 0.25f}, {0.1f, 0, 0}};
+    robot.fixed = {2};
+  }
   Simulation simulation({.device = {.kind = DeviceKind::cpu, .threads = 1}}, std::vector<Robot>{robot, robot});
   simulation.step(30);
   CheckpointNotes notes{.seconds = 1,
@@ -60,6 +65,8 @@ void check_checkpoint(std::string_view input) {
     require(same(again.notes.measures[i].work, read.notes.measures[i].work), "measures do not read back");
 }
 
-std::vector<std::string> checkpoint_seeds() { return {checkpoint_of(false, false), checkpoint_of(true, true)}; }
+std::vector<std::string> checkpoint_seeds() {
+  return {checkpoint_of(false, false), checkpoint_of(true, true), checkpoint_of(false, false, true)};
+}
 
 }  // namespace mercury::fuzz

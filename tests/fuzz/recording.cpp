@@ -105,8 +105,13 @@ std::vector<std::string> recording_seeds() {
   own.materials = {{}, {30, 0.2f, 3, 0.5f}, {70, 0, 0, 0}};
   own.material_names = {"air", "fast muscle", "cord"};
   own.actuators = {{"both", {2, 1}}};
-  return {recording_of({triangle("a")}, 0, true), recording_of({triangle("a"), own}, 0, true),
-          recording_of({own}, 1, true), recording_of({own}, 0, false)};
+  Robot points = triangle("points");
+  points.materials = {{}, {30, 0.2f, 3, 0.5f, true, 0.02f}, {70, 0, 0, 0}};
+  points.mass = {0.5f, 1, 3};
+  points.velocity = {{}, {0, 0, 0.25f}, {0.1f, 0, 0}};
+  points.fixed = {2, 0};
+  return {recording_of({points}, 0, true), recording_of({triangle("a")}, 0, true),
+          recording_of({triangle("a"), own}, 0, true), recording_of({own}, 1, true), recording_of({own}, 0, false)};
 }
 
 }  // namespace mercury::fuzz

@@ -28,6 +28,10 @@ Robot small_robot() {
   const auto defaults = default_materials();
   robot.materials.assign(defaults.begin(), defaults.begin() + 3);
   robot.materials[2].half_wave = true;
+  robot.materials[1].relaxation_time = 0.02f;
+  robot.mass.assign(robot.masses.size(), 0.5f);
+  robot.velocity.assign(robot.masses.size(), {0, 0, 0.25f});
+  robot.fixed = {1, 0};
   robot.material_names = {"air", "a", "b"};
   for (Spring& spring : robot.springs) spring.material = 1;
   return robot;
@@ -80,7 +84,8 @@ void check_repro(std::string_view input) {
 
 std::vector<std::string> repro_seeds() {
   std::vector<std::string> seeds;
-  for (const Environment& environment : {Environment(Ocean{}), Environment(OceanSimple{}), Environment(Land{})}) {
+  for (const Environment& environment :
+       {Environment(Ocean{}), Environment(OceanSimple{}), Environment(Land{}), Environment(Water{})}) {
     Repro repro{.robot = pair()};
     const auto table = materials_of(repro.robot);
     repro.robot.materials.assign(table.begin(), table.begin() + 3);
@@ -91,6 +96,7 @@ std::vector<std::string> repro_seeds() {
     ReproChange change{.step = 3, .configuration = repro.configuration};
     change.materials = repro.robot.materials;
     change.materials->back().half_wave = true;
+    if (has_contacts(environment)) change.materials->back().relaxation_time = 0.02f;
     change.perturbations = repro.perturbations;
     repro.changes = {change, {.step = 4}};
     repro.exploded_at = 0.01;

@@ -129,6 +129,77 @@ TEST(BadRobotFiles, Faces) {
   EXPECT_EQ(refusal_of({.faces = "[[0,1,2,0]]"}), "/faces/0: a face has three masses [a, b, c]");
 }
 
+TEST(BadRobotFiles, Mass) {
+  const auto mass = [](const std::string& list) { return refusal_of({.rest = ",\"mass\":" + list}); };
+  EXPECT_EQ(mass("[1,0.5,2]"), "no error");
+  EXPECT_EQ(mass("3"), "/mass: must be an array, not a number");
+  EXPECT_EQ(mass("[]"), "/mass: an empty list; leave it out for 1 kg per mass");
+  EXPECT_EQ(mass("[1,1]"), "/mass: 2 numbers, the robot has 3 masses");
+  EXPECT_EQ(mass("[1,1,1,1]"), "/mass: 4 numbers, the robot has 3 masses");
+  EXPECT_EQ(mass("[1,0,1]"), "/mass/1: a mass must be a finite number above 0 kg");
+  EXPECT_EQ(mass("[1,1,-2]"), "/mass/2: a mass must be a finite number above 0 kg");
+  EXPECT_EQ(mass("[1,1,1e39]"), "/mass/2: 1e39 is not a finite 32-bit number");
+  EXPECT_EQ(mass("[1,null,1]"), "/mass/1: must be a number, not null");
+  EXPECT_EQ(mass("[1,\"1\",1]"), "/mass/1: must be a number, not a text");
+  EXPECT_EQ(mass("[[1],1,1]"), "/mass/0: must be a number, not an array");
+  EXPECT_EQ(mass("[{}]"), "/mass/0: must be a number, not an object");
+  EXPECT_EQ(mass("[true]"), "/mass/0: must be a number, not true");
+  EXPECT_EQ(mass("[1,1,1],\"mass\":[1,1,1]"), "/mass: appears twice");
+  std::string many = "[1";
+  for (int i = 0; i < 65535; ++i) many += ",1";
+  EXPECT_EQ(mass(many + "]"), "/mass: more than 65535 elements, at most 65535 are accepted");
+}
+
+TEST(BadRobotFiles, VelocityAndFixed) {
+  const auto velocity = [](const std::string& list) { return refusal_of({.rest = ",\"velocity\":" + list}); };
+  EXPECT_EQ(velocity("[[0,0,0],[0,0,1],[0,0,0]]"), "no error");
+  EXPECT_EQ(velocity("[]"), "/velocity: an empty list; leave it out for a robot at rest");
+  EXPECT_EQ(velocity("[[0,0,0]]"), "/velocity: 1 vectors, the robot has 3 masses");
+  EXPECT_EQ(velocity("[[0,0,0],[0,0]]"), "/velocity/1: a velocity has three components [x, y, z]");
+  EXPECT_EQ(velocity("[[0,0,0,0]]"), "/velocity/0: a velocity has three components [x, y, z]");
+  EXPECT_EQ(velocity("[[0,0,0],7]"), "/velocity: holds a number at 1, not an array");
+  EXPECT_EQ(velocity("[[0,0,\"x\"]]"), "/velocity/0: must hold numbers, not a text");
+  EXPECT_EQ(velocity("[[0,0,1e39]]"), "/velocity/0: 1e39 is not a finite 32-bit number");
+  const auto fixed = [](const std::string& list) { return refusal_of({.rest = ",\"fixed\":" + list}); };
+  EXPECT_EQ(fixed("[]"), "no error");
+  EXPECT_EQ(fixed("[2,0]"), "no error");
+  EXPECT_EQ(fixed("[0,3]"), "/fixed/1: mass 3 is out of range, the robot has 3");
+  EXPECT_EQ(fixed("[0,70000]"), "/fixed/1: mass 70000 is out of range, the robot has 3");
+  EXPECT_EQ(fixed("[-1]"), "/fixed/0: mass -1 is out of range, the robot has 3");
+  EXPECT_EQ(fixed("[1,2,1]"), "/fixed/2: mass 1 is listed twice");
+  EXPECT_EQ(fixed("[1.5]"), "/fixed/0: a mass is given by a whole number");
+  EXPECT_EQ(fixed("[\"0\"]"), "/fixed/0: must be a whole number, not a text");
+  EXPECT_EQ(fixed("[[0]]"), "/fixed/0: must be a whole number, not an array");
+}
+
+TEST(BadRobotFiles, WhatAFileRequires) {
+  const auto refusal = [](const std::string& list) { return refusal_of({.rest = ",\"requires\":" + list}); };
+  EXPECT_EQ(refusal("[]"), "no error");
+  EXPECT_EQ(refusal(R"(["mass","velocity","fixed","relaxation_time"])"), "no error");
+  EXPECT_EQ(refusal(R"(["mass","brain"])"),
+            "/requires/1: requires \"brain\", which this version does not know; it knows mass, velocity, fixed, "
+            "relaxation_time");
+  EXPECT_EQ(refusal("\"mass\""), "/requires: must be an array, not a text");
+  EXPECT_EQ(refusal("[1]"), "/requires/0: must be a text, not a number");
+  EXPECT_EQ(refusal("[[]]"), "/requires/0: must be a text, not an array");
+  // A later version may change what a member is; the file says so before it.
+  EXPECT_EQ(refusal_of({.head = R"("format":"mercury-robot","version":1,"requires":["brain"])", .masses = "{}"}),
+            "/requires/0: requires \"brain\", which this version does not know; it knows mass, velocity, fixed, "
+            "relaxation_time");
+}
+
+TEST(BadRobotFiles, RelaxationTimes) {
+  const auto refusal = [](const std::string& value) {
+    return refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"stiffness":1,"relaxation_time":)" + value + "}]"});
+  };
+  EXPECT_EQ(refusal("0.01"), "no error");
+  EXPECT_EQ(refusal("true"), "/materials/1/relaxation_time: must be a number, not true");
+  EXPECT_EQ(refusal("\"1\""), "/materials/1/relaxation_time: must be a number, not a text");
+  EXPECT_EQ(refusal("-0.01"), "/materials/1: relaxation_time must be a finite number >= 0 s");
+  EXPECT_EQ(refusal("1e39"), "/materials/1/relaxation_time: 1e39 is not a finite 32-bit number");
+  EXPECT_EQ(refusal("0,\"relaxation_time\":0"), "/materials/1/relaxation_time: appears twice");
+}
+
 TEST(BadRobotFiles, MaterialsNamesAndOrigin) {
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[])"}),
             "/materials: an empty table; leave it out for the 254 defaults");
@@ -198,6 +269,13 @@ TEST(BadRobotFiles, CborThatAnnouncesMoreThanItHolds) {
             "/masses: 1000000 masses, at most 65535 are accepted");
   EXPECT_EQ(refusal_of_cbor(cbor_masses("\x9b\xff\xff\xff\xff\xff\xff\xff\xff"s)),
             "byte 8: the CBOR document breaks off");
+  EXPECT_EQ(refusal_of_cbor("\xa1\x64mass\x9a\x00\x0f\x42\x40"s),
+            "/mass: 1000000 elements, at most 65535 are accepted");
+  EXPECT_EQ(refusal_of_cbor("\xa1\x65"
+                            "fixed\x9a\x00\x0f\x42\x40"s),
+            "/fixed: 1000000 elements, at most 65535 are accepted");
+  EXPECT_EQ(refusal_of_cbor("\xa1\x68velocity\x9a\x00\x0f\x42\x40"s),
+            "/velocity: 1000000 elements, at most 65535 are accepted");
   EXPECT_EQ(refusal_of_cbor("\xa1\x67springs\x9b\x00\x00\x00\xff\xff\xff\xff\xff"s),
             "byte 9: the CBOR document breaks off");
   EXPECT_EQ(refusal_of_cbor("\xa1\x64name\x7b\x00\x00\x00\xff\xff\xff\xff\xff"s),

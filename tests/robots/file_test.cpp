@@ -15,6 +15,7 @@
 
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
+#include "robots/file/document.h"
 #include "robots/file/whole_file.h"
 #include "tests/size_limit.h"
 
@@ -58,11 +59,14 @@ class RobotFiles : public testing::Test {
 Robot robot_with_hard_values() {
   Robot robot;
   robot.name = "Zitteraal \"ä\"\n\t\\ \x01 鰻";
-  robot.materials = {{}, {50, 0.14f, 1, std::nextafter(1.f, 2.f)}, {1e-30f, -0.5f, -3, 7e7f, true}};
+  robot.materials = {{}, {50, 0.14f, 1, std::nextafter(1.f, 2.f)}, {1e-30f, -0.5f, -3, 7e7f, true, 1e-45f}};
   robot.material_names = {"air", "", "µ"};
   robot.masses = {{0.1f, -0.f, 1e-45f}, {1.f / 3, 999999.94f, 16777216.f / 32}, {-1.17549435e-38f, 5, 3e-5f}};
   robot.springs = {{0, 1, 1, 0.001f}, {2, 1, 2, 1e6f}};
   robot.faces = {{0, 1, 2}, {2, 1, 0}};
+  robot.mass = {1e-45f, 1.f / 3, 3e38f};
+  robot.velocity = {{-0.f, 1e-45f, 0.1f}, {}, {3e38f, -1, 0}};
+  robot.fixed = {2, 0};
   robot.origin =
       R"({"kind":"test","seed":18446744073709551615,"a":[-9223372036854775808,0.1,1e+300,null,true,"x\u0000"],"b":{}})";
   return robot;
@@ -86,6 +90,74 @@ TEST_F(RobotFiles, NameHalfWavesOnlyWhereAMaterialHasThem) {
   const std::string json = serialize_robot(robot, RobotFormat::json);
   EXPECT_THAT(json, testing::HasSubstr(R"("half_wave":true)"));
   EXPECT_EQ(json.find("half_wave"), json.rfind("half_wave")) << "air has none";
+}
+
+// A file of each kind, as this version writes it. They are read for ever.
+constexpr std::string_view plain_file = R"({
+"format":"mercury-robot",
+"version":1,
+"name":"pair",
+"materials":[{"stiffness":0,"amplitude":0,"frequency":0,"phase":0},{"stiffness":50,"amplitude":0.1,"frequency":1,"phase":0,"half_wave":true}],
+"masses":[[0,0,0],[0.1,0,0]],
+"springs":[[0,1,1]],
+"faces":[]
+}
+)";
+constexpr std::string_view own_points_file = R"({
+"format":"mercury-robot",
+"version":1,
+"requires":["mass","velocity","fixed","relaxation_time"],
+"name":"pair",
+"materials":[{"stiffness":0,"amplitude":0,"frequency":0,"phase":0},{"stiffness":50,"amplitude":0.1,"frequency":1,"phase":0,"relaxation_time":0.02,"half_wave":true}],
+"masses":[[0,0,0],[0.1,0,0]],
+"mass":[0.5,2],
+"velocity":[[0,0,0],[0,0,-0.25]],
+"fixed":[0],
+"springs":[[0,1,1]],
+"faces":[]
+}
+)";
+
+std::string as_cbor(std::string_view json) {
+  std::string cbor;
+  CborWriter writer(cbor);
+  read_json(json, writer);
+  return cbor;
+}
+
+TEST_F(RobotFiles, OfEachKindAreReadAndWrittenAsEver) {
+  Robot robot{.name = "pair",
+              .materials = {{}, {50, 0.1f, 1, 0, true}},
+              .masses = {{0, 0, 0}, {0.1f, 0, 0}},
+              .springs = {{0, 1, 1, 0.1f}}};
+  const auto expect_file = [&](std::string_view file) {
+    EXPECT_EQ(parse_robot(file, RobotFormat::json), robot);
+    EXPECT_EQ(serialize_robot(robot, RobotFormat::json), file);
+    EXPECT_EQ(parse_robot(as_cbor(file), RobotFormat::cbor), robot);
+    EXPECT_EQ(parse_robot(serialize_robot(robot, RobotFormat::cbor), RobotFormat::cbor), robot);
+  };
+  expect_file(plain_file);
+  robot.materials[1].relaxation_time = 0.02f;
+  robot.mass = {0.5f, 2};
+  robot.velocity = {{}, {0, 0, -0.25f}};
+  robot.fixed = {0};
+  expect_file(own_points_file);
+}
+
+TEST_F(RobotFiles, RequireEachPartThatTheRobotHas) {
+  const Robot plain{.materials = {{}, {50}}, .masses = {{0, 0, 0}, {1, 0, 0}}, .springs = {{0, 1, 1, 1}}};
+  const auto requirement = [&](const auto& change) {
+    Robot robot = plain;
+    change(robot);
+    const std::string json = serialize_robot(robot, RobotFormat::json);
+    const std::size_t at = json.find("\"requires\":");
+    return at == std::string::npos ? "" : json.substr(at + 11, json.find('\n', at) - at - 12);
+  };
+  EXPECT_EQ(requirement([](Robot&) {}), "");
+  EXPECT_EQ(requirement([](Robot& r) { r.mass = {1, 1}; }), R"(["mass"])");
+  EXPECT_EQ(requirement([](Robot& r) { r.velocity = {{}, {}}; }), R"(["velocity"])");
+  EXPECT_EQ(requirement([](Robot& r) { r.fixed = {1}; }), R"(["fixed"])");
+  EXPECT_EQ(requirement([](Robot& r) { r.materials[1].relaxation_time = 1; }), R"(["relaxation_time"])");
 }
 
 TEST_F(RobotFiles, VoxelRobotsComeBackWithTheirGrid) {

@@ -19,6 +19,10 @@ Robot small_robot() {
   const auto defaults = default_materials();
   robot.materials.assign(defaults.begin(), defaults.begin() + 3);
   robot.materials[2].half_wave = true;
+  robot.materials[1].relaxation_time = 0.02f;
+  robot.mass.assign(robot.masses.size(), 0.5f);
+  robot.velocity.assign(robot.masses.size(), {0, 0, 0.25f});
+  robot.fixed = {1, 0};
   robot.material_names = {"air", "a", "b"};
   for (Spring& spring : robot.springs) spring.material = 1;
   return robot;

@@ -130,6 +130,10 @@ TEST(BodyHash, IsThatOfTheBodyAndItsMaterials) {
   EXPECT_TRUE(differs([](Robot& r) { r.springs[5].rest_length *= 1.01f; }));
   EXPECT_TRUE(differs([](Robot& r) { r.faces.pop_back(); }));
   EXPECT_TRUE(differs([](Robot& r) { r.materials[2].phase += 0.1f; }));
+  EXPECT_TRUE(differs([](Robot& r) { r.materials[2].relaxation_time = 0.1f; }));
+  EXPECT_TRUE(differs([](Robot& r) { r.mass.assign(r.masses.size(), 1); }));
+  EXPECT_TRUE(differs([](Robot& r) { r.velocity.assign(r.masses.size(), {}); }));
+  EXPECT_TRUE(differs([](Robot& r) { r.fixed = {0}; }));
 }
 
 }  // namespace

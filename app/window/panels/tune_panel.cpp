@@ -231,6 +231,8 @@ void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId
                     {0, 0.6f, "%.3f"});
   changed |= slider("frequency", "omega", material.frequency, original.frequency, {0, 25, "%.2f rad/s"});
   changed |= slider("phase", "phi", material.phase, original.phase, {-pi, 2 * pi, "%.2f rad"});
+  changed |= slider("relaxation time", "tau: how much the spring resists its rate of length", material.relaxation_time,
+                    original.relaxation_time, {0, 0.1f, "%.4f s"});
   row("half wave", "only the negative half of the sine acts: the muscle shortens and comes back");
   changed |= ImGui::Checkbox("##half wave", &material.half_wave);
   context.log.item("materials.half_wave");

@@ -51,8 +51,9 @@ struct Inspection {
 // Measures a robot, which must be valid (see validate in robot.h).
 Inspection inspect(const Robot& robot);
 
-// FNV-1a over masses, springs, faces and materials, bit for bit. Equal robots have equal hashes, whatever their names,
-// their origins and the names of their materials; the default table is as good as a copy of it.
+// FNV-1a over masses, springs, faces, materials, velocities and fixed points, bit for bit. Equal robots have equal
+// hashes, whatever their names, their origins and the names of their materials; the default table is as good as a copy
+// of it.
 std::uint64_t body_hash(const Robot& robot);
 
 }  // namespace mercury

@@ -49,6 +49,29 @@ TEST_F(InfoCommand, CountsMusclesThatMoveByHalfWaves) {
   EXPECT_EQ(document["robots"][0]["materials"][1]["half_wave"], false);
 }
 
+// A mass of 2 kg on a spring of 5,000 N/m at a fixed point: w = 50 rad/s, and dt < sqrt(tau^2 + 4 / w^2) - tau.
+TEST_F(InfoCommand, SaysTheMassAndTheVibrationsOfABody) {
+  write("weight.json", R"({"format":"mercury-robot","version":1,"requires":["mass","fixed"],"faces":[],
+    "masses":[[0,0,0.5],[0,0,0]],"mass":[1,2],"fixed":[0],"springs":[[0,1,1]],
+    "materials":[{"stiffness":0},{"stiffness":5000,"relaxation_time":0.03}]})");
+  const Outcome outcome = mercury({"info", path("weight.json")});
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.output, testing::ContainsRegex("mass +3 kg, 1 point fixed\n"));
+  EXPECT_THAT(outcome.output, testing::ContainsRegex("density +-\n"));
+  EXPECT_THAT(outcome.output, testing::ContainsRegex("vibrates +from 7.96 Hz on\n"));
+  EXPECT_THAT(outcome.output, testing::ContainsRegex("largest dt +0.02 s with the force solver\n"));
+  const auto robot = nlohmann::json::parse(mercury({"info", "--json", path("weight.json")}).output)["robots"][0];
+  EXPECT_EQ(robot["mass"], 3.0);
+  EXPECT_TRUE(robot["density"].is_null() && robot["modulus"].is_null());
+  EXPECT_NEAR(robot["lowest_frequency"], 50 / (2 * 3.14159265358979), 1e-6);
+  EXPECT_NEAR(robot["largest_dt"], 0.02, 1e-6);
+  EXPECT_EQ(robot["materials"][0]["relaxation_time"], 0.03);
+  write("future.json", R"({"format":"mercury-robot","version":1,"requires":["brain"],"masses":[],"springs":[]})");
+  const Outcome refused = mercury({"info", path("future.json")});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.messages, HasSubstr("/requires/0: requires \"brain\", which this version does not know"));
+}
+
 TEST_F(InfoCommand, WithoutAFileDescribesTheMachine) {
   const Outcome outcome = mercury({"info"});
   EXPECT_EQ(outcome.status, 0);

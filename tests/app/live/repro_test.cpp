@@ -40,6 +40,7 @@ class LiveRepro : public test::FolderTest {
     muscle.frequency *= 3;
     muscle.phase = 0.7f;
     muscle.half_wave = true;
+    muscle.relaxation_time = 0.001f;
     scene.set_material({robot}, 2, muscle);
     step(33);
     scene.scale_materials({robot}, {.stiffness = 1.5f});
@@ -223,7 +224,14 @@ TEST_F(LiveRepro, InvalidReproIsReportedInOneLine) {
   auto changed = document;
   for (auto& change : changed["changes"])
     if (change.contains("materials")) {
-      ASSERT_EQ(change["materials"][0].size(), 6u);
+      ASSERT_EQ(change["materials"][0].size(), 7u);
+      EXPECT_EQ(change["materials"][0][6], 0.001);
+      auto odd_time = changed;
+      for (const auto& odd : {nlohmann::json(-1), nlohmann::json(), nlohmann::json("1")}) {
+        for (auto& one : odd_time["changes"])
+          if (one.contains("materials")) one["materials"][0][6] = odd;
+        EXPECT_TRUE(refused(odd_time.dump())) << odd;
+      }
       EXPECT_TRUE(change["materials"][0][5].get<bool>());
       for (const auto& odd : {nlohmann::json(1), nlohmann::json(), nlohmann::json("true")}) {
         change["materials"][0][5] = odd;

@@ -69,6 +69,16 @@ TEST(VoxelEdit, MirroredVoxelsAppearOnBothSides) {
   for (const Vec3 mass : after.masses) EXPECT_TRUE(has_mass_at(after, {-mass.x, mass.y, mass.z}));
 }
 
+TEST(VoxelEdit, EditedRobotsKeepTheirMassesAndFixedPoints) {
+  Robot before = block(2, 2, 2);
+  before.mass.assign(before.masses.size(), 0.5f);
+  before.fixed = {3};
+  const Robot after = with_voxel(before, side_towards(before, {0, 0, 1}), {.tool = VoxelTool::add, .material = 3});
+  EXPECT_EQ(after.mass, std::vector<float>(after.masses.size(), 0.5f));
+  ASSERT_EQ(after.fixed.size(), 1u);
+  EXPECT_EQ(after.masses[after.fixed[0]], before.masses[3]);
+}
+
 TEST(VoxelEdit, TakingAwayWhatWasAddedGivesTheBodyBack) {
   const Robot before = block(2, 2, 2);
   const Robot larger = with_voxel(before, side_towards(before, {0, 0, 1}), {.tool = VoxelTool::add, .material = 3});

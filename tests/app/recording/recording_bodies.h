@@ -35,6 +35,18 @@ inline Robot own_materials(const std::string& name) {
   return robot;
 }
 
+// A robot that says what its masses are, with materials that relax.
+inline Robot own_points(const std::string& name) {
+  Robot robot = own_materials(name);
+  robot.materials[1].relaxation_time = 0.02f;
+  robot.masses.push_back({0, 0.1f, 0});
+  robot.springs.push_back({0, 2, 2, 0.1f});
+  robot.mass = {0.5f, 1, 3};
+  robot.velocity = {{}, {0, 0, 0.25f}, {0.1f, 0, 0}};
+  robot.fixed = {2, 0};
+  return robot;
+}
+
 inline Configuration on_cpu() {
   Configuration configuration;
   configuration.device.kind = DeviceKind::cpu;

@@ -34,7 +34,7 @@ class RecordingFuzz : public FolderTest {
  protected:
   RecordingFuzz() {
     Robot robot = small_voxel_robot(0);
-    Simulation simulation(on_cpu(), std::vector{robot, own_materials("own")});
+    Simulation simulation(on_cpu(), std::vector{robot, own_materials("own"), own_points("points")});
     record(simulation, path("sound.h5"), 8, 1, {.seed = 3});
     sound_ = read("sound.h5");
   }
@@ -182,7 +182,7 @@ void put_announced(hid_t file, const std::string& name, hid_t type, const hdf5::
 bool is_read(const std::string& name) {
   const std::string last = name.substr(name.rfind('/') + 1);
   if (last == "step" || last == "time") return name.starts_with("/parameters/");
-  return name.starts_with("/particles/") && last != "mass";
+  return name.starts_with("/particles/");
 }
 
 TEST_F(RecordingChanged, AParameterThatAnOlderProgramDidNotRecordHasItsDefault) {
@@ -190,6 +190,47 @@ TEST_F(RecordingChanged, AParameterThatAnOlderProgramDidNotRecordHasItsDefault) 
                 [](hid_t file) { checked(H5Adelete_by_name(file, "/parameters", "drag_tangential", H5P_DEFAULT)); }),
             "");
   EXPECT_EQ(TrajectoryReader(path("changed.h5")).configuration().environment, Environment(Ocean{}));
+}
+
+TEST_F(RecordingChanged, ARecordingOfLandByAnOlderProgramHasTheContactsOfThen) {
+  Configuration on_land = on_cpu();
+  on_land.environment = Land{};
+  Simulation simulation(on_land, std::vector{pair("pair")});
+  std::filesystem::remove(path("sound.h5"));
+  record(simulation, path("sound.h5"), 1, 1);
+  EXPECT_EQ(refusal_after([](hid_t file) {
+              for (const char* name : {"relative_stiffness", "contact_distance"})
+                checked(H5Adelete_by_name(file, "/parameters", name, H5P_DEFAULT));
+            }),
+            "");
+  EXPECT_EQ(TrajectoryReader(path("changed.h5")).configuration().environment, Environment(Land{}));
+}
+
+TEST_F(RecordingChanged, ARecordingThatSaysNothingOfItsMassesHasOnesOf1kgAtRest) {
+  EXPECT_EQ(refusal_after([](hid_t file) {
+              for (const char* name : {"mass", "start_velocity", "fixed"})
+                remove(file, std::string("/particles/points/") + name);
+            }),
+            "");
+  const TrajectoryReader reader(path("changed.h5"));
+  const Robot& robot = reader.robots()[2].robot;
+  EXPECT_EQ(robot.masses.size(), 3u);
+  EXPECT_TRUE(robot.mass.empty() && robot.velocity.empty() && robot.fixed.empty());
+}
+
+TEST_F(RecordingChanged, MassesThatBreakARuleAreNamedWithTheRule) {
+  const auto with = [&](const char* name, hid_t type, const auto& values) {
+    return refusal_after([&](hid_t file) {
+      const Handle dataset(H5Dopen2(file, (std::string("/particles/points/") + name).c_str(), H5P_DEFAULT));
+      checked(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    });
+  };
+  const std::string place = path("changed.h5") + ": /particles/points: ";
+  EXPECT_EQ(with("mass", H5T_NATIVE_FLOAT, std::array{1.f, 2.f, 3.f}), "");
+  EXPECT_EQ(with("mass", H5T_NATIVE_FLOAT, std::array{1.f, 0.f, 3.f}),
+            place + "/mass/1: a mass must be a finite number above 0 kg");
+  EXPECT_EQ(with("fixed", H5T_NATIVE_UINT16, std::array<std::uint16_t, 2>{1, 9}),
+            place + "/fixed/1: mass 9 is out of range, the robot has 3");
 }
 
 TEST_F(RecordingChanged, EveryMissingPartIsReportedOrNotNeeded) {

@@ -113,6 +113,23 @@ TEST_F(Recording, HalfWavesComeBackAndAreWrittenOnlyWhereThereAreAny) {
   EXPECT_FALSE(has_half_wave(file(), "defaults"));
 }
 
+TEST_F(Recording, MassesVelocitiesAndFixedPointsComeBack) {
+  Robot ones = pair("explicitly 1 kg"), slow = own_materials("slow");
+  ones.mass = {1, 1};
+  slow.materials[2].relaxation_time = 0.5f;
+  slow.materials[1].half_wave = false;
+  const std::vector<Robot> robots{own_points("own"), pair("pair"), ones, slow};
+  Simulation simulation(on_cpu(), robots);
+  record(simulation, file(), 100, 100);
+  TrajectoryReader reader(file());
+  EXPECT_EQ(robots_of(reader), robots);
+  EXPECT_EQ(reader.velocities(0)[1], robots[0].velocity[1]);
+  Simulation again(reader.configuration(), robots_of(reader));
+  again.step(100);
+  EXPECT_TRUE(same_bits(reader.positions(1), all_positions(again)));
+  EXPECT_EQ(reader.positions(1)[2], robots[0].masses[2]) << "fixed";
+}
+
 TEST_F(Recording, ActuatorsComeBackInTheirOrder) {
   Robot robot = pair("many");
   robot.actuators = {{"längs", {9, 3}}, {"b", {1}}, {"a", {200, 7, 8}}};
@@ -142,7 +159,11 @@ INSTANTIATE_TEST_SUITE_P(
                                 .contacts = Contacts{false, 123},
                                 .gravity = {0.4f, 0.5f, -0.6f},
                                 .stiffness_scale = 1.7f},
-                    Environment{.water = PointDrag{0.7f, {0.1f, 0.2f, 0.3f}}, .ground = Plane{0.55f}}));
+                    Environment{.water = PointDrag{0.7f, {0.1f, 0.2f, 0.3f}}, .ground = Plane{0.55f}},
+                    Environment(Water{
+                        {998.2f, 1.1f, 0.03f, 0.4f, {0.1f, 0.2f, 0.3f}}, {0.4f, 0.5f, -0.6f}, {true, 123, 0.7f, 0.9f}}),
+                    Environment{.water = ResistiveDrag{998.2f, 1.1f, 0.03f, 0.4f, {0.1f, 0.2f, 0.3f}},
+                                .ground = Plane{0.55f}}));
 
 TEST_F(Recording, SimulatesAgainFromTheFileAlone) {
   Configuration configuration = on_cpu();

@@ -225,11 +225,14 @@ TEST(GenomeSpaces, FoundersKeepTheirOwnMaterials) {
   EXPECT_EQ(space->random(1, 5)->grow("a").materials, founder.materials);
   EXPECT_EQ(space->decode(space->random(1, 0)->encode())->grow("a").materials, founder.materials);
   bases[4].half_wave = bases[20].half_wave = true;
+  bases[4].relaxation_time = 0.02f;
+  bases[7].relaxation_time = 0.5f;
   const Robot half = with_base_materials(founder, bases);
   const auto halves = make_genome_space({.genes = Genes::both, .founders = {half}});
   EXPECT_EQ(halves->random(1, 0)->grow("a").materials, half.materials);
   EXPECT_EQ(halves->decode(halves->random(1, 0)->encode())->grow("a").materials, half.materials);
   EXPECT_TRUE(halves->random(1, 0)->mutate(2, 3)->grow("a").materials[5].half_wave);
+  EXPECT_EQ(halves->random(1, 0)->mutate(2, 3)->grow("a").materials[5].relaxation_time, 0.02f);
   // A table in which pairs have materials of their own.
   founder.materials[100].frequency = 17;
   const auto other = make_genome_space({.genes = Genes::both, .founders = {founder}});
@@ -257,6 +260,12 @@ TEST(GenomeSpaces, RefuseFoundersThatCannotBeUsed) {
   edited.springs.pop_back();
   EXPECT_EQ(refused({.founders = {edited}}),
             "robot voxel-1-0: /origin: leads to another robot; evolve its muscles alone");
+  Robot heavy = voxel;
+  heavy.mass.assign(heavy.masses.size(), 2);
+  EXPECT_EQ(refused({.founders = {heavy}}),
+            "robot voxel-1-0: /origin: leads to another robot; evolve its muscles alone");
+  EXPECT_EQ(make_genome_space({.genes = Genes::muscles, .founders = {heavy}})->random(1, 0)->grow("a").mass,
+            heavy.mass);
   Robot stiff = make_voxel_robot(VoxelGrid(2, 2, 2, bone), {.name = "rock"});
   EXPECT_EQ(refused({.genes = Genes::muscles, .founders = {stiff}}), "robot rock: has no muscles that could change");
   EXPECT_THAT(refused({.kind = "fish"}), HasSubstr("kind: \"fish\" is not a kind of robot"));
@@ -290,6 +299,10 @@ TEST(GenomeIdentity, IsThatOfTheBodyThatGrows) {
   };
   EXPECT_EQ(by_half_waves(7), space->random(1, 1)->identity());
   EXPECT_NE(by_half_waves(3), space->random(1, 1)->identity());
+  std::vector<Material> bases = base_materials_of(without);
+  bases[2].relaxation_time = 0.1f;
+  const auto relaxing = make_genome_space({.founders = {with_base_materials(without, bases)}});
+  EXPECT_NE(relaxing->random(1, 0)->identity(), space->random(1, 1)->identity());
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robots/carried_points.h"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <optional>
+
+namespace mercury {
+namespace {
+
+// Points nearer to each other than this are one: no spring is that short.
+using Place = std::array<long long, 3>;
+Place place_of(Vec3 rest) {
+  const auto step = [](float x) { return std::llround(static_cast<double>(x) / (0.25 * min_rest_length)); };
+  return {step(rest.x), step(rest.y), step(rest.z)};
+}
+
+}  // namespace
+
+void carry_points(const Robot& from, Robot& to) {
+  if (from.mass.empty() && from.velocity.empty() && from.fixed.empty()) return;
+  std::map<Place, std::size_t> places;
+  for (std::size_t i = 0; i < from.masses.size(); ++i) places.emplace(place_of(from.masses[i]), i);
+  std::vector<std::optional<std::size_t>> source(to.masses.size());
+  for (std::size_t i = 0; i < source.size(); ++i)
+    if (const auto found = places.find(place_of(to.masses[i])); found != places.end()) source[i] = found->second;
+
+  if (to.mass.empty() && !from.mass.empty()) {
+    const double sum = std::accumulate(from.mass.begin(), from.mass.end(), 0.0);
+    const auto mean = static_cast<float>(sum / static_cast<double>(from.mass.size()));
+    for (const auto& point : source) to.mass.push_back(point ? from.mass[*point] : mean);
+  }
+  if (to.velocity.empty() && !from.velocity.empty())
+    for (const auto& point : source) to.velocity.push_back(point ? from.velocity[*point] : Vec3{});
+  if (to.fixed.empty() && !from.fixed.empty()) {
+    std::vector<bool> fixed(from.masses.size());
+    for (const std::uint16_t point : from.fixed) fixed[point] = true;
+    for (std::size_t i = 0; i < source.size(); ++i)
+      if (source[i] && fixed[*source[i]]) to.fixed.push_back(static_cast<std::uint16_t>(i));
+  }
+}
+
+}  // namespace mercury

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a robot says of its masses, handed on to a body that is made from it.
+#pragma once
+
+#include "mercury/robot.h"
+
+namespace mercury {
+
+// Gives `to` the masses, velocities and fixed points of `from`, by place: a point where `from` has one gets what that
+// one has. Other points have the mean mass, and are at rest. A list that `to` has already stays.
+void carry_points(const Robot& from, Robot& to);
+
+}  // namespace mercury
