@@ -160,8 +160,8 @@ Robot refined(const Robot& robot, int n) {
 
 double frequency_of(const Robot& robot) {  // of its muscles [Hz]
   for (const Spring& spring : robot.springs)
-    if (const Material& law = materials_of(robot)[spring.material]; law.amplitude != 0)
-      return static_cast<double>(law.frequency) / (2 * std::numbers::pi);
+    if (const Material& own = materials_of(robot)[spring.material]; own.amplitude != 0)
+      return static_cast<double>(own.frequency) / (2 * std::numbers::pi);
   return 1;
 }
 

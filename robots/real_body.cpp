@@ -28,10 +28,10 @@ using Json = nlohmann::json;
 constexpr const char* member = "real";
 // The median stiffness of the muscles among these materials, one per spring or voxel; 50 N/m as in the paper if none
 // moves.
-double muscle_stiffness(std::span<const Material> laws, const std::vector<MaterialId>& ids) {
+double muscle_stiffness(std::span<const Material> table, const std::vector<MaterialId>& ids) {
   std::vector<float> moving;
   for (const MaterialId id : ids)
-    if (laws[id].amplitude != 0 && laws[id].stiffness > 0) moving.push_back(laws[id].stiffness);
+    if (table[id].amplitude != 0 && table[id].stiffness > 0) moving.push_back(table[id].stiffness);
   if (moving.empty()) return 50;
   const auto middle = moving.begin() + static_cast<std::ptrdiff_t>(moving.size() / 2);
   std::ranges::nth_element(moving, middle);
@@ -185,10 +185,10 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
   for (std::size_t point = 0; point < real.mass.size(); ++point)
     real.mass[point] =
         static_cast<float>(static_cast<double>(material.density) * edge * edge * edge * voxels_at[point] / 8);
-  const std::span<const Material> laws = materials_of(robot);
+  const std::span<const Material> table = materials_of(robot);
   std::vector<MaterialId> of_voxels;
   for (const Voxels::Voxel& voxel : voxels.all()) of_voxels.push_back(voxel.material);
-  const double modulus_per_stiffness = static_cast<double>(material.modulus) / muscle_stiffness(laws, of_voxels);
+  const double modulus_per_stiffness = static_cast<double>(material.modulus) / muscle_stiffness(table, of_voxels);
   real.materials.assign(1, Material{});
   real.material_names.assign(1, "air");
   std::map<std::tuple<MaterialId, unsigned, int>, MaterialId> ids;
@@ -199,11 +199,11 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
     if (is_new) {
       if (real.materials.size() == max_materials)
         throw InputError("/materials", "the voxels have too many materials for one table of springs");
-      Material law = laws[spot.material];
-      const double modulus = modulus_per_stiffness * static_cast<double>(law.stiffness);
-      law.stiffness = static_cast<float>(shared.voxels * share[shared.axes] * modulus * edge);
-      law.relaxation_time = material.relaxation_time;
-      real.materials.push_back(law);
+      Material own = table[spot.material];
+      const double modulus = modulus_per_stiffness * static_cast<double>(own.stiffness);
+      own.stiffness = static_cast<float>(shared.voxels * share[shared.axes] * modulus * edge);
+      own.relaxation_time = material.relaxation_time;
+      real.materials.push_back(own);
       real.material_names.push_back(name_of_material(robot, spot.material) + ", " + std::to_string(shared.voxels) +
                                     " x " + kind[shared.axes]);
     }
@@ -217,7 +217,7 @@ void set_network_springs(const Robot& robot, const RealMaterial& material, Robot
   const double volume = skin_volume(real);
   if (!(volume > 0)) throw InputError("/faces", "a real body needs a skin around a volume; this one encloses none");
   if (robot.springs.empty()) throw InputError("/springs", "a real body needs springs");
-  const std::span<const Material> laws = materials_of(robot);
+  const std::span<const Material> table = materials_of(robot);
   double sum = 0;
   std::vector<double> share(robot.masses.size());
   for (const Spring& spring : robot.springs) {
@@ -229,31 +229,31 @@ void set_network_springs(const Robot& robot, const RealMaterial& material, Robot
   std::vector<MaterialId> of_springs;
   for (const Spring& spring : robot.springs) of_springs.push_back(spring.material);
   const double stiffness_factor =
-      6 * static_cast<double>(material.modulus) * volume / (sum * muscle_stiffness(laws, of_springs));
+      6 * static_cast<double>(material.modulus) * volume / (sum * muscle_stiffness(table, of_springs));
   const double mass = static_cast<double>(material.density) * volume;
   // A mass that no spring holds has a hundredth of the mean.
   const double least = 0.01 * mass / static_cast<double>(share.size());
   real.mass.clear();
   for (const double s : share) real.mass.push_back(static_cast<float>(std::max(least, mass * s / (2 * sum))));
-  real.materials.assign(laws.begin(), laws.end());
-  for (Material& law : real.materials) {
-    law.stiffness = static_cast<float>(static_cast<double>(law.stiffness) * stiffness_factor);
-    law.relaxation_time = law.stiffness > 0 ? material.relaxation_time : 0;
+  real.materials.assign(table.begin(), table.end());
+  for (Material& own : real.materials) {
+    own.stiffness = static_cast<float>(static_cast<double>(own.stiffness) * stiffness_factor);
+    own.relaxation_time = own.stiffness > 0 ? material.relaxation_time : 0;
   }
   if (robot.material_names.empty() && robot.materials.empty())
-    for (std::size_t id = 0; id < laws.size(); ++id)
+    for (std::size_t id = 0; id < table.size(); ++id)
       real.material_names.push_back(default_material_name(static_cast<MaterialId>(id)));
 }
 
 // [[stiffness, amplitude, frequency, phase, half wave], ...]
 std::string text_of(std::span<const Material> materials) {
   std::string text = "[";
-  for (const Material& law : materials) {
+  for (const Material& own : materials) {
     if (text.size() > 1) text += ',';
     text += '[';
-    for (const float value : {law.stiffness, law.amplitude, law.frequency, law.phase})
+    for (const float value : {own.stiffness, own.amplitude, own.frequency, own.phase})
       text.append(shortest_text(value)).append(",");
-    text.append(law.half_wave ? "true]" : "false]");
+    text.append(own.half_wave ? "true]" : "false]");
   }
   return text + "]";
 }
@@ -308,35 +308,6 @@ std::optional<RealMaterial> real_material_of(const Robot& robot) {
   return material;
 }
 
-namespace {
-
-class PhysicsOfAll {
- public:
-  void add(const Robot& robot) {
-    (real_material_of(robot) ? real_ : paper_) = &robot;
-    if (real_ && paper_)
-      throw InputError(real_->name + " and " + paper_->name,
-                       "one has a real body, the other that of the paper; --physics real gives all a real one");
-  }
-  Physics physics() const { return real_ ? Physics::real : Physics::paper; }
-
- private:
-  const Robot *real_ = nullptr, *paper_ = nullptr;
-};
-
-}  // namespace
-
-Physics physics_of(std::span<const Robot> robots) {
-  PhysicsOfAll all;
-  for (const Robot& robot : robots) all.add(robot);
-  return all.physics();
-}
-Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots) {
-  PhysicsOfAll all;
-  for (const auto& robot : robots) all.add(*robot);
-  return all.physics();
-}
-
 Robot without_real_body(const Robot& robot) {
   const std::optional<Json> real = real_in(robot);
   if (!real) return robot;
@@ -346,16 +317,17 @@ Robot without_real_body(const Robot& robot) {
   paper.material_names.clear();
   paper.actuators.clear();
   paper.origin = with_origin_member(robot.origin, member, "");
-  if (const auto laws = real->find("materials"); laws != real->end()) {
-    if (!laws->is_array() || laws->size() > max_materials) refuse("/materials", "an array of at most 256 is expected");
-    for (const Json& law : *laws) {
-      const auto is_law = [](const Json& row) {
+  if (const auto table = real->find("materials"); table != real->end()) {
+    if (!table->is_array() || table->size() > max_materials)
+      refuse("/materials", "an array of at most 256 is expected");
+    for (const Json& own : *table) {
+      const auto is_row = [](const Json& row) {
         return row.is_array() && row.size() == 5 && row[4].is_boolean() &&
                std::all_of(row.begin(), row.begin() + 4, [](const Json& value) { return value.is_number(); });
       };
-      if (!is_law(law)) refuse("/materials", "[stiffness, amplitude, frequency, phase, half_wave] is expected");
+      if (!is_row(own)) refuse("/materials", "[stiffness, amplitude, frequency, phase, half_wave] is expected");
       paper.materials.push_back(
-          {law[0].get<float>(), law[1].get<float>(), law[2].get<float>(), law[3].get<float>(), law[4].get<bool>()});
+          {own[0].get<float>(), own[1].get<float>(), own[2].get<float>(), own[3].get<float>(), own[4].get<bool>()});
       validate(paper.materials.back(), "/origin/real/materials/" + std::to_string(paper.materials.size() - 1));
     }
   }

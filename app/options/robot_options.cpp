@@ -9,6 +9,7 @@
 
 #include "app/base/work_progress.h"
 #include "app/options/option_values.h"
+#include "app/options/simulation_options.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"

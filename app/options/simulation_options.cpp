@@ -70,6 +70,35 @@ Vec3 gravity_from(const std::string& option, const std::string& text) {
 
 }  // namespace
 
+namespace {
+
+class PhysicsOfAll {
+ public:
+  void add(const Robot& robot) {
+    (real_material_of(robot) ? real_ : paper_) = &robot;
+    if (real_ && paper_)
+      throw InputError(real_->name + " and " + paper_->name,
+                       "one has a real body, the other that of the paper; --physics real gives all a real one");
+  }
+  Physics physics() const { return real_ ? Physics::real : Physics::paper; }
+
+ private:
+  const Robot *real_ = nullptr, *paper_ = nullptr;
+};
+
+}  // namespace
+
+Physics physics_of(std::span<const Robot> robots) {
+  PhysicsOfAll all;
+  for (const Robot& robot : robots) all.add(robot);
+  return all.physics();
+}
+Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots) {
+  PhysicsOfAll all;
+  for (const auto& robot : robots) all.add(*robot);
+  return all.physics();
+}
+
 void SimulationOptions::add_to(const Command& command) {
   command_ = command;
   const auto add = [](const Option& option) { option.in_group(simulation_group); };

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,10 @@
 #include "mercury/robot.h"
 
 namespace mercury {
+
+// What the bodies of these robots are. Throws InputError if some are real and others are not.
+Physics physics_of(std::span<const Robot> robots);
+Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots);
 
 class SimulationOptions {
  public:

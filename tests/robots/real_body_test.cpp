@@ -124,12 +124,12 @@ TEST(RealBody, VoxelsOfTwoMaterialsGiveEachItsOwnSpring) {
   EXPECT_EQ(paper.springs.size(), 50u);
   EXPECT_EQ(real.springs.size(), 56u);
   for (const Spring& spring : real.springs) {
-    const Material& law = real.materials[spring.material];
-    const bool is_muscle = law.amplitude != 0;
+    const Material& own = real.materials[spring.material];
+    const bool is_muscle = own.amplitude != 0;
     const double length = spring.rest_length / 0.1, modulus = is_muscle ? 1e5 : 2e5;
     const double share = std::abs(length - std::sqrt(2)) < 0.01 ? 0.10 : 0.15;
-    EXPECT_NEAR(law.stiffness, share * modulus * 0.1, 1e-2 * law.stiffness);
-    EXPECT_EQ(law.frequency, is_muscle ? default_materials()[1].frequency : 0);
+    EXPECT_NEAR(own.stiffness, share * modulus * 0.1, 1e-2 * own.stiffness);
+    EXPECT_EQ(own.frequency, is_muscle ? default_materials()[1].frequency : 0);
   }
 }
 

@@ -5,12 +5,9 @@
 // they are divided. Here the user says both, and a robot that is divided more finely is the same body.
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <span>
 #include <tuple>
 
-#include "mercury/configuration.h"
 #include "mercury/generator.h"
 #include "mercury/parameters.h"
 #include "mercury/robot.h"
@@ -63,10 +60,6 @@ std::optional<RealMaterial> real_material_in(const ParameterValues& values);
 
 // What the robot's origin says of a real body; none for a robot as in the paper. Throws InputError("/origin/real/...").
 std::optional<RealMaterial> real_material_of(const Robot& robot);
-
-// What the bodies of these robots are. Throws InputError if some are real and others are not.
-Physics physics_of(std::span<const Robot> robots);
-Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots);
 
 // A robot of the paper again, for its generator to grow, mutate and cross: the materials that it had, no masses, and
 // an origin without "real". Its springs are still those of the real body.
