@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/origin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -14,13 +15,12 @@ namespace {
 
 std::string text_of(const Robot& robot, const char* key) {
   if (robot.origin.empty()) return {};
-  // Keeps this key of the outermost object only; a tree of all weights of a network would be large.
-  const auto keep = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
-    return event != nlohmann::json::parse_event_t::key || depth != 1 || value == key;
-  };
-  const auto origin = nlohmann::json::parse(robot.origin, keep, false);
-  const auto found = origin.is_object() ? origin.find(key) : origin.end();
-  return found != origin.end() && found->is_string() ? found->get<std::string>() : std::string();
+  try {
+    const auto member = nlohmann::json::parse(json_member(robot.origin, key), nullptr, false);
+    return member.is_string() ? member.get<std::string>() : std::string();
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -35,6 +35,7 @@ using Json = nlohmann::json;
 
 constexpr const char* ancestry_key = "ancestry";
 constexpr std::size_t most_parents = 16;
+constexpr const char* spaces = " \t\r\n";
 
 [[noreturn]] void refuse(const std::string& place, const std::string& what) {
   throw InputError("/origin/ancestry" + place, what);
@@ -51,9 +52,11 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-// Takes the member "ancestry" out of a JSON object's text; returns false if it has none. The rest of the text is not
-// parsed: the weights of a network are many, and they keep every digit this way.
-bool take_out_ancestry(std::string& object) {
+// A JSON object's text without its members "ancestry". The rest is not parsed: the weights of a network are many, and
+// they keep every digit this way.
+std::string without_ancestry(const std::string& object) {
+  std::string rest;
+  std::size_t copied = 0;  // the text before is in `rest`, or left out
   int depth = 0;
   std::size_t member = 0;  // where the current member of the outermost object begins, with the comma before it
   bool is_ancestry = false, at_key = false;
@@ -71,18 +74,19 @@ bool take_out_ancestry(std::string& object) {
       member = i + 1;
     }
     if (c == '}' || c == ']') --depth;
-    const bool ends = (c == ',' && depth == 1) || depth == 0;
-    if (ends && is_ancestry) {
+    const bool next = c == ',' && depth == 1;
+    if (is_ancestry && (next || depth == 0)) {
       const bool was_first = object[member] != ',';
-      object.erase(member, i - member + (was_first && c == ',' ? 1 : 0));
-      return true;
+      rest.append(object, copied, member - copied);
+      copied = was_first && next ? i + 1 : i;
+      is_ancestry = false;
     }
-    if (c == ',' && depth == 1) {
+    if (next) {
       at_key = true;
-      member = i;
+      member = std::max(i, copied);
     }
   }
-  return false;
+  return rest.append(object, copied);
 }
 
 std::string text_of(const Ancestry& ancestry) {
@@ -133,28 +137,27 @@ std::vector<std::string> parents_in(const Json& ancestry) {
 
 std::optional<Ancestry> ancestry_of(const Robot& robot) {
   if (robot.origin.find(ancestry_key) == std::string::npos) return std::nullopt;
-  // Of the outermost object, this member alone: a tree of all weights of a network would be large.
-  const auto keep = [&](int depth, Json::parse_event_t event, Json& value) {
-    return event != Json::parse_event_t::key || depth != 1 || value == ancestry_key;
-  };
-  const Json origin = Json::parse(robot.origin, keep, false);
-  if (!origin.is_object()) throw InputError("/origin", "a JSON object is expected");
-  const auto found = origin.find(ancestry_key);
-  if (found == origin.end()) return std::nullopt;
-  if (!found->is_object()) refuse("", "a JSON object is expected");
-  return Ancestry{.parents = parents_in(*found),
-                  .crossover_seed = natural(*found, "crossover_seed"),
-                  .mutation_seed = natural(*found, "mutation_seed"),
-                  .strength = strength(*found, "strength"),
-                  .muscles = strength(*found, "muscles"),
-                  .generation = natural(*found, "generation")};
+  const std::size_t begin = robot.origin.find_first_not_of(spaces);
+  if (robot.origin[begin] != '{') throw InputError("/origin", "a JSON object is expected");
+  std::string text;
+  try {
+    text = json_member(robot.origin, ancestry_key);
+  } catch (const InputError&) {
+    throw InputError("/origin", "a JSON object is expected");
+  }
+  if (text.empty()) return std::nullopt;
+  const Json ancestry = Json::parse(text);
+  if (!ancestry.is_object()) refuse("", "a JSON object is expected");
+  return Ancestry{.parents = parents_in(ancestry),
+                  .crossover_seed = natural(ancestry, "crossover_seed"),
+                  .mutation_seed = natural(ancestry, "mutation_seed"),
+                  .strength = strength(ancestry, "strength"),
+                  .muscles = strength(ancestry, "muscles"),
+                  .generation = natural(ancestry, "generation")};
 }
 
 std::string with_ancestry(const std::string& origin, const Ancestry& ancestry) {
-  constexpr const char* spaces = " \t\r\n";
-  std::string whole = origin.empty() ? std::string("{}") : origin;
-  while (whole.find(ancestry_key) != std::string::npos && take_out_ancestry(whole)) {
-  }
+  std::string whole = without_ancestry(origin.empty() ? std::string("{}") : origin);
   const std::size_t begin = whole.find_first_not_of(spaces), end = whole.find_last_not_of(spaces);
   if (begin == std::string::npos || begin == end || whole[begin] != '{' || whole[end] != '}')
     throw InputError("/origin", "a JSON object is expected");
