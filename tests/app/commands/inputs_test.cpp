@@ -93,6 +93,10 @@ TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.messages, HasSubstr("needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)"));
   EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+  const Outcome window = limited(400'000, "view --random voxel --quiet");
+  EXPECT_EQ(window.status, 1);
+  EXPECT_EQ(window.messages,
+            "mercury: drawing on the processor needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)\n");
 }
 
 // The limit does not count for the superuser, so the program becomes the user nobody.
