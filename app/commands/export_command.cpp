@@ -9,6 +9,7 @@
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
+#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/dry_run.h"
 #include "app/export/export.h"
@@ -150,7 +151,7 @@ std::vector<RecordedMotion> motions_of(const ExportOptions& options, const Targe
 int export_recording(const ExportOptions& options, const fs::path& file) {
   if (options.still && (options.range.from || options.range.to || options.every))
     throw InputError("--still", "not together with --from, --to and --every, which choose a motion");
-  const auto recording = std::make_shared<TrajectoryReader>(file);
+  const auto recording = std::make_shared<TrajectoryReader>(file, shown_work());
   const Targets targets(options, names_of_robots(*recording));
   std::vector<RecordedMotion> motions = motions_of(options, targets, recording);
   targets.check(options);
