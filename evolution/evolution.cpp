@@ -63,19 +63,25 @@ class Breeding {
       : settings_(settings), space_(space), living_(living), generation_(generation), plans_(std::move(plans)),
         seeds_(plans_.size()), genomes_(plans_.size()), identities_(plans_.size()) {}
 
-  std::vector<Individual> children() {
+  std::vector<Individual> children(const Watch& watch) {
     std::unordered_set<std::uint64_t> known;
     for (const Individual& individual : living_) known.insert(individual.genome->identity());
     std::vector<std::size_t> missing(plans_.size());
     std::iota(missing.begin(), missing.end(), std::size_t{0});
     for (int attempt = 0; !missing.empty() && attempt < tries_for_a_new_genome; ++attempt) {
-      oneapi::tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t k) { make(missing[k], attempt); });
+      for (std::size_t first = 0; first < missing.size(); first += portion) {
+        if (watch) watch(0, plans_.size());
+        oneapi::tbb::parallel_for(first, std::min(first + portion, missing.size()),
+                                  [&](std::size_t k) { make(missing[k], attempt); });
+      }
       std::erase_if(missing, [&](std::size_t i) { return genomes_[i] && known.insert(identities_[i]).second; });
     }
     return individuals();
   }
 
  private:
+  static constexpr std::size_t portion = 256;  // children between two calls of the watch
+
   // A try that fails leaves the child of an earlier one, which is like another but can live.
   void make(std::size_t i, int attempt) {
     const std::uint64_t seed = seed_of_child(settings_.seed, generation_, i, attempt);
@@ -128,7 +134,7 @@ class Breeding {
 
 }  // namespace
 
-std::vector<Individual> Evolution::children() const {
+std::vector<Individual> Evolution::children(const Watch& watch) const {
   std::vector<ChildPlan> plans;
   if (next_generation_ == 0) {
     plans.resize(std::max(settings_.algorithm.population, space_.founders()));
@@ -137,7 +143,7 @@ std::vector<Individual> Evolution::children() const {
     plans = algorithm_->plan(living_, children_per_generation(settings_), random);
   }
   std::vector<Individual> children =
-      Breeding(settings_, space_, living_, next_generation_, std::move(plans)).children();
+      Breeding(settings_, space_, living_, next_generation_, std::move(plans)).children(watch);
   for (std::size_t i = 0; i < children.size(); ++i) children[i].id = next_id_ + i;
   return children;
 }
@@ -174,7 +180,7 @@ Generation Evolution::select(std::vector<Individual> children) {
 
 std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& watch) {
   if (is_over()) return std::nullopt;
-  std::vector<Individual> born = children();
+  std::vector<Individual> born = children(watch);
   if (born.empty()) throw InputError("generation " + std::to_string(next_generation_), "no robot could be made");
   std::vector<GenomePointer> genomes;
   for (const Individual& child : born) genomes.push_back(child.genome);

@@ -167,6 +167,28 @@ MassFaces mass_faces_of(std::span<const std::uint32_t> faces, std::size_t masses
 
 std::vector<std::uint32_t> copy_of(std::span<const std::uint32_t> values) { return {values.begin(), values.end()}; }
 
+// Faces that are drawn: of equal ones, the first. The others become points, which cover no pixel; thousands of faces on
+// the same pixels would take minutes.
+std::vector<std::uint32_t> drawn_faces(std::span<const std::uint32_t> faces) {
+  struct Corners {
+    std::array<std::uint32_t, 3> masses;  // the lowest first, in the order of the face
+    std::size_t face;
+    bool operator<(const Corners& other) const { return std::tie(masses, face) < std::tie(other.masses, other.face); }
+  };
+  std::vector<Corners> sorted;
+  sorted.reserve(faces.size() / 3);
+  for (std::size_t face = 0; face < faces.size() / 3; ++face) {
+    std::array masses{faces[3 * face], faces[3 * face + 1], faces[3 * face + 2]};
+    std::rotate(masses.begin(), std::min_element(masses.begin(), masses.end()), masses.end());
+    sorted.push_back({masses, face});
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::uint32_t> drawn = copy_of(faces);
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i].masses == sorted[i - 1].masses) std::fill_n(&drawn[3 * sorted[i].face], 3, sorted[i].masses[0]);
+  return drawn;
+}
+
 template <typename T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
@@ -219,7 +241,7 @@ std::shared_ptr<const PreparedBody> prepare_body(const Body& body, std::size_t i
   validate(body, index);
   auto prepared = std::make_shared<PreparedBody>();
   prepared->rest_positions.assign(body.rest_positions.begin(), body.rest_positions.end());
-  prepared->faces = copy_of(body.faces);
+  prepared->faces = drawn_faces(body.faces);
   prepared->springs = copy_of(body.springs);
   prepared->spring_materials = copy_of(body.spring_materials);
   prepared->spring_materials.resize(body.springs.size() / 2, 0);

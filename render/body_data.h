@@ -34,7 +34,8 @@ std::vector<FaceRecord> skin_topology(std::span<const float> positions, std::spa
 // One body; indices count its own masses and faces.
 struct PreparedBody {
   std::vector<float> rest_positions;                      // 3 per mass
-  std::vector<std::uint32_t> faces, springs;              // 3 masses per face, 2 per spring
+  std::vector<std::uint32_t> faces, springs;              // 3 masses per face, all the same for a copy of an earlier
+                                                          // face; 2 per spring
   std::vector<std::uint32_t> spring_materials;            // one per spring
   std::vector<FaceRecord> records;                        // one per face
   std::vector<std::uint32_t> mass_face_ends, mass_faces;  // the faces at each mass

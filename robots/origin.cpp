@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/origin.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -15,13 +16,12 @@ namespace {
 
 std::string text_of(const Robot& robot, const char* key) {
   if (robot.origin.empty()) return {};
-  // Keeps this key of the outermost object only; a tree of all weights of a network would be large.
-  const auto keep = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
-    return event != nlohmann::json::parse_event_t::key || depth != 1 || value == key;
-  };
-  const auto origin = nlohmann::json::parse(robot.origin, keep, false);
-  const auto found = origin.is_object() ? origin.find(key) : origin.end();
-  return found != origin.end() && found->is_string() ? found->get<std::string>() : std::string();
+  try {
+    const auto member = nlohmann::json::parse(json_member(robot.origin, key), nullptr, false);
+    return member.is_string() ? member.get<std::string>() : std::string();
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -36,6 +36,7 @@ using Json = nlohmann::json;
 
 constexpr const char* ancestry_key = "ancestry";
 constexpr std::size_t most_parents = 16;
+constexpr const char* spaces = " \t\r\n";
 
 [[noreturn]] void refuse(const std::string& place, const std::string& what) {
   throw InputError("/origin/ancestry" + place, what);
@@ -52,8 +53,11 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-// Takes a member out of a JSON object's text; returns false if it has none. `quoted` is its key in quotation marks.
-bool take_out(std::string& object, const std::string& quoted) {
+// A JSON object's text without its members of this key, given in quotation marks. The rest is not parsed: the weights
+// of a network are many, and they keep every digit this way.
+std::string without_member(const std::string& object, const std::string& quoted) {
+  std::string rest;
+  std::size_t copied = 0;  // the text before is in `rest`, or left out
   int depth = 0;
   std::size_t member = 0;  // where the current member of the outermost object begins, with the comma before it
   bool is_wanted = false, at_key = false;
@@ -71,18 +75,19 @@ bool take_out(std::string& object, const std::string& quoted) {
       member = i + 1;
     }
     if (c == '}' || c == ']') --depth;
-    const bool ends = (c == ',' && depth == 1) || depth == 0;
-    if (ends && is_wanted) {
+    const bool next = c == ',' && depth == 1;
+    if (is_wanted && (next || depth == 0)) {
       const bool was_first = object[member] != ',';
-      object.erase(member, i - member + (was_first && c == ',' ? 1 : 0));
-      return true;
+      rest.append(object, copied, member - copied);
+      copied = was_first && next ? i + 1 : i;
+      is_wanted = false;
     }
-    if (c == ',' && depth == 1) {
+    if (next) {
       at_key = true;
-      member = i;
+      member = std::max(i, copied);
     }
   }
-  return false;
+  return rest.append(object, copied);
 }
 
 std::string text_of(const Ancestry& ancestry) {
@@ -133,22 +138,20 @@ std::vector<std::string> parents_in(const Json& ancestry) {
 
 std::optional<nlohmann::json> origin_member(const Robot& robot, const char* key) {
   if (robot.origin.find(key) == std::string::npos) return std::nullopt;
-  // Of the outermost object, this member alone: a tree of all weights of a network would be large.
-  const auto keep = [&](int depth, Json::parse_event_t event, Json& value) {
-    return event != Json::parse_event_t::key || depth != 1 || value == key;
-  };
-  const Json origin = Json::parse(robot.origin, keep, false);
-  if (!origin.is_object()) throw InputError("/origin", "a JSON object is expected");
-  const auto found = origin.find(key);
-  return found == origin.end() ? std::nullopt : std::optional<Json>(*found);
+  const std::size_t begin = robot.origin.find_first_not_of(spaces);
+  if (robot.origin[begin] != '{') throw InputError("/origin", "a JSON object is expected");
+  std::string text;
+  try {
+    text = json_member(robot.origin, key);
+  } catch (const InputError&) {
+    throw InputError("/origin", "a JSON object is expected");
+  }
+  return text.empty() ? std::nullopt : std::optional<Json>(Json::parse(text));
 }
 
 std::string with_origin_member(const std::string& origin, std::string_view key, const std::string& text) {
-  constexpr const char* spaces = " \t\r\n";
   const std::string quoted = "\"" + std::string(key) + "\"";
-  std::string whole = origin.empty() ? std::string("{}") : origin;
-  while (whole.find(quoted) != std::string::npos && take_out(whole, quoted)) {
-  }
+  std::string whole = without_member(origin.empty() ? std::string("{}") : origin, quoted);
   const std::size_t begin = whole.find_first_not_of(spaces), end = whole.find_last_not_of(spaces);
   if (begin == std::string::npos || begin == end || whole[begin] != '{' || whole[end] != '}')
     throw InputError("/origin", "a JSON object is expected");

@@ -99,6 +99,9 @@ class SpawnSettings {
 
 }  // namespace
 
+CannotStart::CannotStart(int error)
+    : std::runtime_error(std::strerror(error)), is_limit_(error == EAGAIN || error == ENOMEM) {}
+
 ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments) {
   int pipe_ends[2];
   if (pipe2(pipe_ends, O_CLOEXEC) != 0) throw_errno("pipe");
@@ -126,7 +129,7 @@ ChildProcess::ChildProcess(const std::string& program, const std::vector<std::st
     return;
   }
   for (const int descriptor : {input_, output_, messages_}) ::close(descriptor);
-  throw CannotStart(std::strerror(error));
+  throw CannotStart(error);
 }
 
 ChildProcess::~ChildProcess() {

@@ -14,10 +14,14 @@
 
 namespace mercury {
 
-// The program cannot be started: it does not exist or is not executable.
+// The program cannot be started: it does not exist or is not executable, or a limit of the system is reached.
 class CannotStart : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit CannotStart(int error);             // of errno
+  bool is_limit() const { return is_limit_; }  // for want of processes or memory, not because of the program
+
+ private:
+  bool is_limit_;
 };
 
 // Starts the program without a shell and in its own process group, so that Ctrl-C at the terminal reaches only us.

@@ -19,13 +19,23 @@ std::string file_name_of(std::string_view name) {
                 : letter;
   }
   // A leading dot would hide the file, a leading dash look like an option.
-  while (!text.empty() && (text.front() == '.' || text.front() == '-')) text.erase(0, 1);
+  text.erase(0, text.find_first_not_of(".-"));
   if (text.size() > longest) {
     std::size_t end = longest;
     while (end > 0 && is_inside_letter(text[end])) --end;
     text.resize(end);
   }
   return text.empty() ? "robot" : text;
+}
+
+std::string FileNames::of(std::string_view name) {
+  const std::string wanted = file_name_of(name);
+  if (taken_.insert(wanted).second) return wanted;
+  std::size_t& number = last_.try_emplace(wanted, 1).first->second;
+  std::string own;
+  do own = wanted + "-" + std::to_string(++number);
+  while (!taken_.insert(own).second);
+  return own;
 }
 
 }  // namespace mercury

@@ -10,7 +10,10 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
@@ -61,25 +64,29 @@ int access_error(const fs::path& path, int mode) {
   return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0 ? 0 : errno;
 }
 
-bool is_same(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
-
 bool is_robot_file(const fs::path& path) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
   return extension == ".json" || extension == ".cbor";
 }
 
-// Whether `input` is this file, or a folder that has it among its robots.
-bool holds(const fs::path& input, const struct stat& file) {
-  const auto status = status_of(input);
-  if (!status) return false;
-  if (is_same(*status, file)) return true;
-  if (!S_ISDIR(status->st_mode)) return false;
-  std::error_code error;
-  for (fs::recursive_directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error))
-    if (const auto inside = status_of(entry->path()); is_robot_file(entry->path()) && inside && is_same(*inside, file))
-      return true;
-  return false;
+using FileNumber = std::pair<dev_t, ino_t>;
+FileNumber number_of(const struct stat& status) { return {status.st_dev, status.st_ino}; }
+
+// The files that the inputs name, and the robot files in folders among them.
+std::set<FileNumber> files_of(const std::vector<fs::path>& inputs) {
+  std::set<FileNumber> files;
+  for (const fs::path& input : inputs) {
+    const auto status = status_of(input);
+    if (!status) continue;
+    files.insert(number_of(*status));
+    if (!S_ISDIR(status->st_mode)) continue;
+    std::error_code error;
+    for (fs::recursive_directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error))
+      if (const auto inside = status_of(entry->path()); is_robot_file(entry->path()) && inside)
+        files.insert(number_of(*inside));
+  }
+  return files;
 }
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
@@ -101,26 +108,31 @@ void require_writable_folder(const std::string& option, const std::string& name,
 
 bool is_standard_output(std::string_view file) { return file == "-" || file == "/dev/stdout"; }
 
-void OutputFiles::add_stream(const std::string& option, const std::string& file) { add(option, file, Kind::stream); }
-void OutputFiles::add_file(const std::string& option, const std::string& file) { add(option, file, Kind::file); }
+void OutputFiles::add_stream(const std::string& option, const std::string& file, const fs::path& inside) {
+  add(option, file, Kind::stream, inside);
+}
+void OutputFiles::add_file(const std::string& option, const std::string& file, const fs::path& inside) {
+  add(option, file, Kind::file, inside);
+}
 void OutputFiles::add_folder(const std::string& option, const std::string& folder) {
   add(option, folder, Kind::folder);
 }
-void OutputFiles::add_new_folder(const std::string& option, const std::string& folder) {
-  add(option, folder, Kind::new_folder);
+void OutputFiles::add_new_folder(const std::string& option, const std::string& folder, const fs::path& inside) {
+  add(option, folder, Kind::new_folder, inside);
 }
 
-void OutputFiles::add(const std::string& option, const std::string& name, Kind kind) {
+void OutputFiles::add(const std::string& option, const std::string& name, Kind kind, const fs::path& inside) {
   std::error_code ignored;
   const fs::path end = follow_links(name);
   const fs::path target = fs::weakly_canonical(end.empty() ? end : fs::absolute(end, ignored), ignored);
-  outputs_.push_back({option, name, kind, ignored ? end : target});
+  outputs_.push_back({option, name, kind, ignored ? end : target, inside});
 }
 
 void OutputFiles::require_usable(const Output& output) const {
-  const auto& [option, name, kind, target] = output;
+  const auto& [option, name, kind, target, inside] = output;
   if (name.empty()) throw InputError(option, output.is_folder() ? "give a folder" : "give a file");
   if (kind == Kind::stream && is_standard_output(name)) return;
+  if (!inside.empty() && status_of(inside)) require_inside(inside, name);
   const auto status = status_of(name);
   if (!status) return require_writable_folder(option, name, folder_of(target));
   if (output.is_folder()) {
@@ -134,30 +146,34 @@ void OutputFiles::require_usable(const Output& output) const {
       throw InputError(option, name + " cannot be written: " + std::strerror(refused));
     return;
   }
-  require_no_input(output);
   // The superuser may write everything; who protects a file does not want it replaced.
   if ((status->st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0 || access_error(name, W_OK) != 0)
     throw InputError(option, name + " is write-protected; give another name");
   require_writable_folder(option, name, folder_of(target));
 }
 
-void OutputFiles::require_no_input(const Output& output) const {
-  const auto file = status_of(output.target);
-  if (!file) return;
-  for (const fs::path& input : inputs_)
-    if (holds(input, *file))
+// Of each existing output that is a regular file.
+void OutputFiles::require_no_input() const {
+  std::optional<std::set<FileNumber>> files;  // of the inputs; only existing outputs can be among them
+  for (const Output& output : outputs_) {
+    const auto file = status_of(output.target);
+    if (is_device_or_pipe(output.name) || !file || !S_ISREG(file->st_mode)) continue;
+    if (!files) files = files_of(inputs_);
+    if (files->contains(number_of(*file)))
       throw InputError(output.option, output.name + " is a file that this command reads; give another name");
+  }
 }
 
 void OutputFiles::require_distinct() const {
-  for (std::size_t i = 0; i < outputs_.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const Output &a = outputs_[j], &b = outputs_[i];
-      const bool both_printed = is_standard_output(a.name) && is_standard_output(b.name);
-      if (!both_printed && (is_device_or_pipe(a.name) || a.target != b.target)) continue;
-      throw InputError(a.option == b.option ? a.option : a.option + ", " + b.option,
-                       b.name + " is named twice; give each output a name of its own");
-    }
+  std::map<fs::path, const Output*> first_with;  // by target, without devices and pipes
+  const Output* first_printed = nullptr;
+  for (const Output& output : outputs_) {
+    const Output*& first = is_standard_output(output.name) ? first_printed : first_with[output.target];
+    if (first)
+      throw InputError(first->option == output.option ? first->option : first->option + ", " + output.option,
+                       output.name + " is named twice; give each output a name of its own");
+    if (is_standard_output(output.name) || !is_device_or_pipe(output.name)) first = &output;
+  }
 }
 
 void OutputFiles::require_replaceable(const std::vector<const Output*>& existing) const {
@@ -178,6 +194,7 @@ void OutputFiles::require_replaceable(const std::vector<const Output*>& existing
 
 bool OutputFiles::check() const {
   require_distinct();
+  require_no_input();
   std::vector<const Output*> existing;
   std::error_code ignored;
   for (const Output& output : outputs_) {

@@ -27,13 +27,15 @@ class OutputFiles {
   // inside it. Names that do not exist are passed over.
   void add_input(const std::filesystem::path& input) { inputs_.push_back(input); }
   // A file that is written from its start to its end: it may be a device, a pipe or standard output.
-  void add_stream(const std::string& option, const std::string& file);
+  // `inside`: the folder where the program, not the user, gave the file its name; empty = none. Links must not lead
+  // from there to somewhere else. Likewise below.
+  void add_stream(const std::string& option, const std::string& file, const std::filesystem::path& inside = {});
   // A file that is not, such as a video: the encoder goes back in it.
-  void add_file(const std::string& option, const std::string& file);
+  void add_file(const std::string& option, const std::string& file, const std::filesystem::path& inside = {});
   // A folder whose files have names of their own.
   void add_folder(const std::string& option, const std::string& folder);
   // A folder that is filled, and must be new or empty.
-  void add_new_folder(const std::string& option, const std::string& folder);
+  void add_new_folder(const std::string& option, const std::string& folder, const std::filesystem::path& inside = {});
 
   // Throws InputError that begins with the option for the first output that cannot be written, and for one that exists
   // unless it may be replaced. Writes and creates nothing. Returns whether existing files may be replaced.
@@ -47,11 +49,12 @@ class OutputFiles {
     std::string option, name;
     Kind kind;
     std::filesystem::path target;  // without links
+    std::filesystem::path inside;
     bool is_folder() const { return kind == Kind::folder || kind == Kind::new_folder; }
   };
-  void add(const std::string& option, const std::string& name, Kind kind);
+  void add(const std::string& option, const std::string& name, Kind kind, const std::filesystem::path& inside = {});
   void require_usable(const Output& output) const;
-  void require_no_input(const Output& output) const;
+  void require_no_input() const;
   void require_distinct() const;
   void require_replaceable(const std::vector<const Output*>& existing) const;
 

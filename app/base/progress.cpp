@@ -96,14 +96,22 @@ void Progress::update_with_fraction(double done) {
   // Lines in a log stay, so their intervals grow.
   const Clock::duration period = terminal_ ? bar_period : std::max<Clock::duration>(line_period, (now - start_) / 4);
   if (now - last_ < period) return;
-  last_ = now;
+  draw();
+}
+
+void Progress::show() {
+  if (terminal_ && verbosity() != Verbosity::quiet) draw();
+}
+
+void Progress::draw() {
+  last_ = Clock::now();
   shown_ = true;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const double elapsed = std::chrono::duration<double>(last_ - start_).count();
   if (terminal_)
     write_to_standard_error(
-        fmt::format("\r{}\033[K", progress_bar(what_, unit_, done, total_, elapsed, terminal_columns())));
+        fmt::format("\r{}\033[K", progress_bar(what_, unit_, done_, total_, elapsed, terminal_columns())));
   else
-    write_to_standard_error(progress_line(what_, unit_, done, total_, elapsed) + "\n");
+    write_to_standard_error(progress_line(what_, unit_, done_, total_, elapsed) + "\n");
 }
 
 }  // namespace mercury

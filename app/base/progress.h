@@ -21,10 +21,13 @@ class Progress {
 
   // Reports that `done` of the total are done. Cheap: writes at most ten times per second.
   void update(std::int64_t done) { update_with_fraction(static_cast<double>(done)); }
-  // The same; what is done in part counts for the bar and the time left.
+  // Draws the bar now, on a terminal, with what is done so far: before a single step that may take long.
+  void show();
+  // The same as update(); what is done in part counts for the bar and the time left.
   void update_with_fraction(double done);
 
  private:
+  void draw();
   using Clock = std::chrono::steady_clock;
 
   std::string what_, unit_;

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <memory>
-#include <set>
 
 #include "app/base/file_name.h"
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
+#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/dry_run.h"
 #include "app/export/export.h"
@@ -59,16 +59,13 @@ class Targets {
       throw InputError("-o", fmt::format("{} is one file, and there are {} robots; give a folder with --format, or "
                                          "choose one with --robot",
                                          options.path, robots_.size()));
-    std::set<std::string> taken;
+    FileNames own_names;
     for (const std::size_t robot : robots_) {
       if (is_file_) {
         files_.push_back(path);
         continue;
       }
-      const std::string base = file_name_of(names[robot]);
-      std::string name = base;
-      for (int count = 2; !taken.insert(name).second; ++count) name = fmt::format("{}-{}", base, count);
-      files_.push_back(path / (name + std::string(format_->extension)));
+      files_.push_back(path / (own_names.of(names[robot]) + std::string(format_->extension)));
     }
   }
 
@@ -81,7 +78,8 @@ class Targets {
   void check(const ExportOptions& options) const {
     OutputFiles outputs = options.output.files();
     for (const fs::path& input : options.robots.files()) outputs.add_input(input);
-    for (const fs::path& file : files_) add_outputs(*format_, file, outputs, "-o");
+    for (const fs::path& file : files_)
+      add_outputs(*format_, file, outputs, "-o", is_file_ ? fs::path() : fs::path(options.path));
     outputs.check();
     if (!options.output.dry_run()) outputs.make_folders();
   }
@@ -153,7 +151,7 @@ std::vector<RecordedMotion> motions_of(const ExportOptions& options, const Targe
 int export_recording(const ExportOptions& options, const fs::path& file) {
   if (options.still && (options.range.from || options.range.to || options.every))
     throw InputError("--still", "not together with --from, --to and --every, which choose a motion");
-  const auto recording = std::make_shared<TrajectoryReader>(file);
+  const auto recording = std::make_shared<TrajectoryReader>(file, shown_work());
   const Targets targets(options, names_of_robots(*recording));
   std::vector<RecordedMotion> motions = motions_of(options, targets, recording);
   targets.check(options);

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "app/base/file_name.h"
 #include "app/base/interrupt.h"
@@ -20,7 +19,6 @@
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "mercury/error.h"
-#include "mercury/file_links.h"
 #include "mercury/import.h"
 #include "mercury/robot_file.h"
 
@@ -110,26 +108,19 @@ std::vector<ImportedFile> read(const ImportCommandOptions& options, const std::v
   return imports;
 }
 
-// A name that no other file has: hopper, hopper-2, ...
-std::string own_name(std::set<std::string>& taken, const std::string& wanted) {
-  std::string name = wanted;
-  for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}-{}", wanted, number);
-  return name;
-}
-
 void name_files(std::vector<ImportedFile>& imports, const ImportCommandOptions& options) {
-  std::set<std::string> robots, configurations{"import"};
+  FileNames robots, configurations;
+  configurations.of("import");
   for (ImportedFile& file : imports) {
     std::vector<std::string>& names = file.import.report.robots;
     for (std::size_t i = 0; i < file.import.robots.size(); ++i) {
-      names[i] = own_name(robots, file_name_of(names[i]));
+      names[i] = robots.of(names[i]);
       file.import.robots[i].name = names[i];
       file.robot_files.push_back((fs::path(options.output) / (names[i] + "." + options.format)).string());
     }
     if (file.import.robots.empty()) continue;
     file.configuration_file =
-        (fs::path(options.output) /
-         (own_name(configurations, file_name_of(fs::path(file.import.report.file).stem().string())) + ".toml"))
+        (fs::path(options.output) / (configurations.of(fs::path(file.import.report.file).stem().string()) + ".toml"))
             .string();
   }
 }
@@ -244,10 +235,10 @@ int import_files(ImportCommandOptions options) {
   std::size_t robots = 0;
   for (const ImportedFile& file : imports) {
     robots += file.robot_files.size();
-    for (const std::string& robot : file.robot_files) outputs.add_stream("-o", robot);
-    if (!file.configuration_file.empty()) outputs.add_stream("-o", file.configuration_file);
+    for (const std::string& robot : file.robot_files) outputs.add_stream("-o", robot, options.output);
+    if (!file.configuration_file.empty()) outputs.add_stream("-o", file.configuration_file, options.output);
   }
-  if (!common.empty()) outputs.add_stream("-o", common);
+  if (!common.empty()) outputs.add_stream("-o", common, options.output);
   outputs.check();
   if (options.outputs.dry_run())
     return print_dry_run(
@@ -256,7 +247,6 @@ int import_files(ImportCommandOptions options) {
   outputs.make_folders();
   for (const ImportedFile& file : imports) {
     for (std::size_t i = 0; i < file.robot_files.size(); ++i) {
-      require_inside(options.output, file.robot_files[i]);
       save_robot(file.robot_files[i], file.import.robots[i]);
     }
     if (!file.configuration_file.empty())

@@ -10,6 +10,7 @@
 
 #include "app/base/messages.h"
 #include "app/base/version.h"
+#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/description.h"
 #include "app/commands/info_json.h"
@@ -230,7 +231,7 @@ template <class Take>
 void for_each_subject(const RobotInputs& robots, const Take& take) {
   for (const std::filesystem::path& path : robots.paths()) {
     if (is_readable_trajectory_name(path)) {
-      take(TrajectoryReader(path));
+      take(TrajectoryReader(path, shown_work()));
     } else if (is_repro_name(path)) {
       take(load_repro(path), path);
     } else if (is_run_folder(path)) {

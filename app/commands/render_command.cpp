@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <memory>
-#include <set>
 
 #include "app/base/file_name.h"
 #include "app/base/messages.h"
@@ -24,20 +23,6 @@ struct Output {
   std::vector<Clip> clips;
 };
 
-// Names of files for robots, each one once, so that no video replaces another.
-class FileNames {
- public:
-  std::string of(const Robot& robot) {
-    const std::string base = file_name_of(robot.name);
-    std::string name = base;
-    for (int number = 2; !taken_.insert(name).second; ++number) name = fmt::format("{}-{}", base, number);
-    return name;
-  }
-
- private:
-  std::set<std::string> taken_;
-};
-
 std::vector<Output> outputs_of(const RenderOptions& options, std::vector<Clip> clips) {
   std::vector<Output> outputs;
   if (!options.video.each()) {
@@ -49,7 +34,7 @@ std::vector<Output> outputs_of(const RenderOptions& options, std::vector<Clip> c
     for (std::size_t i = 0; i < clip.robots.size(); ++i) {
       Clip alone{.title = clip.title, .zoom = clip.zoom};
       if (!clip.captions.empty()) alone.captions.push_back(clip.captions[i]);
-      const std::string name = names.of(*clip.robots[i]);
+      const std::string name = names.of(clip.robots[i]->name);
       alone.robots.push_back(std::move(clip.robots[i]));
       outputs.push_back({.name = name, .clips = {std::move(alone)}});
     }

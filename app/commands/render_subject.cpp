@@ -15,7 +15,7 @@ namespace {
 
 Subject recording_of(const RenderOptions& options, const std::filesystem::path& file) {
   if (options.video.each()) throw InputError("--each", "does not work with a recording; it is played as a whole");
-  Subject subject{.clips = std::vector<Clip>(1), .recording = std::make_shared<TrajectoryReader>(file)};
+  Subject subject{.clips = std::vector<Clip>(1), .recording = std::make_shared<TrajectoryReader>(file, shown_work())};
   const TrajectoryReader& recording = *subject.recording;
   if (recording.frames() == 0) throw InputError(file.string(), "holds no frames");
   subject.configuration = recording.configuration();

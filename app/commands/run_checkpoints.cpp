@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/base/messages.h"
+#include "app/base/work_progress.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
 
@@ -82,7 +83,7 @@ std::unique_ptr<TrajectoryReader> recording_before(const CheckpointRecording& re
     std::error_code error;
     if (name.empty() || !std::filesystem::exists(name, error)) continue;
     try {
-      auto reader = std::make_unique<TrajectoryReader>(name);
+      auto reader = std::make_unique<TrajectoryReader>(name, shown_work());
       if (reader->frames() >= static_cast<std::size_t>(recording.frames)) return reader;
       problem = fmt::format("{} has {} frames, the checkpoint {}", name, reader->frames(), recording.frames);
     } catch (const InputError& damaged) {

@@ -17,6 +17,7 @@
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
+#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"
@@ -209,7 +210,7 @@ void print_text(const Verification& result, const TrajectoryReader& recording, c
 int run_verify(const VerifyOptions& options) {
   if (!(options.tolerance >= 0 && std::isfinite(options.tolerance)))
     throw InputError("--tolerance", fmt::format("{} is not accepted; give meters, 0 or more", options.tolerance));
-  TrajectoryReader recording(options.file);
+  TrajectoryReader recording(options.file, shown_work());
   if (recording.frames() == 0) throw InputError(options.file, "holds no frames");
   const Verification result = verify(recording, options.device);
   if (result.frames.empty()) throw Interrupted();

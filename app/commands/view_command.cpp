@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/options/attachment_options.h"
 #include "app/options/option_values.h"
@@ -117,7 +118,7 @@ int view(const ViewCommandOptions& options) {
     return window::run_viewer(std::move(viewer));
   }
   if (const auto file = options.robots.recording()) {
-    const TrajectoryReader recording(*file);  // throws for an invalid file, before the window opens
+    const TrajectoryReader recording(*file, shown_work());  // throws for an invalid file, before the window opens
     const Device device = viewer.configuration.device;
     viewer.configuration = recording.configuration();
     viewer.configuration.device = device;

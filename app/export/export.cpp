@@ -73,11 +73,13 @@ std::vector<std::size_t> chosen_robots(const std::string& robot, const std::vect
 }
 
 void add_outputs(const ExportFormat& format, const std::filesystem::path& file, OutputFiles& outputs,
-                 const std::string& option) {
-  outputs.add_file(option, file.string());
+                 const std::string& option, const std::filesystem::path& inside) {
+  outputs.add_file(option, file.string(), inside);
+  const std::filesystem::path beside = file.has_parent_path() ? file.parent_path() : ".";
   if (format.files_beside)
-    for (const std::filesystem::path& other : format.files_beside(file)) outputs.add_file(option, other.string());
-  if (format.folder_beside) outputs.add_new_folder(option, format.folder_beside(file).string());
+    for (const std::filesystem::path& other : format.files_beside(file))
+      outputs.add_file(option, other.string(), beside);
+  if (format.folder_beside) outputs.add_new_folder(option, format.folder_beside(file).string(), beside);
 }
 
 std::string outputs_text(const ExportFormat& format, const std::filesystem::path& file) {

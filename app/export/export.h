@@ -26,9 +26,9 @@ void require_motion(const ExportFormat& format, const Robot& robot, bool springs
 std::vector<std::size_t> chosen_robots(const std::string& robot, const std::vector<std::string>& names);
 std::vector<std::string> names_of_robots(const TrajectoryReader& recording);
 
-// Adds the file and what the format writes beside it to outputs that are checked.
+// Adds the file and what the format writes beside it to outputs that are checked. `inside` as OutputFiles::add_file().
 void add_outputs(const ExportFormat& format, const std::filesystem::path& file, OutputFiles& outputs,
-                 const std::string& option);
+                 const std::string& option, const std::filesystem::path& inside = {});
 
 // All that is written: "eel.obj and eel.mtl".
 std::string outputs_text(const ExportFormat& format, const std::filesystem::path& file);

@@ -113,15 +113,12 @@ SaveResult LiveScene::save_all(const std::vector<RobotId>& robots, const fs::pat
                                bool overwrite) {
   std::vector<FileToSave> files;
   std::vector<const DocumentRobot*> saved_robots;
-  std::set<std::string> taken;
+  FileNames names;
   try {
     for (const RobotId id : robots) {
       const DocumentRobot* robot = parts_->document.find(id);
       if (!robot) continue;
-      const std::string base = file_name_of(robot->body.name);
-      std::string name = base;
-      for (int count = 2; !taken.insert(name).second; ++count) name = fmt::format("{}-{}", base, count);
-      const fs::path path = folder / (name + (format == RobotFormat::json ? ".json" : ".cbor"));
+      const fs::path path = folder / (names.of(robot->body.name) + (format == RobotFormat::json ? ".json" : ".cbor"));
       files.push_back({path, serialize_robot(whole_robot(*robot), format)});
       saved_robots.push_back(robot);
     }

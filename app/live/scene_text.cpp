@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "app/options/generator_options.h"
 #include "mercury/robot_file.h"
@@ -137,7 +136,7 @@ SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robo
   const fs::path folder = fs::absolute(path).parent_path(), beside = path.stem().string() + "-robots";
   SceneFiles result;
   std::vector<std::string> files;
-  std::set<std::string> taken;
+  FileNames names;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (forms[i] == Form::random) continue;
     if (forms[i] == Form::file) {
@@ -146,10 +145,7 @@ SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robo
       files.push_back((error ? fs::absolute(robots[i].file) : relative).string());
       continue;
     }
-    const std::string base = file_name_of(robots[i].robot->body.name);
-    std::string name = base;
-    for (int count = 2; !taken.insert(name).second; ++count) name = fmt::format("{}-{}", base, count);
-    files.push_back((beside / (name + ".json")).string());
+    files.push_back((beside / (names.of(robots[i].robot->body.name) + ".json")).string());
     result.files.push_back(
         {path.parent_path() / files.back(), serialize_robot(whole_robot(*robots[i].robot), RobotFormat::json)});
     result.beside.push_back(i);

@@ -115,12 +115,16 @@ std::string VideoOptions::output_of(const std::string& name) const {
 
 void VideoOptions::add_output_to(OutputFiles& outputs, const std::string& name) const {
   const std::string output = output_of(name);
+  // With --each, the robot's name makes that of the file.
+  std::filesystem::path inside;
+  if (!name.empty()) inside = std::filesystem::path(output + "/").lexically_normal().parent_path().parent_path();
+  if (!name.empty() && inside.empty()) inside = ".";
   if (single_picture())
-    outputs.add_stream("-o", output);
+    outputs.add_stream("-o", output, inside);
   else if (video_kind_of(output) == VideoKind::png_folder)
-    outputs.add_new_folder("-o", output);
+    outputs.add_new_folder("-o", output, inside);
   else
-    outputs.add_file("-o", output);
+    outputs.add_file("-o", output, inside);
 }
 
 std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::string& name, bool may_replace) const {

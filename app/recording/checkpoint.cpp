@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "app/base/work_progress.h"
 #include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_hdf5_writing.h"
 #include "app/recording/trajectory_reader.h"
@@ -196,7 +197,7 @@ void save_checkpoint(const std::filesystem::path& path, const Simulation& simula
 }
 
 Checkpoint load_checkpoint(const std::filesystem::path& path) {
-  TrajectoryReader reader(path);
+  TrajectoryReader reader(path, shown_work());
   Checkpoint checkpoint{.robots = {},
                         .configuration = reader.configuration(),
                         .device_name = reader.device_name(),

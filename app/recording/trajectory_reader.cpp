@@ -142,7 +142,7 @@ auto TrajectoryReader::guarded(const Work& work) const {
   }
 }
 
-TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(path) {
+TrajectoryReader::TrajectoryReader(const std::filesystem::path& path, const WorkWatch& watch) : path_(path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) throw InputError(path.string(), "is a folder, not a trajectory");
   // Opening a FIFO would wait for a writer.
@@ -153,7 +153,7 @@ TrajectoryReader::TrajectoryReader(const std::filesystem::path& path) : path_(pa
     if (!has_member(file_, "h5md") || !has_member(file_, "parameters") || !has_member(file_, "particles"))
       throw Error("is not a trajectory that mercury recorded");
     read_parameters();
-    read_robots();
+    read_robots(watch);
   });
 }
 
@@ -218,11 +218,12 @@ void TrajectoryReader::require_chunks(hid_t dataset, std::size_t first, std::siz
     require_chunk(dataset, row, file_size);
 }
 
-void TrajectoryReader::read_robots() {
+void TrajectoryReader::read_robots(const WorkWatch& watch) {
   particles_ = open_group(file_, "particles");
   const std::vector<std::string> groups = members(particles_);
   if (groups.empty()) throw Error("holds no robots");
   robots_.resize(groups.size());
+  std::size_t done = 0;
   for (const std::string& name : groups) {
     const Handle group = open_group(particles_, name);
     const std::uint64_t index = read_attribute<std::uint64_t>(group, "index");
@@ -235,6 +236,7 @@ void TrajectoryReader::read_robots() {
     } catch (const std::runtime_error& error) {
       throw Error("/particles/" + name + ": " + error.what());
     }
+    if (watch) watch("reading the recording", ++done, groups.size());
   }
   offsets_.assign(1, 0);
   for (const RecordedRobot& recorded : robots_) offsets_.push_back(offsets_.back() + recorded.robot.masses.size());

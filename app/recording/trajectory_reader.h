@@ -14,6 +14,7 @@
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
 #include "mercury/state.h"
+#include "mercury/work_watch.h"
 
 namespace mercury {
 
@@ -29,7 +30,8 @@ struct RecordedRobot {
 // than its content justifies. Every member throws InputError, which begins with the path, if the file cannot be read.
 class TrajectoryReader {
  public:
-  explicit TrajectoryReader(const std::filesystem::path& path);
+  // `watch` sees how many robots are read; it may throw to stop the work.
+  explicit TrajectoryReader(const std::filesystem::path& path, const WorkWatch& watch = {});
 
   const std::filesystem::path& path() const { return path_; }
   const std::vector<RecordedRobot>& robots() const { return robots_; }  // in the order of the batch
@@ -82,7 +84,7 @@ class TrajectoryReader {
   void read_base(hdf5::Id parameters);
   void read_unfinished_times(hdf5::Id parameters);
   void require_chunks(hdf5::Id dataset, std::size_t first, std::size_t count) const;
-  void read_robots();
+  void read_robots(const WorkWatch& watch);
   RecordedRobot read_robot(const std::string& group, hdf5::Id particles) const;
   void require_frames(hdf5::Id robot, std::size_t masses) const;
   static Block& of_robot(Block& block, std::size_t robot);

@@ -130,6 +130,7 @@ class TrajectoryWriter {
   double flush_period_;  // [s]
   double (*clock_)();
   double last_commit_, last_flush_;  // [s]
+  double flush_cost_ = 0;            // of the last flush, without its block [s]
 };
 
 }  // namespace mercury

@@ -115,6 +115,10 @@ FfmpegWriter::FfmpegWriter(const std::string& output, VideoKind kind, const Vide
   try {
     encoder_.emplace(program_, ffmpeg_arguments(kind, settings, file_.path().string()));
   } catch (const CannotStart& error) {
+    if (error.is_limit())
+      throw VideoError(program_ +
+                       " could not be started: the memory or the number of processes is limited (ulimit -v, "
+                       "ulimit -u)");
     if (!settings.ffmpeg.empty()) throw ParameterError("ffmpeg", program_ + " cannot be started: " + error.what());
     if (program_ != "ffmpeg") throw InputError("MERCURY_FFMPEG", program_ + " cannot be started: " + error.what());
     throw VideoError(

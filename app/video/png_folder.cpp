@@ -15,6 +15,7 @@
 
 #include "app/video/picture_file.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {
@@ -63,6 +64,8 @@ void PngFolder::open(bool force) {
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     refuse(name + " is being filled by another process; give another folder");
   std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_symlink() && frame_number(entry->path().filename().string())) require_inside(folder_, entry->path());
   if (!force && !fs::is_empty(folder_, error))
     refuse(error ? "the folder " + name + " cannot be read: " + error.message()
                  : name + " is not empty; give a new or empty folder");

@@ -86,6 +86,7 @@ class VideoStages {
     std::vector<render::Readback> readbacks;
     for (const VideoSide& side : parts_.sides)
       readbacks.emplace_back(parts_.pixels, side.renderer.width(), side.renderer.height());
+    if (progress_) progress_->show();  // the first frame takes longest, and none is written before
     while (auto moment = snapshots_.pop()) {
       draw(*moment);
       if (readbacks.front().full() && !encoder_.take(readbacks)) return;

@@ -2,14 +2,15 @@
 #include "render/context/context.h"
 
 #include <epoxy/gl.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "render/context/context_headless.h"
+#include "render/context/process_limits.h"
 
 namespace mercury::render {
 namespace {
@@ -126,19 +127,6 @@ void Context::inspect(ContextKind kind, bool debug) {
   glDebugMessageCallback(on_message, messages_.get());
 }
 
-namespace {
-
-// Mesa and the compiler in it do not check what they allocate: they crash or hang where `ulimit -v` leaves too little.
-void require_address_space() {
-  constexpr rlim_t needed = rlim_t{1} << 30;  // drawing was right from 1.0e9 bytes on
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur < needed)
-    throw ContextError("drawing on the processor needs 1 GiB of address space, the limit is " +
-                       std::to_string(limit.rlim_cur >> 20) + " MiB (ulimit -v)");
-}
-
-}  // namespace
-
 std::unique_ptr<Context> make_context(const ContextOptions& options) {
   if (options.kind == ContextKind::window) throw ContextError("a window's context is adopted, not made");
   const bool any = options.kind == ContextKind::automatic;
@@ -154,7 +142,7 @@ std::unique_ptr<Context> make_context(const ContextOptions& options) {
   };
   if (auto context = attempt(ContextKind::egl, "EGL on a GPU", [&] { return make_egl_gpu_context(options); }))
     return context;
-  if (options.kind != ContextKind::egl) require_address_space();
+  if (options.kind != ContextKind::egl) require_room_to_draw();
   if (auto context = attempt(ContextKind::mesa, "Mesa through EGL", [&] { return make_egl_mesa_context(options); }))
     return context;
   if (auto context = attempt(ContextKind::osmesa, "OSMesa", [&] { return make_osmesa_context(options); }))

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "mercury/error.h"
 #include "robots/file/document.h"
@@ -74,6 +76,60 @@ class Adapter : public nlohmann::json_sax<Json> {
   int depth_ = 0;
 };
 
+// Writes the member `name` of the outermost object as JSON text.
+class MemberReader : public DocumentEvents {
+ public:
+  explicit MemberReader(std::string_view name) : name_(name) {}
+  std::string take() { return std::move(text_); }
+
+  void null() override {
+    if (is_wanted_) writer_->null();
+  }
+  void boolean(bool value) override {
+    if (is_wanted_) writer_->boolean(value);
+  }
+  void number(const Number& value) override {
+    if (is_wanted_) writer_->number(value);
+  }
+  void text(std::string_view value) override {
+    if (is_wanted_) writer_->text(value);
+  }
+  void bytes(std::string_view) override {}  // JSON has none
+  void begin_array(std::size_t announced) override {
+    if (is_wanted_) writer_->begin_array(announced);
+    ++depth_;
+  }
+  void end_array() override {
+    --depth_;
+    if (is_wanted_) writer_->end_array();
+  }
+  void begin_object(std::size_t announced) override {
+    if (is_wanted_) writer_->begin_object(announced);
+    ++depth_;
+  }
+  void key(std::string_view name) override {
+    if (depth_ == 1) {
+      is_wanted_ = name == name_;
+      if (!is_wanted_) return;
+      text_.clear();
+      writer_.emplace(text_);
+    } else if (is_wanted_) {
+      writer_->key(name);
+    }
+  }
+  void end_object() override {
+    if (--depth_ == 0) is_wanted_ = false;
+    if (is_wanted_) writer_->end_object();
+  }
+
+ private:
+  std::string_view name_;
+  std::string text_;
+  std::optional<JsonWriter> writer_;
+  int depth_ = 0;
+  bool is_wanted_ = false;  // what follows belongs to the member
+};
+
 }  // namespace
 
 InputError json_error(std::string_view document, std::size_t position, int id, const std::string& message) {
@@ -87,6 +143,26 @@ void read_json(std::string_view document, DocumentEvents& events) {
   if (nul != std::string_view::npos) throw InputError(place_of(document, nul + 1), "not valid JSON: a NUL byte");
   Adapter adapter(document, events);
   Json::sax_parse(document, &adapter);
+}
+
+std::string json_member(std::string_view document, std::string_view name) {
+  MemberReader reader(name);
+  read_json(document, reader);
+  return reader.take();
+}
+
+int json_depth(std::string_view text) {
+  int depth = 0, deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i];
+    if (letter == '"') in_text = !in_text;
+    if (in_text && letter == '\\') ++i;
+    if (in_text) continue;
+    if (letter == '{' || letter == '[') deepest = std::max(deepest, ++depth);
+    if (letter == '}' || letter == ']') --depth;
+  }
+  return deepest;
 }
 
 std::size_t first_json_value(std::string_view documents) {

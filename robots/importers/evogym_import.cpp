@@ -88,12 +88,9 @@ class EvogymImport {
  private:
   static Json parsed(std::string_view text) {
     constexpr int deepest = 16;
-    const auto check = [=](int depth, Json::parse_event_t, Json&) {
-      if (depth > deepest) throw InputError(fmt::format("nested deeper than {} levels", deepest));
-      return true;
-    };
+    if (json_depth(text) > deepest) throw InputError(fmt::format("nested deeper than {} levels", deepest));
     try {
-      return Json::parse(text, check);
+      return Json::parse(text);
     } catch (const Json::parse_error& error) {
       throw json_error(text, error.byte, error.id, error.what());
     } catch (const Json::out_of_range&) {

@@ -182,6 +182,24 @@ TEST(Evolution, NothingChangesIfTheWatchSaysToStop) {
   EXPECT_EQ(generations, run(settings));
 }
 
+// Making thousands of children may take longer than their trials.
+TEST(Evolution, TheWatchIsCalledWhileChildrenAreMade) {
+  const VectorSpace space;
+  EvolutionSettings settings = settings_of("ga");
+  settings.algorithm.population = 1000;
+  int calls = 0;
+  const std::size_t made = Evolution(settings, space)
+                               .children([&](std::size_t done, std::size_t all) {
+                                 EXPECT_EQ(done, 0u);
+                                 EXPECT_EQ(all, 1000u);
+                                 ++calls;
+                                 return true;
+                               })
+                               .size();
+  EXPECT_EQ(made, 1000u);
+  EXPECT_GE(calls, 4);
+}
+
 TEST(Evolution, MoreGenerationsContinueAShorterRun) {
   EvolutionSettings settings = settings_of("afpo");
   const std::vector<Generation> longer = run(settings);

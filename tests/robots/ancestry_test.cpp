@@ -75,6 +75,19 @@ TEST(Ancestry, ThatCannotBeUsedIsRefusedWithItsPlace) {
   for (const std::string origin : {"3", "[1]", "x", "}", "{"}) EXPECT_THROW(with_ancestry(origin, {}), InputError);
 }
 
+// Each took time with the square of the number, minutes here.
+TEST(Ancestry, TakesTimeInProportionToTheOrigin) {
+  constexpr int many = 200'000;
+  std::string objects, ancestries;
+  for (int i = 0; i < many; ++i) {
+    objects += (i == 0 ? "\"" : ",\"") + std::to_string(i) + "\":{}";
+    ancestries += "\"ancestry\":{},";
+  }
+  EXPECT_EQ(kind_of({.origin = "{\"kind\":{" + objects + "}}"}), "");
+  EXPECT_EQ(refusal_of_origin("{\"ancestry\":{" + objects + "}}"), "/origin/ancestry/parents: is missing");
+  EXPECT_EQ(with_ancestry("{" + ancestries + "\"kind\":\"nn\"}", {}), with_ancestry(R"({"kind":"nn"})", {}));
+}
+
 // Either the damaged text is refused in one line, or it has an ancestry that can be replaced.
 TEST(Ancestry, SurvivesDamage) {
   const std::string whole = with_ancestry(R"({"kind":"nn","weights":[[1,2],{"a":"b\\"}]})", full);

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/context/process_limits.h"
+
 namespace mercury::window {
 namespace {
 
@@ -59,6 +61,7 @@ GLFWwindow* open_window(const std::string& title, WindowSize size) {
 }  // namespace
 
 Window::Window(const std::string& title, WindowSize size, bool paced) {
+  render::require_room_to_draw();  // whether the display has a GPU is known too late
   start_glfw();
   window_ = open_window(title, size);
   glfwMakeContextCurrent(window_);

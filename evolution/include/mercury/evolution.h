@@ -75,8 +75,9 @@ class Evolution {
   const std::vector<Individual>& living() const { return living_; }  // the best first
 
   // The children of the next generation, not yet assessed. Children differ in Genome::identity() from each other and
-  // from the living, wherever that is possible within a bounded number of tries.
-  std::vector<Individual> children() const;
+  // from the living, wherever that is possible within a bounded number of tries. `watch` is called now and then, with
+  // none done; it cannot stop this, because each process of an MPI run makes the same children.
+  std::vector<Individual> children(const Watch& watch = {}) const;
   // Scores that its robots must reach at the checks of racing; empty without racing.
   std::vector<double> interim_limits() const;
   // Selects among the living and these children, which are assessed.

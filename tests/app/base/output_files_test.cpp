@@ -145,11 +145,33 @@ TEST_F(OutputFilesTest, FoldersThatAreFilledAreNewOrEmpty) {
   EXPECT_EQ(refusal_of_folder(true), "");
 }
 
+// Comparing each with each took minutes.
+TEST_F(OutputFilesTest, ManyOutputsAreCheckedInTimeInProportion) {
+  OutputFiles outputs = forced();
+  for (int i = 0; i < 20'000; ++i) {
+    outputs.add_input(path("in-" + std::to_string(i)));
+    outputs.add_file("-o", path("out-" + std::to_string(i)));
+  }
+  EXPECT_EQ(refusal(outputs), "");
+}
+
+TEST(FileNames, GiveEachRobotAFileOfItsOwn) {
+  FileNames names;
+  EXPECT_EQ(names.of("eel"), "eel");
+  EXPECT_EQ(names.of("eel-2"), "eel-2");
+  EXPECT_EQ(names.of("eel"), "eel-3");
+  EXPECT_EQ(names.of("eel-3"), "eel-3-2");
+  EXPECT_EQ(names.of("eel"), "eel-4");
+  for (int i = 0; i < 200'000; ++i) names.of("kite");  // in time in proportion
+  EXPECT_EQ(names.of("kite"), "kite-200001");
+}
+
 TEST(FileNameOf, IsSafeAndFitsIntoAFolder) {
   EXPECT_EQ(file_name_of("../../etc/passwd"), "_.._etc_passwd");
   EXPECT_EQ(file_name_of("a\nb\x1b[31m"), "a_b_[31m");
   EXPECT_EQ(file_name_of(".hidden"), "hidden");
   EXPECT_EQ(file_name_of("..."), "robot");
+  EXPECT_EQ(file_name_of(std::string(10'000'000, '.') + "a"), "a");  // in time in proportion
   // 119 letters and a character of two bytes, which is not cut in half.
   EXPECT_EQ(file_name_of(std::string(119, 'a') + "é"), std::string(119, 'a'));
   EXPECT_EQ(file_name_of(std::string(118, 'a') + "é"), std::string(118, 'a') + "é");

@@ -93,6 +93,24 @@ TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.messages, HasSubstr("needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)"));
   EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+  const Outcome window = limited(400'000, "view --random voxel --quiet");
+  EXPECT_EQ(window.status, 1);
+  EXPECT_EQ(window.messages,
+            "mercury: drawing on the processor needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)\n");
+}
+
+// The limit does not count for the superuser, so the program becomes the user nobody.
+TEST_F(Inputs, DrawingSaysHowManyThreadsItNeeds) {
+  const std::string program = path("mercury");
+  std::filesystem::copy_file(MERCURY_PROGRAM, program);
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  const char* as_nobody = geteuid() == 0 ? "exec setpriv --reuid 65534 --clear-groups " : "exec ";
+  const Outcome outcome =
+      run_program("/bin/bash", {"-c", "ulimit -u 3; " + (as_nobody + program) +
+                                          " render --random voxel --still 0 --gl mesa --quiet -o " + path("a.png")});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.messages, HasSubstr("could be started: the "));
+  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
 }
 
 TEST_F(Inputs, BadFilesAreLeftOutWithKeepGoing) {

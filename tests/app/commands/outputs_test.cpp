@@ -186,6 +186,34 @@ TEST_F(Outputs, RobotsInAFolderAreNotWrittenThroughLinksOutOfIt) {
   EXPECT_EQ(read("mine"), "mine");
 }
 
+// Neither what is there is replaced, nor a new file made where a link leads.
+TEST_F(Outputs, FilesThatTheProgramNamesAreNotWrittenThroughLinks) {
+  write("world.json", R"({"grid_width": 3, "grid_height": 3, "objects": {"box": {"indices": [1], "types": [2]}}})");
+  const std::string eel = path("eel.json"), name = eel_.name;
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases{
+      {name + ".obj", {"export", eel, "--format", "obj", "-o", path("folder")}},
+      {name + ".mtl", {"export", eel, "--format", "obj", "-o", path("folder")}},
+      {"own.mtl", {"export", eel, "-o", path("folder/own.obj")}},
+      {"world.toml", {"import", path("world.json"), "-o", path("folder")}},
+      {"world-box.json", {"import", path("world.json"), "-o", path("folder")}},
+      {"frame-00000.png", {"render", eel, "--seconds", "0.05", "--size", "64x64", "-o", path("folder")}},
+      {"a-" + name + ".png", {"render", eel, "--each", "--still", "0", "--size", "64x64", "-o", path("folder/a.png")}}};
+  for (const bool exists : {true, false})
+    for (auto [link, command] : cases) {
+      std::filesystem::remove_all(path("folder"));
+      std::filesystem::remove(path("mine"));
+      std::filesystem::create_directory(path("folder"));
+      if (exists) write("mine", "mine");
+      std::filesystem::create_symlink(path("mine"), path("folder/" + link));
+      command.emplace_back("--force");
+      EXPECT_THAT(refusal(command), HasSubstr(link + ": is a link out of " + path("folder"))) << command[0] << link;
+      EXPECT_EQ(std::filesystem::exists(path("mine")), exists) << command[0] << link;
+      if (exists) {
+        EXPECT_EQ(read("mine"), "mine") << command[0] << link;
+      }
+    }
+}
+
 TEST_F(Outputs, NamesOfRobotsLeadToNoOtherFolder) {
   Robot robot = eel_;
   robot.name = "../outside\n";

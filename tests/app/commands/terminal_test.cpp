@@ -114,6 +114,15 @@ TEST_F(FolderTest, ResultsOnATerminalDoNotControlIt) {
   EXPECT_THAT(run_program("sh", {"-c", command}).output, HasSubstr("a\x1b[31mb"));  // into a pipe, every byte
 }
 
+// A first frame may take many seconds.
+TEST_F(FolderTest, ATerminalShowsThatDrawingHasBegun) {
+  if (run_program("sh", {"-c", "command -v script"}).status != 0) GTEST_SKIP() << "no program `script`";
+  const std::string command = MERCURY_PROGRAM " render --random voxel --still 0 --size 64x64 -o " + path("a.png");
+  const Outcome outcome = run_program("script", {"-qec", command, "/dev/null"});
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("  0 %  0/1 frames"));
+}
+
 // --- Values of options
 
 TEST_F(FolderTest, AGpuIsNotMistakenForACpu) {

@@ -333,7 +333,7 @@ TEST_F(KilledRecording, CutAnywhereItIsReadOrReportedInOneLine) {
 TEST_F(KilledRecording, InfoSaysWhatItHoldsAndHowToUseIt) {
   const Source source(2);
   TrajectoryWriter writer = source.writer(path("a.h5"), {});
-  source.add(writer, 3, 5);
+  source.add(writer, 3, 2);
   source.add(writer, 1, 1);  // not flushed
   const Outcome outcome = mercury({"info", part()});
   EXPECT_EQ(outcome.status, 0) << outcome.messages;

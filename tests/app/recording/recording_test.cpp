@@ -283,6 +283,16 @@ TEST_F(Recording, HundredsOfRobots) {
   EXPECT_EQ(reader.robots().size(), 500u);
   EXPECT_EQ(reader.robots()[499].group, "pair-500");
   EXPECT_TRUE(same_bits(reader.positions(2), all_positions(simulation)));
+  // Thousands of robots take seconds; whoever waits sees how far it is, and can stop it.
+  struct Stopped {};
+  std::size_t calls = 0;
+  const auto watch = [&](const char*, std::size_t done, std::size_t total) {
+    EXPECT_EQ(done, ++calls);
+    EXPECT_EQ(total, 500u);
+    if (done == 100) throw Stopped();
+  };
+  EXPECT_THROW(TrajectoryReader(file(), watch), Stopped);
+  EXPECT_EQ(calls, 100u);
 }
 
 TEST_F(Recording, ExistsOnlyOnceComplete) {

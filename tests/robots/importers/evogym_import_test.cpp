@@ -99,6 +99,16 @@ TEST(Evogym, TerrainAloneGivesNoRobot) {
   EXPECT_FALSE(import.report.notes.empty());
 }
 
+// The parser took time with the square of the number, minutes here.
+TEST(Evogym, ManyObjectsAreReadInTimeInProportion) {
+  std::string objects;
+  for (int i = 0; i < 200'000; ++i)
+    objects += (i == 0 ? "\"o" : ",\"o") + std::to_string(i) + R"(":{"indices":[1],"types":[5],"neighbors":{"1":[]}})";
+  const Import import =
+      import_text(R"({"grid_width":3,"grid_height":3,"objects":{)" + objects + "}}", "evogym", "world");
+  EXPECT_TRUE(import.robots.empty());
+}
+
 TEST(BadEvogym, IsRefusedWithItsPlace) {
   const auto refusal = [](const std::string& text) { return refusal_of(text, "evogym"); };
   const auto object = [&](const std::string& data) {

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Limits of the process that end drawing on the processor by a crash or make it wait for ever.
+#pragma once
+
+namespace mercury::render {
+
+// Throws ContextError if too little address space (ulimit -v) or too few threads (ulimit -u) are left for Mesa.
+void require_room_to_draw();
+
+}  // namespace mercury::render
