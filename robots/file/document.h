@@ -65,14 +65,6 @@ std::string json_member(std::string_view document, std::string_view name);
 // How deep the arrays and objects of a JSON text lie within each other. The text may be broken.
 int json_depth(std::string_view text);
 
-// Of the outermost object of a JSON document, the member `name` as JSON text, the last of several; empty if there is
-// none. Throws as read_json(). Takes time that grows with the document alone; nlohmann's parser, where it leaves
-// members out, searches what it has built for each object that ends.
-std::string json_member(std::string_view document, std::string_view name);
-
-// How deep arrays and objects of a JSON text lie within each other. The text may be broken.
-int json_depth(std::string_view text);
-
 // What nlohmann's parser reports about a JSON document, in our words: "line 3, column 7: not valid JSON: invalid
 // literal". `position` [bytes], `id` and `message` are those of its exception.
 InputError json_error(std::string_view document, std::size_t position, int id, const std::string& message);
