@@ -24,8 +24,7 @@ Subject recording_of(const RenderOptions& options, const std::filesystem::path& 
 }
 
 Subject robots_of(const RenderOptions& options) {
-  // Errors in options come before those in files.
-  if (!options.simulation.chosen_environment().empty()) options.simulation.configuration(options.robots.physics());
+  options.simulation.check(options.robots.physics());  // errors in options come before those in files
   Subject subject;
   Clip& clip = subject.clips.emplace_back();
   LoadedRobots loaded = options.robots.load(drawn_memory);

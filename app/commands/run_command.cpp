@@ -324,8 +324,7 @@ int run(const RunOptions& options) {
   validate_recording(options);
   if (!options.resume.empty()) return run_resumed(options);
   if (const auto file = options.robots.repro()) return run_repro(options, *file);
-  // Errors in options come before those in files.
-  if (!options.simulation.chosen_environment().empty()) options.simulation.configuration(options.robots.physics());
+  options.simulation.check(options.robots.physics());  // errors in options come before those in files
   TrialSettings trials = options.trials;
   trials.seconds = options.simulation.seconds();
   validate(trials);

@@ -199,6 +199,13 @@ Configuration SimulationOptions::configuration_over(const Configuration& base) c
   return configuration;
 }
 
+void SimulationOptions::check(Physics physics) const {
+  if (environment_) return (void)configuration(physics);
+  validate(given_);
+  dt();
+  require_possible_threads(given_.device);
+}
+
 Configuration SimulationOptions::configuration(Physics physics) const {
   return configuration_in(environment_.value_or(""), physics);
 }

@@ -31,6 +31,9 @@ class SimulationOptions {
   // The configuration that the options describe. Throws InputError for an option that cannot be used or does not apply
   // to the environment.
   Configuration configuration(Physics physics = Physics::paper) const;
+  // Throws as configuration() for what can be checked before robots are read: without --environment, they choose which
+  // parameters an environment has.
+  void check(Physics physics) const;
   // The same, but without --environment the robots choose: the environment that they are made for, if they agree.
   // Appends to `notes` what the user should know about that.
   Configuration configuration(std::span<const Robot> robots, std::vector<std::string>& notes) const;

@@ -50,7 +50,8 @@ def test_an_environment_is_a_value(kind):
 
 def test_repr_shows_every_parameter():
     assert repr(Land()) == (
-        "Land(friction=0.8, self_collision=True, contact_stiffness=100.0, gravity=(0.0, 0.0, -9.81), stiffness_scale=200.0)"
+        "Land(friction=0.8, self_collision=True, contact_stiffness=100.0, relative_stiffness=0.0, contact_distance=0.5, "
+        "gravity=(0.0, 0.0, -9.81), stiffness_scale=200.0)"
     )
 
 
@@ -126,7 +127,7 @@ def test_an_environment_has_any_parts(mercury):
         pool.point_drag
     with pytest.raises(TypeError, match=r"^Environment has no parameter frictoin; did you mean friction\?$"):
         Environment("ocean+ground", frictoin=1)
-    with pytest.raises(InputError, match="is not an environment; give ocean, ocean-simple, land or space, followed by"):
+    with pytest.raises(InputError, match="is not an environment; give ocean, ocean-simple, land, water or space, followed by"):
         Environment("ocean+lava")
     batch = mercurysim.Batch(mercurysim.random_voxel(2, seed=8), environment=pool, device="cpu")
     assert batch.environment == pool and type(batch.environment) is Environment

@@ -145,6 +145,8 @@ class Drawing:
                           ["--population", "3"], ["--random", "voxel:2"], ["-o", draw.choice(PICTURES if "render" in words else ROBOTS)]):
                 if any(names[0] in o["names"] for o in options) and (names[0] not in ("--random", "-o") or draw.random() < 0.8):
                     words += names
+            if words[0] == "bench":
+                words += ["--count", "4"]  # a sweep ends there; by itself, at a quarter of the memory
             if any(o["positional"] for o in options) and "--random" not in words:
                 words.append(draw.choice(self.paths[:2]))
         for _ in range(draw.choice([0, 0, 1, 1, 1, 2, 2, 3, 5])):

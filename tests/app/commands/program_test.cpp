@@ -85,13 +85,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"FlowOfTwo", with({"--flow", "1,2"}),
                  "--flow: \"1,2\" is not accepted; give three numbers, as in 0.1,0,-2"},
         BadInput{"DensityOnLand", with({"--environment", "land", "--density", "3"}),
-                 "--density: land has no such parameter; it applies to ocean"},
+                 "--density: land has no such parameter; it applies to ocean and water"},
         BadInput{"FlowOnLand", with({"--environment", "land", "--flow", "1,0,0"}),
-                 "--flow: land has no such parameter; it applies to ocean and ocean-simple"},
+                 "--flow: land has no such parameter; it applies to ocean, ocean-simple and water"},
         BadInput{"SelfCollisionInWater", with({"--no-self-collision"}),
-                 "--no-self-collision: ocean has no such parameter; it applies to land"},
+                 "--no-self-collision: ocean has no such parameter; it applies to land and water"},
         BadInput{"UnknownEnvironment", with({"--environment", "moon"}),
-                 "--environment: \"moon\" is not an environment; give ocean, ocean-simple or land"},
+                 "--environment: \"moon\" is not an environment; give ocean, ocean-simple, land or water"},
         BadInput{"UnknownSolver", with({"--solver", "euler"}),
                  "--solver: \"euler\" is not a solver; give force or xpbd"},
         BadInput{"UnknownDevice", with({"--device", "tpu"}),
@@ -133,9 +133,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadInput{"Solver", with({"--solver", "xpdb"}),
                  "--solver: \"xpdb\" is not a solver; give force or xpbd; did you mean xpbd?"},
-        BadInput{
-            "Environment", with({"--environment", "ocan"}),
-            "--environment: \"ocan\" is not an environment; give ocean, ocean-simple or land; did you mean ocean?"},
+        BadInput{"Environment", with({"--environment", "ocan"}),
+                 "--environment: \"ocan\" is not an environment; give ocean, ocean-simple, land or water; did you mean "
+                 "ocean?"},
         BadInput{"Device", with({"--device", "cuad:1"}),
                  "--device: \"cuad:1\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all; did you mean cuda?"},
         BadInput{
@@ -204,7 +204,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"PressureOnLand",
                  {"render", "--random", "voxel", "-o", "a.png", "--still", "0", "--color", "pressure", "--environment",
                   "land"},
-                 "--color: pressure: land has no drag on faces; it applies to ocean"},
+                 "--color: pressure: land has no drag on faces; it applies to ocean, water"},
         BadInput{"ScaleUpsideDown",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--scale", "2,1"},
                  "--scale: \"2,1\" is not accepted; give two finite numbers, the lower first"},
@@ -378,7 +378,7 @@ TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
   expect_error("strict = 3\n", ":1: --strict is a switch; give true or false");
   expect_error("dt = true\n", ":1: --dt is not a switch; give a value");
   expect_error("environment = \"land\"\ndensity = 3\n",
-               ":2: --density: land has no such parameter; it applies to ocean");
+               ":2: --density: land has no such parameter; it applies to ocean and water");
 }
 
 // A typo is reported even where the current command would not read it.

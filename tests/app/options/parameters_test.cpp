@@ -49,7 +49,7 @@ const std::vector<Parameter> parameters{
      "\"ocean-simple\"",
      "ocean-simple",
      {"sea"},
-     "give ocean, ocean-simple or land"},
+     "give ocean, ocean-simple, land or water"},
     {"solver", "ocean", "xpbd", "\"xpbd\"", "xpbd", {"euler"}, "give force or xpbd"},
     {"dt", "ocean", "0.002", "0.002", 0.002, {"0", "-1", "nan", "inf"}, "give a finite number > 0 s"},
     {"damping", "ocean", "0.5", "0.5", 0.5, {"-1", "nan", "inf"}, at_least_zero + " 1/s"},
