@@ -32,7 +32,8 @@ std::string reason_of(const std::string& message) {
   std::string reason = message.substr(begin, message.find(';', begin) - begin);
   std::replace_if(
       reason.begin(), reason.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
-  return reason;
+  // Newer versions have words of their own for an empty document.
+  return reason == "attempting to parse an empty input" ? "unexpected end of input" : reason;
 }
 
 // Passes nlohmann's events on, and limits the depth, which its parser does not.
