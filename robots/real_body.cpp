@@ -26,6 +26,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* member = "real";
+
 // The median stiffness of the muscles among these materials, one per spring or voxel; 50 N/m as in the paper if none
 // moves.
 double muscle_stiffness(std::span<const Material> table, const std::vector<MaterialId>& ids) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
@@ -17,9 +18,9 @@
 #include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/results_file.h"
+#include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
-#include "app/options/parameter_options.h"
 #include "app/options/robot_memory.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
@@ -39,8 +40,8 @@ struct BenchOptions {
   std::size_t count = 0;  // 0 = chosen by choose_count()
   std::uint64_t seed = 1;
   double least_seconds = 1;  // of device time to measure
-  bool json = false, sweep = false, real = false;
-  RealMaterial material;  // if real
+  bool json = false, sweep = false;
+  GeneratorOptions bodies;
   std::string csv;
 };
 
@@ -69,10 +70,11 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 // Throws Interrupted after Ctrl-C.
 std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& options, std::size_t count) {
   constexpr std::size_t at_once = 128;
+  const std::optional<RealMaterial> material = real_material_in(options.bodies.values());
   RandomVoxelOptions voxel;
   voxel.smallest = voxel.largest = {options.size[0], options.size[1], options.size[2]};
   voxel.air = 0;
-  voxel.patch = options.real ? std::ranges::max(options.size) : 1;
+  voxel.patch = material ? std::ranges::max(options.size) : 1;
   voxel.mirror = Mirror::none;
   voxel.frequencies = 5;
   std::vector<std::shared_ptr<const Robot>> robots;
@@ -80,8 +82,7 @@ std::vector<std::shared_ptr<const Robot>> make_robots(const BenchOptions& option
   while (robots.size() < count) {
     for (Robot& robot :
          random_voxel_robots(voxel, options.seed, std::min(at_once, count - robots.size()), robots.size()))
-      robots.push_back(
-          std::make_shared<const Robot>(options.real ? with_real_body(robot, options.material) : std::move(robot)));
+      robots.push_back(std::make_shared<const Robot>(material ? with_real_body(robot, *material) : std::move(robot)));
     watch("making robots", robots.size(), count);
   }
   return robots;
@@ -282,7 +283,8 @@ void sweep(const BenchOptions& options, const Configuration& configuration, cons
 }
 
 int bench(const BenchOptions& options) {
-  const Configuration configuration = options.simulation.configuration(options.real ? Physics::real : Physics::paper);
+  const Configuration configuration =
+      options.simulation.configuration(real_material_in(options.bodies.values()) ? Physics::real : Physics::paper);
   constexpr double longest = 1e6;  // [s]
   if (!(options.least_seconds > 0 && options.least_seconds <= longest))
     throw InputError("--least-seconds", fmt::format("{} is not accepted; give a number above 0, at most {:.0f} s",
@@ -320,17 +322,7 @@ void add_bench_command(const Command& program, const Choose& choose) {
   add_number(command, "--seed", options->seed, "Seed of the robots", "S");
   add_number(command, "--least-seconds", options->least_seconds, "Shortest time to measure, after a warm-up",
              "SECONDS");
-  command
-      .add_option(
-          "--physics",
-          [options](const std::string& word) {
-            if (word != "paper" && word != "real")
-              throw InputError("--physics", fmt::format("\"{}\" is not known; give paper or real", word));
-            options->real = word == "real";
-          },
-          "Bodies as in the paper, or of a real material, in water (default paper)", "paper|real")
-      .on_first_screen();
-  add_parameters(command, options->material, "Bodies");
+  options->bodies.add_bodies_to(command);
   command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
   command
       .add_flag("--sweep", options->sweep,

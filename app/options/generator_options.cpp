@@ -77,27 +77,35 @@ struct Writer {
 
 }  // namespace
 
+void GeneratorOptions::add(const Command& command, const GeneratorParameter& parameter, const std::string& group) {
+  const std::string option = option_of(parameter.name);
+  const Option added = command
+                           .add_option(
+                               option,
+                               [this, &parameter, option](const std::string& text) {
+                                 values_[parameter.name] = parameter_value_from(parameter, option, text);
+                               },
+                               description_of(parameter), std::visit(Form{parameter}, parameter.initial))
+                           .in_group(group);
+  const bool whole = std::holds_alternative<std::int64_t>(parameter.initial);
+  const bool number =
+      std::holds_alternative<float>(parameter.initial) || std::holds_alternative<double>(parameter.initial);
+  if (whole || number) added.as_number(whole);
+}
+
 void GeneratorOptions::add_to(const Command& command, const Generator& generator) {
-  for (const GeneratorParameter& parameter : generator.parameters) {
-    if (parameter.shared && command.find_option(option_of(parameter.name))) continue;  // of an earlier generator
-    const std::string option = option_of(parameter.name);
-    const Option added = command
-                             .add_option(
-                                 option,
-                                 [this, &parameter, option](const std::string& text) {
-                                   values_[parameter.name] = parameter_value_from(parameter, option, text);
-                                 },
-                                 description_of(parameter), std::visit(Form{parameter}, parameter.initial))
-                             .in_group(parameter.shared ? std::string("Bodies") : generator.title);
-    const bool whole = std::holds_alternative<std::int64_t>(parameter.initial);
-    const bool number =
-        std::holds_alternative<float>(parameter.initial) || std::holds_alternative<double>(parameter.initial);
-    if (whole || number) added.as_number(whole);
-  }
+  for (const GeneratorParameter& parameter : generator.parameters)
+    if (!parameter.shared) add(command, parameter, generator.title);
+  add_bodies_to(command);
 }
 
 void GeneratorOptions::add_to(const Command& command) {
   for (const Generator& generator : generators()) add_to(command, generator);
+}
+
+void GeneratorOptions::add_bodies_to(const Command& command) {
+  for (const GeneratorParameter& parameter : generators().front().parameters)
+    if (parameter.shared && !command.find_option(option_of(parameter.name))) add(command, parameter, "Bodies");
 }
 
 std::vector<std::string> names_of_kinds() {

@@ -17,11 +17,15 @@ class GeneratorOptions {
   // Adds an option for each parameter of a generator, or of all generators. The object must outlive the command.
   void add_to(const Command& command, const Generator& generator);
   void add_to(const Command& command);
+  // Adds those that all generators share: what bodies are made of.
+  void add_bodies_to(const Command& command);
 
   // The values given. The generator that uses them checks their ranges.
   const ParameterValues& values() const { return values_; }
 
  private:
+  void add(const Command& command, const GeneratorParameter& parameter, const std::string& group);
+
   ParameterValues values_;
 };
 
