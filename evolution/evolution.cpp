@@ -194,8 +194,13 @@ std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& wa
 }
 
 std::string_view name_of(Fate fate) {
-  constexpr std::string_view names[] = {"sound", "stopped", "exploded", "overstretched", "failed"};
+  constexpr std::string_view names[] = {"sound", "stopped", "exploded", "overstretched", "failed", "too small"};
   return names[static_cast<std::size_t>(fate)];
+}
+
+Fate worse(Fate a, Fate b) {
+  constexpr int severity[] = {0, 1, 2, 3, 5, 4};
+  return severity[static_cast<std::size_t>(a)] < severity[static_cast<std::size_t>(b)] ? b : a;
 }
 
 }  // namespace mercury

@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
-#include <mutex>
+#include <numeric>
 #include <utility>
 
-#include "evolution/trial_robot.h"
 #include "mercury/assessor.h"
-#include "mercury/error.h"
 #include "mercury/evaluator.h"
 #include "mercury/fnv.h"
 #include "mercury/quantity.h"
+#include "mercury/spread.h"
+#include "mercury/trials.h"
 
 namespace mercury {
 namespace {
@@ -22,48 +21,17 @@ namespace {
 constexpr std::chrono::milliseconds watch_period(100);
 constexpr std::size_t most_waiting = 128;  // evaluations
 
-// The robots of all trials: those of candidate 0, then those of candidate 1, ... Each candidate is grown once.
-class EvaluationQueue {
- public:
-  EvaluationQueue(std::span<const GenomePointer> candidates, const TrialSettings& settings, std::uint64_t seed)
-      : candidates_(candidates), settings_(settings), seed_(seed), grown_(candidates.size()) {}
-
-  std::shared_ptr<const Robot> operator()(std::size_t index) {
-    const auto trials = static_cast<std::size_t>(settings_.trials);
-    const std::size_t i = index / trials;
-    const std::shared_ptr<const Robot> robot = grown(i);
-    if (trials_are_alike(settings_)) return robot;
-    return std::make_shared<const Robot>(trial_robot(*robot, settings_, seed_, static_cast<int>(index % trials)));
-  }
-
- private:
-  struct Grown {
-    std::mutex mutex;
-    std::shared_ptr<const Robot> robot;
-    int uses = 0;
-  };
-
-  std::shared_ptr<const Robot> grown(std::size_t i) {
-    Grown& grown = grown_[i];
-    const std::lock_guard lock(grown.mutex);
-    if (!grown.robot) grown.robot = std::make_shared<const Robot>(candidates_[i]->grow("candidate"));
-    return ++grown.uses == settings_.trials ? std::exchange(grown.robot, nullptr) : grown.robot;
-  }
-
-  const std::span<const GenomePointer> candidates_;
-  const TrialSettings& settings_;
-  const std::uint64_t seed_;
-  std::vector<Grown> grown_;
-};
-
-// Adds the trials of one candidate up.
+// The trials of one candidate together.
 class Tally {
  public:
   Tally(const EvaluationRequest& request, const TrialSettings& settings, std::span<const Objective> objectives)
       : request_(request), settings_(settings), objectives_(objectives) {}
 
   void add(const Evaluation& evaluation) {
-    assessment_.fate = worse(assessment_.fate, fate_of(evaluation, request_, settings_.strain_limit));
+    assessment_.fate = worse(assessment_.fate, fate_of(evaluation, request_, settings_));
+    // Runs of earlier versions do not rank robots by it.
+    if (settings_.median)
+      assessment_.violation = std::max(assessment_.violation, violation_of(evaluation, request_, settings_));
     ++trials_;
     if (!evaluation.failure.empty()) {
       if (assessment_.problem.empty()) assessment_.problem = evaluation.failure;
@@ -73,35 +41,46 @@ class Tally {
     const std::vector<double> values =
         quantities_of({.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request_.configuration});
     values_.resize(values.size());
-    for (std::size_t q = 0; q < values.size(); ++q) values_[q] += values[q];
+    for (std::size_t q = 0; q < values.size(); ++q) values_[q].push_back(values[q]);
     scores_.resize(objectives_.size());
-    for (std::size_t o = 0; o < objectives_.size(); ++o) scores_[o] += objectives_[o].score(values);
+    for (std::size_t o = 0; o < objectives_.size(); ++o) scores_[o].push_back(objectives_[o].score(values));
   }
 
   Assessment result(std::vector<double> interim_scores) {
-    const auto mean = [&](std::vector<double>& sums) {
-      for (double& sum : sums) sum /= trials_;
-    };
-    mean(values_);
-    mean(scores_);
-    const bool counts = assessment_.fate == Fate::sound || assessment_.fate == Fate::stopped;
-    if (!counts) scores_.assign(objectives_.size(), worst_score);
-    if (assessment_.fate == Fate::failed) values_.clear();
-    assessment_.values = std::move(values_);
-    assessment_.scores = std::move(scores_);
+    if (assessment_.fate != Fate::failed) assessment_.values = together(values_);
+    if (assessment_.fate == Fate::sound || assessment_.fate == Fate::stopped) {
+      assessment_.scores = together(scores_);
+      if (settings_.median && trials_ > 1) add_quartiles();
+    } else {
+      assessment_.scores.assign(objectives_.size(), worst_score);
+    }
     assessment_.interim_scores = std::move(interim_scores);
     return std::move(assessment_);
   }
 
  private:
-  static Fate worse(Fate a, Fate b) { return std::max(a, b); }
+  // Of each row, one number per trial.
+  std::vector<double> together(const std::vector<std::vector<double>>& rows) const {
+    std::vector<double> numbers;
+    for (const std::vector<double>& row : rows)
+      numbers.push_back(settings_.median ? median_of(row)
+                                         : std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(trials_));
+    return numbers;
+  }
+  void add_quartiles() {
+    for (const std::vector<double>& scores : scores_) {
+      const Spread spread = spread_of(scores);
+      assessment_.lower_quartiles.push_back(spread.lower_quartile);
+      assessment_.upper_quartiles.push_back(spread.upper_quartile);
+    }
+  }
 
   const EvaluationRequest& request_;
   const TrialSettings& settings_;
   const std::span<const Objective> objectives_;
   Assessment assessment_{.fate = Fate::sound, .hash = Fnv1a::empty};
-  std::vector<double> values_, scores_;  // sums
-  double trials_ = 0;
+  std::vector<std::vector<double>> values_, scores_;  // [quantity or objective][trial]
+  std::size_t trials_ = 0;
 };
 
 class LocalAssessor : public Assessor {
@@ -114,8 +93,10 @@ class LocalAssessor : public Assessor {
                                                 std::span<const double> interim_limits, const Watch& watch) override {
     const auto trials = static_cast<std::size_t>(settings_.trials);
     const std::size_t all = candidates.size() * trials;
-    EvaluationQueue queue(candidates, settings_, seed_);
-    EvaluationRequest request = trial_request(settings_, configuration_);
+    const RobotSource grown = [&](std::size_t i) {
+      return std::make_shared<const Robot>(candidates[i]->grow("candidate"));
+    };
+    EvaluationRequest request = trial_request(settings_, configuration_, seed_);
     std::vector<std::vector<double>> interim_scores(candidates.size());
     if (settings_.racing && request.steps > static_cast<std::int64_t>(racing_checks)) {
       for (std::size_t check = 1; check <= racing_checks; ++check)
@@ -129,7 +110,7 @@ class LocalAssessor : public Assessor {
         return interim_limits.empty() || scores[check] >= interim_limits[check];
       };
     }
-    Evaluator evaluator(request, std::ref(queue), all);
+    Evaluator evaluator(request, trial_source(grown, settings_, seed_), all);
     std::vector<Assessment> assessments(candidates.size());
     std::vector<Evaluation> waiting;  // of whole candidates; their quantities are computed on all cores
     std::size_t assessed = 0;
@@ -169,23 +150,6 @@ class LocalAssessor : public Assessor {
 };
 
 }  // namespace
-
-EvaluationRequest trial_request(const TrialSettings& settings, const Configuration& configuration) {
-  const auto steps_in = [&](double seconds) { return std::int64_t{std::llround(seconds / configuration.dt)}; };
-  const std::int64_t settling = steps_in(settings.settle);
-  return {.configuration = configuration,
-          .settling = settling,
-          .steps = steps_in(settings.seconds) - settling,
-          .sample_every = std::max<std::int64_t>(1, steps_in(trial_sample_period)),
-          .hashes = true};
-}
-
-Fate fate_of(const Evaluation& evaluation, const EvaluationRequest& request, double strain_limit) {
-  if (!evaluation.failure.empty()) return Fate::failed;
-  if (evaluation.end.exploded) return Fate::exploded;
-  if (!(evaluation.largest_strain <= strain_limit)) return Fate::overstretched;
-  return evaluation.steps < request.steps ? Fate::stopped : Fate::sound;
-}
 
 std::unique_ptr<Assessor> make_local_assessor(const Configuration& configuration, const TrialSettings& trials,
                                               std::vector<Objective> objectives, std::uint64_t seed) {

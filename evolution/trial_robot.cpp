@@ -15,7 +15,6 @@
 namespace mercury {
 namespace {
 
-constexpr double longest_delay = 100;  // of the muscles' start [s]
 constexpr double two_pi = 6.283185307179586;
 
 VoxelGrid grid_of(const Robot& robot) {
@@ -57,7 +56,7 @@ void disturb_materials(Robot& robot, double noise, Random& random) {
 
 Robot trial_robot(const Robot& robot, const TrialSettings& settings, std::uint64_t seed, int trial) {
   Random random(seed_of(seed, static_cast<std::uint64_t>(trial)));
-  const double delay = trial == 0 ? 0 : random.uniform(0, longest_delay);
+  const double delay = trial == 0 ? 0 : random.uniform(0, settings.delay);
   Robot changed = settings.damage > 0 ? without_some_voxels(robot, settings.damage, random) : robot;
   const std::span<const Material> materials = materials_of(robot);
   changed.materials.assign(materials.begin(), materials.end());

@@ -55,6 +55,7 @@ PortionTrial::PortionTrial(Simulation& simulation, const EvaluationRequest& requ
 
 bool PortionTrial::run() {
   if (simulation_.size() == 0) return true;
+  if (request_.start) place();
   if (!settle()) return false;
   settled_ = simulation_.steps();
   measures_.reserve(simulation_.size());
@@ -67,6 +68,18 @@ bool PortionTrial::run() {
   if (!advance(request_.steps)) return false;
   if (observed_ < steps_done() && simulation_.size() > 0) observe_now();
   return true;
+}
+
+// Puts the masses where the request wants them.
+void PortionTrial::place() {
+  std::vector<Vec3> positions(simulation_.mass_count());
+  oneapi::tbb::parallel_for(std::size_t{0}, simulation_.size(), [&](std::size_t i) {
+    const std::vector<Vec3>& rest = simulation_.robot(i).masses;
+    const std::span<Vec3> own = std::span(positions).subspan(simulation_.mass_offsets()[i], rest.size());
+    std::ranges::copy(rest, own.begin());
+    request_.start(results_[candidates_[i]].index, simulation_.robot(i), own);
+  });
+  simulation_.reset_to(positions);
 }
 
 // Makes the steps before the start, or fewer if the evaluation stops.

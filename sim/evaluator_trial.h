@@ -94,6 +94,7 @@ class PortionTrial {
   std::vector<Evaluation> results();
 
  private:
+  void place();
   bool settle();
   bool advance(std::int64_t end);
   void step(std::int64_t steps);

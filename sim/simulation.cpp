@@ -289,6 +289,26 @@ void Simulation::reset() {
   parts_->after_change();
 }
 
+void Simulation::reset_to(std::span<const Vec3> positions) {
+  if (positions.size() != mass_count()) throw std::invalid_argument("one position per mass is needed");
+  parts_->clock = Clock{.dt = parts_->configuration.dt};
+  parts_->explosions.assign(size(), {});
+  // Robots of which backends use nothing but the start.
+  std::vector<Robot> starts(size());
+  std::vector<const Robot*> pointers(size());
+  std::vector<float> lifts(size());
+  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+    const auto own = positions.subspan(parts_->offsets[i], parts_->masses(i));
+    starts[i].masses.assign(own.begin(), own.end());
+    starts[i].velocity = parts_->robots[i]->velocity;
+    starts[i].fixed = parts_->robots[i]->fixed;
+    pointers[i] = &starts[i];
+    lifts[i] = lift_to_floor(own, parts_->configuration.environment);
+  });
+  parts_->backend->put_at_rest(pointers, 0, lifts);
+  parts_->after_change();
+}
+
 // A run of robots at a time.
 void Simulation::reset(std::span<const std::uint8_t> mask) {
   if (mask.size() != size()) throw std::invalid_argument("one element per robot is needed");

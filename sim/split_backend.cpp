@@ -177,13 +177,17 @@ class SplitBackend final : public Backend {
   void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) override {
     part_of(robot).write(index_in_part(robot), positions, velocities);
   }
-  void put_at_rest(std::span<const Robot* const>, std::size_t first, std::span<const float> lifts) override {
+  void put_at_rest(std::span<const Robot* const> robots, std::size_t first, std::span<const float> lifts) override {
     for_each_part([&](std::size_t p) {
       const std::size_t before = shares_.count_before(p, first),
                         count = shares_.count_before(p, first + lifts.size()) - before;
-      std::vector<float> share;
-      for (const std::size_t robot : shares_.in_batch(p).subspan(before, count)) share.push_back(lifts[robot - first]);
-      if (count > 0) parts_[p]->put_at_rest(shares_.robots(p).subspan(before, count), before, share);
+      std::vector<const Robot*> robots_of_part;
+      std::vector<float> lifts_of_part;
+      for (const std::size_t robot : shares_.in_batch(p).subspan(before, count)) {
+        robots_of_part.push_back(robots[robot - first]);
+        lifts_of_part.push_back(lifts[robot - first]);
+      }
+      if (count > 0) parts_[p]->put_at_rest(robots_of_part, before, lifts_of_part);
     });
   }
   void read_positions(std::span<Vec3> out) const override {

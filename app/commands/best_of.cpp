@@ -30,22 +30,28 @@ std::uint64_t ContestResult::tried() const {
 }
 
 ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64_t count, UnsavedResults& results) {
-  const EvaluationRequest request = trial_request(contest.trials, contest.configuration);
+  const EvaluationRequest request = trial_request(contest.trials, contest.configuration, contest.seed);
   const RandomRobots robots{.kind = contest.kind, .count = contest.candidates, .seed = contest.seed};
   const RobotSource source = [&](std::size_t index) {
     return std::make_shared<const Robot>(make(contest.seed, index));
   };
-  Evaluator evaluator(request, source, contest.candidates);
-  Progress progress("searching", "robots", static_cast<std::int64_t>(contest.candidates));
+  const auto per_robot = static_cast<std::size_t>(contest.trials.trials);
+  Evaluator evaluator(request, trial_source(source, contest.trials, contest.seed), contest.candidates * per_robot);
+  Progress progress("searching", per_robot > 1 ? "trials" : "robots",
+                    static_cast<std::int64_t>(contest.candidates * per_robot));
   ContestResult found;
+  std::vector<Evaluation> of_robot;
   found.interrupted =
-      !take_results(evaluator, progress, request.settling + request.steps, results, [&](const Evaluation& robot) {
-        RobotResult result =
-            result_of(identity_of(robots, robot.index, robot.index), robot, request, contest.trials.strain_limit);
+      !take_results(evaluator, progress, request.settling + request.steps, results, [&](const Evaluation& trial) {
+        of_robot.push_back(trial);
+        if (of_robot.size() < per_robot) return;
+        const std::size_t index = trial.index / per_robot;
+        RobotResult result = result_of(identity_of(robots, index, index), of_robot, request, contest.trials);
+        of_robot.clear();
         ++found.fates[result.fate];
         if (contest.watch) contest.watch(result);
         if (result.fate == Fate::sound && std::isfinite(result.distance))
-          keep_best(found.winners, {robot.robot, std::move(result)}, count);
+          keep_best(found.winners, {trial.robot, std::move(result)}, count);
       });
   return found;
 }

@@ -17,6 +17,7 @@
 #include "app/options/parameter_options.h"
 #include "app/options/robot_output.h"
 #include "app/options/simulation_options.h"
+#include "mercury/objective.h"
 #include "mercury/real_body.h"
 
 namespace mercury {
@@ -27,7 +28,7 @@ struct NewOptions {
   RobotOutput output;
   std::uint64_t best_of = 0;  // 0 = no search
   std::string csv;            // of the candidates; empty = none
-  TrialSettings trials;
+  TrialSettings trials = search_trials();
   SimulationOptions simulation;
   Physics physics = Physics::paper;  // of the robots' bodies
 
@@ -51,8 +52,9 @@ int describe_work(const NewOptions& options, const std::string& kind) {
   return print_dry_run(
       "new " + kind,
       {{"make", fmt::format("{} of seed {}", search ? options.best_of : output.count(), output.seed())},
-       {"simulate",
-        search ? time_text(options.simulation.configuration(options.physics), options.simulation.steps()) : ""},
+       {"simulate", search ? time_text(options.simulation.configuration(options.physics), options.simulation.steps()) +
+                                 fmt::format(", {} trials", options.trials.trials)
+                           : ""},
        {"on", search ? device_text(options.simulation.configuration(options.physics).device) : ""},
        {"keep", search ? fmt::format("the {} that get farthest", output.count()) : ""},
        {"write", output.description()},
@@ -71,11 +73,11 @@ TrialSettings trials_of(const NewOptions& options) {
 }
 
 void require_no_search_options(const NewOptions& options) {
-  const TrialSettings usual;
-  for (const auto& [option, is_given] : {std::pair{"--csv", !options.csv.empty()},
-                                         {"--settle", options.trials.settle != usual.settle},
-                                         {"--strain-limit", options.trials.strain_limit != usual.strain_limit}})
-    if (is_given) throw InputError(option, "goes with --best-of N");
+  if (!options.csv.empty()) throw InputError("--csv", "goes with --best-of N");
+  constexpr TrialSettings usual = search_trials();
+  for_each_parameter(options.trials, [&](const auto& parameter, const auto& value) {
+    if (value != usual.*parameter.member) throw InputError(option_of(parameter.name), "goes with --best-of N");
+  });
 }
 
 // "312 exploded, 4 overstretched"
@@ -86,9 +88,17 @@ std::string fates_text(const ContestResult& found) {
   return text;
 }
 
+// " (quartiles of 3 trials: 0.51 and 0.55)"
+std::string quartiles_text(const RobotResult& result) {
+  if (result.trials == 1) return "";
+  return fmt::format(" (quartiles of {} trials: {:.3g} and {:.3g})", result.trials, result.lower_quartile,
+                     result.upper_quartile);
+}
+
 void report(const ContestResult& found, const NewOptions& options) {
   for (const Winner& winner : found.winners)
-    say(fmt::format("{} got {:.3g} m far", winner.robot->name, winner.result.distance));
+    say(fmt::format("{} got {:.3g} m far{}", winner.robot->name, winner.result.distance,
+                    quartiles_text(winner.result)));
   if (found.interrupted)
     warn(fmt::format("stopped after {} of {} candidates; {}", found.tried(), options.best_of,
                      found.winners.empty() ? "no robot was written" : "the best of these are written"));
@@ -130,6 +140,8 @@ int keep_best(const NewOptions& options, const std::string& kind, const MakeRobo
     if (!options.output.dry_run()) outputs.make_folders();
     contest.watch = [&csv](const RobotResult& robot) { csv += csv_line(robot); };
   }
+  if (const std::string why = why_meaningless(Objective("distance"), contest.configuration.environment); !why.empty())
+    throw InputError("--best-of", why);
   const RobotOutput& output = options.output;
   RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), options.best_of));
   if (output.dry_run()) return describe_work(options, kind);

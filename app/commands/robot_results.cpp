@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -12,6 +13,9 @@
 #include "app/base/csv.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/distance.h"
+#include "mercury/fnv.h"
+#include "mercury/quantity.h"
+#include "mercury/spread.h"
 
 namespace mercury {
 namespace {
@@ -48,13 +52,17 @@ constexpr Column table[] = {
      [](const RobotResult& robot) { return text(robot.identity.random); }},
     {{"fate", "",
       "`sound`, `stopped` (early, by the user), `exploded`, `overstretched` (beyond `--strain-limit`), "
-      "`failed` (it could not be made)"},
+      "`too small`, `failed` (it could not be made)"},
      [](const RobotResult& robot) { return text(std::string(name_of(robot.fate))); }},
     {{"failure", "", "why it could not be made"}, [](const RobotResult& robot) { return text(robot.failure); }},
     {{"masses", "", "number of masses"}, [](const RobotResult& robot) { return count(robot, robot.masses); }},
     {{"springs", "", "number of springs"}, [](const RobotResult& robot) { return count(robot, robot.springs); }},
     {{"distance", "m", "of the center of mass from start to end; on land along the ground"},
      figure_of<&RobotResult::distance>},
+    {{"trials", "", "of the robot; figures of several are medians"},
+     [](const RobotResult& robot) -> Cell { return count(robot, static_cast<std::uint64_t>(robot.trials)); }},
+    {{"lower_quartile", "m", "of the distances of several trials"}, figure_of<&RobotResult::lower_quartile>},
+    {{"upper_quartile", "m", ""}, figure_of<&RobotResult::upper_quartile>},
     {{"start_x", "m", "center of mass at the start, after `--settle`"}, place_of<&RobotResult::start, &Vec3::x>},
     {{"start_y", "m", ""}, place_of<&RobotResult::start, &Vec3::y>},
     {{"start_z", "m", ""}, place_of<&RobotResult::start, &Vec3::z>},
@@ -63,6 +71,12 @@ constexpr Column table[] = {
     {{"end_z", "m", ""}, place_of<&RobotResult::end, &Vec3::z>},
     {{"mean_speed", "m/s", "length of the path of the center of mass, from sample to sample, per time"},
      figure_of<&RobotResult::mean_speed>},
+    {{"cruise_speed", "m/s", "distance per time after the first third of the trial"},
+     figure_of<&RobotResult::cruise_speed>},
+    {{"cruise_lengths", "1/s", "the same in body lengths: per longest side of the box around the body at rest"},
+     figure_of<&RobotResult::cruise_lengths>},
+    {{"steady", "", "`true` if the speeds in the second and the last third agree within 20 %"},
+     [](const RobotResult& robot) { return std::isnan(robot.steady) ? Cell() : Cell(robot.steady > 0.5); }},
     {{"work", "J", "that the muscles did"}, figure_of<&RobotResult::work>},
     {{"highest", "m", "largest z of the center of mass"}, figure_of<&RobotResult::highest>},
     {{"largest_strain", "1", "largest strain of any spring"}, figure_of<&RobotResult::largest_strain>},
@@ -112,11 +126,16 @@ RobotIdentity identity_of(const RandomRobots& request, std::uint64_t index, std:
           .random = fmt::format("{}:1:{}:{}", request.kind, request.seed, index)};
 }
 
-RobotResult result_of(RobotIdentity identity, const Evaluation& evaluation, const EvaluationRequest& request,
-                      double strain_limit) {
-  RobotResult result{.identity = std::move(identity),
-                     .fate = fate_of(evaluation, request, strain_limit),
-                     .failure = evaluation.failure};
+namespace {
+
+double quantity(std::string_view name, const Evaluation& evaluation, const Configuration& configuration) {
+  return quantities()[find_quantity(name).value()].value(
+      {.robot = *evaluation.robot, .evaluation = evaluation, .configuration = configuration});
+}
+
+RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationRequest& request,
+                            const TrialSettings& settings) {
+  RobotResult result{.fate = fate_of(evaluation, request, settings), .failure = evaluation.failure};
   if (!result.was_stepped()) return result;
   const Configuration& configuration = request.configuration;
   const Telemetry &start = evaluation.start, &end = evaluation.end;
@@ -134,10 +153,57 @@ RobotResult result_of(RobotIdentity identity, const Evaluation& evaluation, cons
   result.end = end.center_of_mass;
   result.distance = distance_between(start.center_of_mass, end.center_of_mass, configuration.environment);
   result.mean_speed = seconds > 0 ? evaluation.path / seconds : 0;
+  result.cruise_speed = quantity("cruise_speed", evaluation, configuration);
+  result.cruise_lengths = quantity("cruise_lengths", evaluation, configuration);
+  result.steady = quantity("steady", evaluation, configuration);
   result.work = evaluation.work;
   result.highest = evaluation.highest;
   result.largest_strain = evaluation.largest_strain;
   result.strained_share = evaluation.strained_share;
+  return result;
+}
+
+void take_medians(RobotResult& result, std::span<const RobotResult> trials) {
+  const auto median = [&](const auto& value) {
+    std::vector<double> values;
+    for (const RobotResult& trial : trials) values.push_back(static_cast<double>(value(trial)));
+    return median_of(std::move(values));
+  };
+  for (double RobotResult::*figure :
+       {&RobotResult::distance, &RobotResult::mean_speed, &RobotResult::cruise_speed, &RobotResult::cruise_lengths,
+        &RobotResult::work, &RobotResult::highest, &RobotResult::largest_strain, &RobotResult::strained_share})
+    result.*figure = median([&](const RobotResult& trial) { return trial.*figure; });
+  for (Vec3 RobotResult::*place : {&RobotResult::start, &RobotResult::end})
+    for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z})
+      result.*place.*axis = static_cast<float>(median([&](const RobotResult& trial) { return trial.*place.*axis; }));
+  result.steady = median([](const RobotResult& trial) { return trial.steady; }) > 0.5 ? 1 : 0;
+  std::vector<double> distances;
+  for (const RobotResult& trial : trials) distances.push_back(trial.distance);
+  const Spread spread = spread_of(std::move(distances));
+  result.lower_quartile = spread.lower_quartile;
+  result.upper_quartile = spread.upper_quartile;
+}
+
+}  // namespace
+
+RobotResult result_of(RobotIdentity identity, std::span<const Evaluation> trials, const EvaluationRequest& request,
+                      const TrialSettings& settings) {
+  std::vector<RobotResult> results;
+  for (const Evaluation& trial : trials) results.push_back(result_of_trial(trial, request, settings));
+  const auto is_worse = [](const RobotResult& a, const RobotResult& b) {
+    return a.fate != b.fate && worse(a.fate, b.fate) == b.fate;
+  };
+  // The worst one says what happened.
+  RobotResult result = *std::ranges::max_element(results, is_worse);
+  if (results.size() > 1) {
+    Fnv1a hash;
+    for (const RobotResult& trial : results) hash.add(trial.hash);
+    result.hash = hash.value();
+    result.trials = static_cast<int>(results.size());
+    if (result.was_stepped() && !result.exploded()) take_medians(result, results);
+  }
+  identity.name = result.was_stepped() ? result.identity.name : identity.name;
+  result.identity = std::move(identity);
   return result;
 }
 

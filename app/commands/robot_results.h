@@ -30,8 +30,8 @@ struct RobotIdentity {
 // The `index`-th robot of a request, which is the robot `place` of the command.
 RobotIdentity identity_of(const RandomRobots& request, std::uint64_t index, std::size_t place);
 
-// A figure that means nothing is NaN: all of a robot that could not be stepped, and those of an exploded robot that
-// depend on how far it got.
+// Figures of several trials are medians, places coordinate by coordinate. A figure that means nothing is NaN: all of a
+// robot that could not be stepped, and those of an exploded robot that depend on how far it got.
 struct RobotResult {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr Vec3 nowhere{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::quiet_NaN(),
@@ -39,25 +39,30 @@ struct RobotResult {
 
   RobotIdentity identity;
   Fate fate = Fate::failed;
-  std::string failure;                       // why it could not be made or stepped
-  std::size_t masses = 0, springs = 0;       // 0 if it failed
-  double distance = none;                    // distance_between() start and end [m]
-  Vec3 start = nowhere, end = nowhere;       // center of mass after settling and at the end [m]
-  double mean_speed = none;                  // length of its path per time of the trial [m/s]
-  double work = none;                        // that the muscles did [J]
-  double highest = none;                     // largest z of the center of mass [m]
-  double largest_strain = none;              // over all samples [1]
-  double strained_share = none;              // largest Telemetry::strained_share of all samples [1]
-  double exploded_at = none;                 // [s], if it exploded
-  std::uint32_t culprit_spring = no_spring;  // if it exploded
-  std::uint64_t hash = 0;                    // of the final positions and velocities
+  std::string failure;                  // why it could not be made or stepped
+  std::size_t masses = 0, springs = 0;  // 0 if it failed
+  int trials = 1;
+  double distance = none;                               // distance_between() start and end [m]
+  double lower_quartile = none, upper_quartile = none;  // of the trials' distances, if there are several [m]
+  Vec3 start = nowhere, end = nowhere;                  // center of mass after settling and at the end [m]
+  double mean_speed = none;                             // length of its path per time of the trial [m/s]
+  double cruise_speed = none, cruise_lengths = none;    // after the first third of the trial [m/s], [body lengths/s]
+  double steady = none;                                 // 1 = the last two thirds agree, 0 = they do not
+  double work = none;                                   // that the muscles did [J]
+  double highest = none;                                // largest z of the center of mass [m]
+  double largest_strain = none;                         // over all samples [1]
+  double strained_share = none;                         // largest Telemetry::strained_share of all samples [1]
+  double exploded_at = none;                            // [s], if it exploded
+  std::uint32_t culprit_spring = no_spring;             // if it exploded
+  std::uint64_t hash = 0;                               // of the final positions and velocities, of all trials
 
   bool exploded() const { return fate == Fate::exploded; }
   bool was_stepped() const { return fate != Fate::failed; }
 };
 
-RobotResult result_of(RobotIdentity identity, const Evaluation& evaluation, const EvaluationRequest& request,
-                      double strain_limit);
+// Of the trials of a robot, one or more.
+RobotResult result_of(RobotIdentity identity, std::span<const Evaluation> trials, const EvaluationRequest& request,
+                      const TrialSettings& settings);
 
 // A column of the CSV and, under the same name, a member of each JSON object.
 struct ResultColumn {

@@ -38,7 +38,7 @@ constexpr double checkpoint_period = 60;  // [s], without --checkpoint-every
 struct RunOptions {
   RobotOptions robots;
   SimulationOptions simulation;
-  TrialSettings trials;
+  TrialSettings trials = one_trial();
   OutputOptions output;
   std::string csv, record, checkpoint;
   std::string resume;    // the checkpoint to go on from; empty = none
@@ -143,7 +143,8 @@ int describe_work(const RunOptions& options, const Configuration& configuration,
   const std::int64_t every = recorded_every(options, configuration);
   return print_dry_run(
       "run", {{"robots", robots},
-              {"simulate", time_text(configuration, steps)},
+              {"simulate", time_text(configuration, steps) +
+                               (options.trials.trials > 1 ? fmt::format(", {} trials", options.trials.trials) : "")},
               {"in", environment_text(configuration)},
               {"by", solver_text(configuration)},
               {"on", device_text(configuration.device)},
@@ -163,6 +164,8 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
     throw InputError(file.string(), "has its own configuration; give only --device, --threads and --seconds with it");
   if (!options.record.empty() || options.every) throw InputError("--record", "does not work with a repro; give robots");
   if (options.trials.settle != 0) throw InputError("--settle", "does not work with a repro; give robots");
+  if (options.trials.trials != 1) throw InputError("--trials", "does not work with a repro; give robots");
+  if (options.trials.jitter != 0) throw InputError("--jitter", "does not work with a repro; give robots");
   if (!options.checkpoint.empty()) throw InputError("--checkpoint", "does not work with a repro; give robots");
   const Repro repro = load_repro(file);
   Simulation simulation = start_of(repro, device);
@@ -243,6 +246,7 @@ int run_in_one(const RunOptions& options, const RobotSequence& robots, const Con
   GatheredRobots gathered = gather(robots);
   Simulation simulation(configuration, std::move(gathered.robots), shown_work());
   print_notes(simulation.notes());
+  begin_with_jitter(simulation, trials, options.robots.seed_or_default());
   std::optional<Checkpoints> checkpoints =
       checkpoints_of(options, notes_of(options, configuration, trials, gathered.identities, gathered.failed));
   return run_watched(options, options.record.empty() ? nullptr : open_recorder(options, simulation),
@@ -256,7 +260,7 @@ void validate_resume(const RunOptions& options) {
   const Device device = options.simulation.configuration().device;
   if (!options.robots.empty())
     throw InputError("--resume", "goes on with the robots of " + options.resume + "; give no others");
-  if (options.simulation.configuration() != Configuration{.device = device} || options.trials != TrialSettings{} ||
+  if (options.simulation.configuration() != Configuration{.device = device} || options.trials != one_trial() ||
       !options.simulation.chosen_environment().empty())
     throw InputError(
         "--resume", options.resume + " has its own configuration; give only --device, --threads and --seconds with it");
@@ -289,9 +293,10 @@ int run_resumed(RunOptions options) {
   if (!options.record.empty() && !checkpoint.notes.recording)
     throw InputError("--record", options.resume + " is from a run without a recording; leave it out");
   prepare_outputs(options, checkpoint.notes.recording ? checkpoint.notes.recording->path : "");
-  TrialSettings trials{.seconds = options.simulation.seconds(checkpoint.notes.seconds),
-                       .settle = checkpoint.notes.settle,
-                       .strain_limit = checkpoint.notes.strain_limit};
+  TrialSettings trials = options.trials;
+  trials.seconds = options.simulation.seconds(checkpoint.notes.seconds);
+  trials.settle = checkpoint.notes.settle;
+  trials.strain_limit = checkpoint.notes.strain_limit;
   validate(trials);
   const double steps = std::round(trials.seconds / configuration.dt);
   if (!(steps <= 1e15) || steps < static_cast<double>(checkpoint.state.clock.step))
@@ -328,15 +333,19 @@ int run(const RunOptions& options) {
   TrialSettings trials = options.trials;
   trials.seconds = options.simulation.seconds();
   validate(trials);
+  const bool in_one = !options.record.empty() || !options.checkpoint.empty();
+  if (in_one && trials.trials != 1)
+    throw InputError("--trials", fmt::format("{} trials have no {}; give one", trials.trials,
+                                             options.record.empty() ? "checkpoint" : "recording"));
   const RobotSequence robots = options.robots.sequence();
   std::vector<std::string> notes;
   const Configuration configuration = options.simulation.configuration(robots.environments, notes, robots.physics);
   print_notes(notes);
   if (options.output.dry_run())
     return describe_work(options, configuration, options.simulation.steps(), size_text(robots));
-  if (!options.record.empty() || !options.checkpoint.empty()) return run_in_one(options, robots, configuration, trials);
+  if (in_one) return run_in_one(options, robots, configuration, trials);
   UnsavedResults results;
-  const RunReport report = evaluate(robots, configuration, trials, results);
+  const RunReport report = evaluate(robots, configuration, trials, options.robots.seed_or_default(), results);
   print_notes(report.notes);
   return report_results(options, report);
 }
@@ -370,7 +379,8 @@ void add_run_command(const Command& program, const Choose& choose) {
   command.set_footer(
       "Distance is how far the center of mass got from where it was after --settle; on land along the ground, so a "
       "fall\n"
-      "counts for nothing. Speed is the length of its path divided by the time. Strain is the largest of any spring;\n"
+      "counts for nothing. Speed is the length of its path divided by the time; cruise is the distance per time after\n"
+      "the first third. Figures of several --trials are medians. Strain is the largest of any spring;\n"
       "\"> 50\" is the largest share of springs that had more than 50 % at the same time. Speed, work, height and "
       "strain\n"
       "are sampled every 0.05 s. docs/formats.md describes all columns of CSV and JSON.\n\n"
@@ -381,8 +391,9 @@ void add_run_command(const Command& program, const Choose& choose) {
       "  mercury run --resume --checkpoint long.h5                (goes on after a crash)\n"
       "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"
       "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
-  command.when_chosen([options, choose] {
-    choose([options] {
+  command.when_chosen([options, choose, command] {
+    choose([options, command] {
+      complete_trials(command, options->trials);
       if (options->goes_on && options->checkpoint.empty())
         throw InputError("--resume", "goes on from the file of --checkpoint; give that, too");
       if (options->goes_on) options->resume = options->checkpoint;

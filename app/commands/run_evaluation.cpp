@@ -121,8 +121,10 @@ RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities,
   const EvaluationRequest request = trial_request(trials, simulation.configuration());
   const std::int64_t start = first + request.settling, end = start + request.steps;
   Advance advance(simulation, observers, trial, end, request.sample_every);
-  RunReport report{
-      .settle = trials.settle, .resumed = simulation.steps(), .interrupted = trial.sampled < 0 && !advance.to(start)};
+  RunReport report{.settle = trials.settle,
+                   .jitter = trials.jitter,
+                   .resumed = simulation.steps(),
+                   .interrupted = trial.sampled < 0 && !advance.to(start)};
   if (trial.sampled < 0 && !report.interrupted) {
     for (const Telemetry& telemetry : simulation.telemetry()) trial.measures.emplace_back(telemetry);
     trial.sampled = simulation.steps();
@@ -143,7 +145,7 @@ RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities,
   if (trial.sampled >= 0) {
     if (trial.sampled < simulation.steps()) add_sample();
     for (const Evaluation& robot : evaluations_of(simulation, trial.measures, simulation.steps() - start))
-      report.robots.push_back(result_of(std::move(identities[robot.index]), robot, request, trials.strain_limit));
+      report.robots.push_back(result_of(std::move(identities[robot.index]), std::span(&robot, 1), request, trials));
   }
   report.missing = simulation.size() - report.robots.size();
   report.configuration = simulation.configuration();
@@ -168,22 +170,30 @@ RobotIdentity identity_of(const RobotSequence& robots, std::size_t index) {
 }
 
 RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials,
-                   UnsavedResults& results) {
-  const EvaluationRequest request = trial_request(trials, configuration);
-  Evaluator evaluator(request, robots.source, robots.count);
-  RunReport report{.configuration = configuration, .settle = trials.settle};
+                   std::uint64_t seed, UnsavedResults& results) {
+  const EvaluationRequest request = trial_request(trials, configuration, seed);
+  const auto per_robot = static_cast<std::size_t>(trials.trials);
+  Evaluator evaluator(request, trial_source(robots.source, trials, seed), robots.count * per_robot);
+  RunReport report{
+      .configuration = configuration, .settle = trials.settle, .trials = trials.trials, .jitter = trials.jitter};
   std::optional<std::int64_t> reached;  // steps of the trial
-  const auto take = [&](const Evaluation& robot) {
-    if (robot.failure.empty()) {
-      const bool has_settled = robot.steps > 0 || request.settling == 0 || request.steps == 0;
-      if (!has_settled || (reached && robot.steps != *reached)) return;
-      reached = robot.steps;
+  std::vector<Evaluation> of_robot;     // those of its trials that have come so far
+  const auto take = [&](const Evaluation& trial) {
+    const std::size_t robot = trial.index / per_robot;
+    if (trial.index % per_robot == 0) of_robot.clear();
+    if (trial.failure.empty()) {
+      const bool has_settled = trial.steps > 0 || request.settling == 0 || request.steps == 0;
+      if (!has_settled || (reached && trial.steps != *reached)) return;
+      reached = trial.steps;
     }
-    report.robots.push_back(result_of(identity_of(robots, robot.index), robot, request, trials.strain_limit));
+    of_robot.push_back(trial);
+    if (of_robot.size() == per_robot)
+      report.robots.push_back(result_of(identity_of(robots, robot), of_robot, request, trials));
   };
   bool stopped = false;
   {
-    Progress progress("simulating", "robots", static_cast<std::int64_t>(robots.count));
+    Progress progress("simulating", trials.trials > 1 ? "trials" : "robots",
+                      static_cast<std::int64_t>(robots.count * per_robot));
     try {
       stopped = !take_results(evaluator, progress, request.settling + request.steps, results, take);
     } catch (const DeviceError& error) {
@@ -201,6 +211,17 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   report.notes = evaluator.notes();
   report.wall_seconds = evaluator.progress().stepping;
   return report;
+}
+
+void begin_with_jitter(Simulation& simulation, const TrialSettings& trials, std::uint64_t seed) {
+  if (trials.jitter == 0) return;
+  std::vector<Vec3> positions;
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const std::vector<Vec3>& rest = simulation.robot(i).masses;
+    positions.insert(positions.end(), rest.begin(), rest.end());
+    add_jitter(simulation.robot(i), trials, seed, 0, std::span(positions).last(rest.size()));
+  }
+  simulation.reset_to(positions);
 }
 
 RunReport simulate(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,

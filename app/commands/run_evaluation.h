@@ -12,9 +12,9 @@
 #include "app/options/robot_options.h"
 #include "app/recording/recorder.h"
 #include "app/recording/repro.h"
-#include "mercury/assessor.h"
 #include "mercury/configuration.h"
 #include "mercury/simulation.h"
+#include "mercury/trials.h"
 
 namespace mercury {
 
@@ -23,9 +23,10 @@ RobotIdentity identity_of(const RobotSequence& robots, std::size_t index);
 
 // Simulates the robots, with a progress bar. If the user interrupts, the report holds those robots that
 // have made all steps; if there is none yet, those that have come as far as the first. Robots that cannot be made are
-// in the report, too. `results` begin with the first step. Throws InputError if all robots of a request cannot be made.
+// in the report, too. `seed` = of jitter. `results` begin with the first step. Throws InputError if all robots of a
+// request cannot be made.
 RunReport evaluate(const RobotSequence& robots, const Configuration& configuration, const TrialSettings& trials,
-                   UnsavedResults& results);
+                   std::uint64_t seed, UnsavedResults& results);
 
 // All robots of a sequence at once.
 struct GatheredRobots {
@@ -44,6 +45,9 @@ struct StepObservers {
   ReproChanges* changes = nullptr;
   Checkpoints* checkpoints = nullptr;
 };
+
+// Displaces the masses of robots that are at rest, as in the first trial of the settings.
+void begin_with_jitter(Simulation& simulation, const TrialSettings& trials, std::uint64_t seed);
 
 // Simulates the robots of a simulation, `identities`, from where it stands, as one trial. If the user interrupts while
 // they settle, the report holds no robot.

@@ -14,6 +14,8 @@ namespace mercury {
 struct RunReport {
   Configuration configuration;
   double settle = 0;   // of the time, at the start, during which nothing was measured [s]
+  int trials = 1;      // of each robot
+  double jitter = 0;   // with which they began
   std::string device;  // device name, for people
   std::int64_t steps = 0;
   double seconds = 0;        // simulated

@@ -55,8 +55,11 @@ std::string genome_text(const GenomeSpaceRequest& space) {
 std::string trials_text(const TrialSettings& trials) {
   std::string text = fmt::format("{} of {:g} s", trials.trials, trials.seconds);
   if (trials.settle > 0) text += fmt::format(", the first {:g} s not measured", trials.settle);
+  if (trials.jitter > 0) text += fmt::format(", jitter {:g}", trials.jitter);
+  if (trials.trials > 1 && trials.delay > 0) text += fmt::format(", started up to {:g} s later", trials.delay);
   if (trials.noise > 0) text += fmt::format(", noise {:g}", trials.noise);
   if (trials.damage > 0) text += fmt::format(", damage {:g}", trials.damage);
+  if (trials.trials > 1) text += trials.median ? ", the median counts" : ", the mean counts";
   text += fmt::format(", strain limit {:g}", trials.strain_limit);
   return text + (trials.racing ? ", racing" : "");
 }
@@ -87,6 +90,7 @@ Totals totals_of(const RunHistory& run) {
     totals.born += generation.born;
     totals.fates[Fate::exploded] += generation.exploded;
     totals.fates[Fate::overstretched] += generation.overstretched;
+    totals.fates[Fate::too_small] += generation.too_small;
     totals.fates[Fate::stopped] += generation.stopped;
     totals.fates[Fate::failed] += generation.failed;
     totals.seconds += generation.times.seconds;

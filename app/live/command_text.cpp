@@ -166,7 +166,10 @@ OptionValues options_of(const EvolutionSettings& settings) {
   for (const std::string& objective : settings.objectives) options.text("--objective", objective, "");
   add_parameters(options, settings.algorithm);
   add_parameters(options, settings);
-  add_parameters(options, settings.trials);
+  constexpr TrialSettings usual = search_trials();
+  for_each_parameter(settings.trials, [&](const auto& parameter, const auto& value) {
+    add_parameter(options, parameter, value, usual.*parameter.member);
+  });
   OptionValues values = options.take();
   std::ranges::move(options_of(settings.configuration), std::back_inserter(values));
   return values;

@@ -13,6 +13,7 @@
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"
 #include "mercury/error.h"
+#include "mercury/objective.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
 #include "mercury/real_body.h"
@@ -163,6 +164,7 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
   evolution.algorithm = algorithm();
   if (!objectives_.empty()) evolution.objectives = objectives_;
   evolution.trials.seconds = simulation_.seconds();
+  if (evolution.trials.racing && !command_->is_given("--trials")) evolution.trials.trials = 1;
   Physics physics = real_material_in(settings.space.values) ? Physics::real : Physics::paper;
   evolution.configuration = simulation_.configuration(physics);
   validate(evolution);
@@ -172,6 +174,10 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
   for (const Robot& robot : settings.space.founders) environments.push_back(environment_of(robot));
   if (environments.empty()) environments.push_back(generator_named(settings.space.kind).environment);
   evolution.configuration = simulation_.configuration(environments, notes, physics);
+  for (const std::string& formula : evolution.objectives)
+    if (const std::string why = why_meaningless(Objective(formula), evolution.configuration.environment); !why.empty())
+      throw InputError("--objective",
+                       fmt::format("\"{}\": {}; give another --environment or --objective", formula, why));
   settings.space.environment = name_of(evolution.configuration.environment);
   make_genome_space(settings.space);  // throws for a request that cannot be used
   return settings;

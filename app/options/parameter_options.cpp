@@ -3,14 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+#include <iterator>
 
 namespace mercury {
 namespace {
 
 constexpr const char* trials_group = "Trials";
 
-bool is_of_every_measurement(std::string_view name) { return name == "settle" || name == "strain_limit"; }
+// --seconds is an option of the simulation; what else is left out has no option.
+bool is_of_every_measurement(std::string_view name) {
+  constexpr std::string_view names[] = {"settle", "trials", "jitter", "strain_limit", "strained_limit", "least_masses"};
+  return std::ranges::find(names, name) != std::end(names);
+}
+bool is_of_evolution(std::string_view name) {
+  return !is_of_every_measurement(name) && name != "seconds" && name != "median";
+}
 
 }  // namespace
 
@@ -31,10 +40,12 @@ void add_trial_options(const Command& command, TrialSettings& trials) {
   add_parameters(command, trials, trials_group, is_of_every_measurement);
 }
 
+void complete_trials(const Command& command, TrialSettings& trials) {
+  if (!command.is_given("--jitter")) trials.jitter = trials.trials > 1 ? usual_jitter : 0;
+}
+
 void add_evolution_trial_options(const Command& command, TrialSettings& trials) {
-  // --seconds is an option of the simulation.
-  add_parameters(command, trials, trials_group,
-                 [](std::string_view name) { return name != "seconds" && !is_of_every_measurement(name); });
+  add_parameters(command, trials, trials_group, is_of_evolution);
 }
 
 }  // namespace mercury

@@ -8,8 +8,8 @@
 
 #include "app/options/command.h"
 #include "app/options/option_values.h"
-#include "mercury/assessor.h"
 #include "mercury/parameters.h"
+#include "mercury/trials.h"
 
 namespace mercury {
 
@@ -25,7 +25,7 @@ std::string text_of(bool value);
 std::string form_of(std::string_view unit, bool whole = false);
 
 // Adds an option for each parameter that `is_wanted(name)` accepts. It writes into the member of `values`, which must
-// outlive the command.
+// outlive the command; the default is what that has now.
 template <class Struct, class Wanted>
 void add_parameters(const Command& command, Struct& values, const char* group, Wanted is_wanted) {
   for_each_parameter(values, [&]<class Value>(const auto& parameter, Value& value) {
@@ -34,7 +34,7 @@ void add_parameters(const Command& command, Struct& values, const char* group, W
     if constexpr (std::is_same_v<Value, bool>) {
       command.add_flag(option_of(parameter.name), value, help).in_group(group);
     } else {
-      const std::string usual = note.empty() ? "default " + text_of(parameter.default_value()) : note;
+      const std::string usual = note.empty() ? "default " + text_of(value) : note;
       const std::string form =
           parameter.form.empty() ? form_of(parameter.unit, std::is_integral_v<Value>) : std::string(parameter.form);
       add_number(command, option_of(parameter.name), value, help + " (" + usual + ")", form).in_group(group);
@@ -46,8 +46,10 @@ void add_parameters(const Command& command, Struct& values, const char* group) {
   add_parameters(command, values, group, [](std::string_view) { return true; });
 }
 
-// --settle and --strain-limit: what counts, and from when on. They mean the same everywhere.
+// How often robots are tried, from when on, and what counts. They mean the same everywhere.
 void add_trial_options(const Command& command, TrialSettings& trials);
+// Sets what the options leave to others: without --jitter, several trials have the usual one, and one trial none.
+void complete_trials(const Command& command, TrialSettings& trials);
 // The other parameters of trials, which only evolution has.
 void add_evolution_trial_options(const Command& command, TrialSettings& trials);
 

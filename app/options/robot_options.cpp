@@ -36,7 +36,7 @@ void RobotOptions::add_to(const Command& command) {
       .with_form("KIND:N[:SEED[:FIRST]]")
       .in_group("Robots")
       .on_first_screen();
-  add_number(command, "--seed", seed_, "Seed of the random robots (default 1)", "N")
+  add_number(command, "--seed", seed_, "Seed of the random robots and of jitter (default 1)", "N")
       .in_group("Robots")
       .on_first_screen();
   generators_.add_to(command);

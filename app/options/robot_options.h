@@ -75,6 +75,8 @@ class RobotOptions {
 
   // The seed of the random robots; none if there are no random robots.
   std::optional<std::uint64_t> seed() const { return random_.empty() ? std::nullopt : std::optional(seed_); }
+  // The same for what else is random, such as jitter.
+  std::uint64_t seed_or_default() const { return seed_; }
 
  private:
   void require_robots() const;

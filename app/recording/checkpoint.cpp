@@ -84,6 +84,49 @@ TrialMeasures::Sums sums_from(const Row& row) {
   return sums;
 }
 
+// The way of each robot. Earlier versions wrote none.
+void write_ways(hid_t parent, std::span<const TrialMeasures::Sums> measures) {
+  if (measures.empty() || measures.front().way.empty()) return;
+  const TrialMeasures::Sums& first = measures.front();  // all have as many samples, at the same times
+  const Handle group = create_group(parent, "ways");
+  write_attribute(group, "elapsed", first.elapsed);
+  write_attribute(group, "period", first.period);
+  write_attribute(group, "samples", first.samples);
+  write_attribute(group, "stride", first.stride);
+  std::vector<float> places;
+  for (const TrialMeasures::Sums& sums : measures)
+    for (const Vec3& place : sums.way) places.insert(places.end(), {place.x, place.y, place.z});
+  write_dataset(group, "place", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {measures.size() * first.way.size(), 3},
+                places.data());
+}
+
+void read_ways(hid_t parent, std::span<TrialMeasures::Sums> measures) {
+  if (measures.empty() || !has_member(parent, "ways")) return;
+  const Handle group = open_group(parent, "ways");
+  TrialMeasures::Sums common;
+  common.elapsed = read_attribute<double>(group, "elapsed");
+  common.period = read_attribute<double>(group, "period");
+  common.samples = read_attribute<std::int64_t>(group, "samples");
+  common.stride = read_attribute<std::int64_t>(group, "stride");
+  const auto places = read_rows<std::array<float, 3>>(group, "place", H5T_NATIVE_FLOAT, {3});
+  const std::size_t count = places.size() / measures.size();
+  const bool fits = count * measures.size() == places.size() && count >= 1 && count <= TrialMeasures::longest_way &&
+                    common.samples >= 0 && common.stride >= 1 &&
+                    common.samples / common.stride == static_cast<std::int64_t>(count) - 1 && common.elapsed >= 0 &&
+                    common.elapsed < 1e18 && common.period >= 0 && common.period < 1e18;
+  if (!fits) throw Error("/checkpoint/ways: its numbers do not go together");
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    measures[i].elapsed = common.elapsed;
+    measures[i].period = common.period;
+    measures[i].samples = common.samples;
+    measures[i].stride = common.stride;
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto& [x, y, z] = places[i * count + k];
+      measures[i].way.push_back({x, y, z});
+    }
+  }
+}
+
 void write_robots(hid_t parent, const std::string& name, std::span<const CheckpointRobot> robots) {
   const Handle group = create_group(parent, name);
   std::vector<std::uint64_t> indices;
@@ -130,6 +173,7 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   std::vector<Row> rows;
   for (const TrialMeasures::Sums& sums : notes.measures) rows.push_back(row_of(sums));
   write_dataset(group, "measures", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {rows.size(), row_numbers}, rows.data());
+  write_ways(group, notes.measures);
   if (!notes.recording) return;
   const Handle recording = create_group(group, "recording");
   write_text(recording, "path", notes.recording->path);
@@ -152,6 +196,7 @@ CheckpointNotes read_notes(hid_t group) {
                         .failed = read_robots(group, "failed")};
   for (const Row& row : read_rows<Row>(group, "measures", H5T_NATIVE_DOUBLE, {row_numbers}))
     notes.measures.push_back(sums_from(row));
+  read_ways(group, notes.measures);
   if (!has_member(group, "recording")) return notes;
   const Handle recording = open_group(group, "recording");
   notes.recording = {.path = read_text(recording, "path"),

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view magic = "MERCSHRD";
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = record_version;
 
 fs::path folder_of_shards(const fs::path& run) { return run / "shards"; }
 
@@ -66,13 +66,14 @@ std::vector<Assessment> read(const fs::path& file, std::uint64_t wanted_fingerpr
   try {
     ByteReader reader(bytes);
     if (reader.take(magic.size()) != magic) throw refuse("is not a shard");
-    if (reader.read<std::uint32_t>() > version) throw refuse("is of a newer version of Mercury");
+    const auto written = reader.read<std::uint32_t>();
+    if (written > version) throw refuse("is of a newer version of Mercury");
     if (bytes.size() < sizeof(std::uint64_t) ||
         ByteReader(std::string_view(bytes).substr(bytes.size() - sizeof(std::uint64_t))).read<std::uint64_t>() !=
             checksum_of(std::string_view(bytes).substr(0, bytes.size() - sizeof(std::uint64_t))))
       throw refuse("is damaged");
     if (reader.read<std::uint64_t>() != wanted_fingerprint) throw refuse("belongs to another run");
-    std::vector<Assessment> assessments = decode_assessments(reader);
+    std::vector<Assessment> assessments = decode_assessments(reader, written);
     if (assessments.size() != wanted_count) throw refuse("has another number of robots");
     return assessments;
   } catch (const DamagedBytes& error) {

@@ -154,6 +154,8 @@ void write_lineage(const RunHistory& run) {
        {"id", "ancestor_list", "origin_time", "destruction_time", "generation", "line_began", "seed", "fate"})
     csv.cell(name);
   for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
+  for (std::size_t i = 0; i < objectives; ++i)
+    for (const char* name : {"lower_quartile_", "upper_quartile_"}) csv.cell(name + score_name(i, objectives));
   csv.cell("hash");
   for (const Quantity& quantity : quantities()) csv.cell(column_of(quantity));
   csv.end_line();
@@ -164,6 +166,9 @@ void write_lineage(const RunHistory& run) {
     csv.cell(died ? std::to_string(*died) : "inf").cell(individual.generation).cell(individual.line_began);
     csv.cell(individual.seed).cell(name_of(assessment.fate));
     add_cells(csv, assessment.scores, objectives);
+    for (std::size_t i = 0; i < objectives; ++i)
+      for (const std::vector<double>* quartiles : {&assessment.lower_quartiles, &assessment.upper_quartiles})
+        csv.cell(i < quartiles->size() ? shortest_text((*quartiles)[i]) : std::string());
     csv.cell(hexadecimal(assessment.hash));
     add_quantities(csv, assessment);
     csv.end_line();
@@ -178,18 +183,20 @@ void write_generations(const RunHistory& run) {
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})
       csv.cell(name + score_name(i, objectives));
-  for (const char* name :
-       {"sound", "stopped", "exploded", "overstretched", "failed", "seconds", "robots_per_second", "device"})
+  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "failed", "seconds",
+                           "robots_per_second", "device"})
     csv.cell(name);
   csv.end_line();
   for (const GenerationSummary& generation : run.generations()) {
     csv.cell(generation.number).cell(generation.born).cell(generation.living).cell(generation.best);
     for (const ScoreSpread& scores : generation.scores)
       csv.cell(scores.highest).cell(scores.upper_quartile).cell(scores.median).cell(scores.lower_quartile);
-    csv.cell(generation.born - generation.stopped - generation.exploded - generation.overstretched - generation.failed)
+    csv.cell(generation.born - generation.stopped - generation.exploded - generation.overstretched -
+             generation.too_small - generation.failed)
         .cell(generation.stopped)
         .cell(generation.exploded)
         .cell(generation.overstretched)
+        .cell(generation.too_small)
         .cell(generation.failed);
     const double seconds = generation.times.seconds;
     csv.cell(fixed_text(seconds, 3))

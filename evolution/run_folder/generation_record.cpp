@@ -71,30 +71,37 @@ std::string with_difference(std::string_view base, std::string_view difference) 
 
 namespace {
 
-constexpr std::uint8_t last_fate = static_cast<std::uint8_t>(Fate::failed);
 constexpr std::size_t smallest_assessment = 25;  // bytes
 
 }  // namespace
 
-void encode(ByteWriter& writer, const Assessment& assessment) {
+void encode(ByteWriter& writer, const Assessment& assessment, std::uint32_t version) {
   writer.add(static_cast<std::uint8_t>(assessment.fate));
   writer.text(assessment.problem);
   writer.numbers(assessment.scores);
   writer.numbers(assessment.values);
   writer.numbers(assessment.interim_scores);
   writer.add(assessment.hash);
+  if (version < 2) return;
+  writer.numbers(assessment.lower_quartiles);
+  writer.numbers(assessment.upper_quartiles);
+  writer.add(assessment.violation);
 }
 
-Assessment decode_assessment(ByteReader& reader) {
+Assessment decode_assessment(ByteReader& reader, std::uint32_t version) {
   Assessment assessment;
   const auto fate = reader.read<std::uint8_t>();
-  if (fate > last_fate) throw DamagedBytes("an individual has an unknown fate");
+  if (fate > static_cast<std::uint8_t>(last_fate)) throw DamagedBytes("an individual has an unknown fate");
   assessment.fate = static_cast<Fate>(fate);
   assessment.problem = reader.text();
   assessment.scores = reader.numbers<double>();
   assessment.values = reader.numbers<double>();
   assessment.interim_scores = reader.numbers<double>();
   assessment.hash = reader.read<std::uint64_t>();
+  if (version < 2) return assessment;
+  assessment.lower_quartiles = reader.numbers<double>();
+  assessment.upper_quartiles = reader.numbers<double>();
+  assessment.violation = reader.read<double>();
   return assessment;
 }
 
@@ -103,9 +110,9 @@ void encode(ByteWriter& writer, const std::vector<Assessment>& assessments) {
   for (const Assessment& assessment : assessments) encode(writer, assessment);
 }
 
-std::vector<Assessment> decode_assessments(ByteReader& reader) {
+std::vector<Assessment> decode_assessments(ByteReader& reader, std::uint32_t version) {
   std::vector<Assessment> assessments(reader.count(smallest_assessment));
-  for (Assessment& assessment : assessments) assessment = decode_assessment(reader);
+  for (Assessment& assessment : assessments) assessment = decode_assessment(reader, version);
   return assessments;
 }
 
@@ -115,17 +122,17 @@ namespace {
 
 enum class Form : std::uint8_t { whole, difference };
 
-void encode(ByteWriter& writer, const Individual& individual, const StoredGenome& genome) {
+void encode(ByteWriter& writer, const Individual& individual, const StoredGenome& genome, std::uint32_t version) {
   writer.numbers(individual.parents);
   writer.add(static_cast<std::uint32_t>(individual.line_began));
   writer.add(individual.seed);
-  encode(writer, individual.assessment);
+  encode(writer, individual.assessment, version);
   writer.add(static_cast<std::uint8_t>(genome.base == StoredGenome::none ? Form::whole : Form::difference));
   writer.add(genome.size);
   writer.add(genome.checksum);
 }
 
-Individual decode_individual(ByteReader& reader, int generation, std::uint64_t first_id) {
+Individual decode_individual(ByteReader& reader, int generation, std::uint64_t first_id, std::uint32_t version) {
   Individual individual;
   individual.generation = generation;
   individual.parents = reader.numbers<std::uint64_t>();
@@ -135,7 +142,7 @@ Individual decode_individual(ByteReader& reader, int generation, std::uint64_t f
   if (line_began > static_cast<std::uint32_t>(generation)) throw DamagedBytes("a line begins after its individual");
   individual.line_began = static_cast<int>(line_began);
   individual.seed = reader.read<std::uint64_t>();
-  individual.assessment = decode_assessment(reader);
+  individual.assessment = decode_assessment(reader, version);
   return individual;
 }
 
@@ -178,7 +185,7 @@ std::optional<RecordHead> decode_head(std::string_view bytes) {
   return head;
 }
 
-std::string encode_index(const GenerationRecord& record) {
+std::string encode_index(const GenerationRecord& record, std::uint32_t version) {
   ByteWriter writer;
   const Generation& generation = record.generation;
   writer.add(static_cast<std::uint32_t>(generation.number));
@@ -186,12 +193,14 @@ std::string encode_index(const GenerationRecord& record) {
   writer.add(record.times.seconds);
   writer.text(record.times.device);
   writer.count(generation.born.size());
-  for (std::size_t i = 0; i < generation.born.size(); ++i) encode(writer, generation.born[i], record.genomes[i]);
+  for (std::size_t i = 0; i < generation.born.size(); ++i)
+    encode(writer, generation.born[i], record.genomes[i], version);
   writer.numbers(generation.living);
   return writer.bytes();
 }
 
-GenerationRecord decode_index(std::string_view index, int number, std::uint64_t first_id, std::uint64_t genomes_size) {
+GenerationRecord decode_index(std::string_view index, int number, std::uint64_t first_id, std::uint64_t genomes_size,
+                              std::uint32_t version) {
   constexpr std::size_t smallest_individual = 50;  // bytes
   ByteReader reader(index);
   GenerationRecord record;
@@ -207,7 +216,7 @@ GenerationRecord decode_index(std::string_view index, int number, std::uint64_t 
   record.genomes.reserve(born);
   std::uint64_t offset = 0;
   for (std::size_t i = 0; i < born; ++i) {
-    Individual& individual = record.generation.born.emplace_back(decode_individual(reader, number, first_id));
+    Individual& individual = record.generation.born.emplace_back(decode_individual(reader, number, first_id, version));
     individual.id = first_id + i;
     StoredGenome& genome = record.genomes.emplace_back(decode_genome(reader, individual));
     genome.offset = offset;

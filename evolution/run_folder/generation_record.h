@@ -23,13 +23,15 @@ std::string difference_of(std::string_view base, std::string_view target);
 // The target. Throws DamagedBytes for bytes that are no difference from this base.
 std::string with_difference(std::string_view base, std::string_view difference);
 
-// Assessments as bytes: in the journal, in the files of shards, and between ranks.
-void encode(ByteWriter& writer, const Assessment& assessment);
+// Assessments as bytes: in the journal, in the files of shards, and between ranks. Version 1 has no quartiles and no
+// violation.
+inline constexpr std::uint32_t record_version = 2;
+void encode(ByteWriter& writer, const Assessment& assessment, std::uint32_t version = record_version);
 // Throws DamagedBytes.
-Assessment decode_assessment(ByteReader& reader);
+Assessment decode_assessment(ByteReader& reader, std::uint32_t version = record_version);
 
 void encode(ByteWriter& writer, const std::vector<Assessment>& assessments);
-std::vector<Assessment> decode_assessments(ByteReader& reader);
+std::vector<Assessment> decode_assessments(ByteReader& reader, std::uint32_t version = record_version);
 
 // A generation as a record of the journal.
 //
@@ -72,9 +74,10 @@ std::optional<RecordHead> decode_head(std::string_view bytes);
 // What a head begins with.
 extern const std::string_view head_mark;
 
-std::string encode_index(const GenerationRecord& record);
+std::string encode_index(const GenerationRecord& record, std::uint32_t version = record_version);
 // Throws DamagedBytes unless it is generation `number`, whose first child has the id `first_id`, and its genomes have
 // `genomes_size` bytes. Their offsets count from the beginning of the genomes.
-GenerationRecord decode_index(std::string_view index, int number, std::uint64_t first_id, std::uint64_t genomes_size);
+GenerationRecord decode_index(std::string_view index, int number, std::uint64_t first_id, std::uint64_t genomes_size,
+                              std::uint32_t version = record_version);
 
 }  // namespace mercury

@@ -76,14 +76,14 @@ JournalReader::JournalReader(const std::filesystem::path& path) : path_(path), f
   if (!header.starts_with(journal_mark)) fail("is not a journal of genomes");
   if (header.size() < journal_header_size) fail("is cut off in its header");
   ByteReader reader(std::string_view(header).substr(journal_mark.size()));
-  const auto version = reader.read<std::uint32_t>();
-  if (version > journal_version)
-    fail("version " + std::to_string(version) + " is newer than this program, which reads up to version " +
+  version_ = reader.read<std::uint32_t>();
+  if (version_ > journal_version)
+    fail("version " + std::to_string(version_) + " is newer than this program, which reads up to version " +
          std::to_string(journal_version));
   reader.read<std::uint32_t>();
   fingerprint_ = reader.read<std::uint64_t>();
   const std::string_view checked = std::string_view(header).substr(0, journal_header_size - sizeof(std::uint64_t));
-  if (reader.read<std::uint64_t>() != checksum_of(checked) || version == 0) fail("the header is damaged");
+  if (reader.read<std::uint64_t>() != checksum_of(checked) || version_ == 0) fail("the header is damaged");
   end_ = journal_header_size;
 }
 
@@ -132,8 +132,8 @@ std::optional<GenerationRecord> JournalReader::next() {
   if (!head) return std::nullopt;
   const std::uint64_t genomes_at = end_ + RecordHead::size + head->index_size;
   try {
-    GenerationRecord record =
-        decode_index(file_.read(end_ + RecordHead::size, head->index_size), next_number_, next_id_, head->genomes_size);
+    GenerationRecord record = decode_index(file_.read(end_ + RecordHead::size, head->index_size), next_number_,
+                                           next_id_, head->genomes_size, version_);
     for (StoredGenome& genome : record.genomes) genome.offset += genomes_at;
     end_ = genomes_at + head->genomes_size;
     next_id_ += record.generation.born.size();
@@ -200,8 +200,8 @@ void JournalWriter::cut(std::uint64_t end) {
   if (::ftruncate(file_.get(), static_cast<off_t>(end)) != 0 || ::fsync(file_.get()) != 0) file_.fail(errno);
 }
 
-void JournalWriter::append(const GenerationRecord& record, std::string_view genomes) {
-  const std::string index = encode_index(record);
+void JournalWriter::append(const GenerationRecord& record, std::string_view genomes, std::uint32_t version) {
+  const std::string index = encode_index(record, version);
   std::string bytes = encode_head({.index_size = index.size(),
                                    .genomes_size = genomes.size(),
                                    .index_checksum = checksum_of(index),

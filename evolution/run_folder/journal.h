@@ -50,8 +50,8 @@ inline constexpr std::size_t journal_header_size = 40;  // bytes
 // damaged record with a sound one after it was not cut off: that is an error, and nothing is removed.
 //
 // The writer holds a lock (flock) on the file; readers need none, because what they have read does not change.
-inline constexpr std::string_view journal_name = "genomes";  // in a run folder
-inline constexpr std::uint32_t journal_version = 1;
+inline constexpr std::string_view journal_name = "genomes";       // in a run folder
+inline constexpr std::uint32_t journal_version = record_version;  // a journal keeps the version it began with
 
 class JournalReader {
  public:
@@ -59,6 +59,7 @@ class JournalReader {
   explicit JournalReader(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
+  std::uint32_t version() const { return version_; }
   std::uint64_t fingerprint() const { return fingerprint_; }  // of the run's settings, as given to create()
   // The next generation that is written to its end, with offsets of genomes in the file. Nothing if there is none
   // (yet). Throws InputError if the journal is damaged.
@@ -77,6 +78,7 @@ class JournalReader {
 
   std::filesystem::path path_;
   FileDescriptor file_;
+  std::uint32_t version_ = 0;
   std::uint64_t fingerprint_ = 0, end_ = 0, next_id_ = 0;
   int next_number_ = 0;
 };
@@ -91,8 +93,8 @@ class JournalWriter {
   // Removes what is after `end`: a record that was cut off.
   void cut(std::uint64_t end);
   // The record is on the disk when this returns. If it cannot be written, throws InputError, and the file is as it was.
-  // Offsets in record.genomes do not matter.
-  void append(const GenerationRecord& record, std::string_view genomes);
+  // Offsets in record.genomes do not matter. `version` = of the journal.
+  void append(const GenerationRecord& record, std::string_view genomes, std::uint32_t version = journal_version);
 
  private:
   JournalWriter(const std::filesystem::path& path, int flags);

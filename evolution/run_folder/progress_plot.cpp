@@ -295,15 +295,17 @@ std::string subtitle_of(const RunHistory& run) {
 
 // How many robots did not end well.
 std::string footer_of(const RunHistory& run) {
-  std::uint64_t exploded = 0, overstretched = 0, failed = 0;
+  std::uint64_t exploded = 0, overstretched = 0, too_small = 0, failed = 0;
   for (const GenerationSummary& generation : run.generations()) {
     exploded += generation.exploded;
     overstretched += generation.overstretched;
+    too_small += generation.too_small;
     failed += generation.failed;
   }
   std::string text = with_commas(run.individuals().size()) + " robots were tried";
   if (exploded > 0) text += "; " + with_commas(exploded) + " exploded";
   if (overstretched > 0) text += "; " + with_commas(overstretched) + " were overstretched";
+  if (too_small > 0) text += "; " + with_commas(too_small) + " were too small";
   if (failed > 0) text += "; " + with_commas(failed) + " failed";
   return text;
 }

@@ -11,7 +11,7 @@
 
 namespace mercury {
 
-inline constexpr int run_file_version = 1;
+inline constexpr int run_file_version = 2;  // version 1 has no jitter
 inline constexpr std::string_view run_file_name = "run.toml", founders_name = "founders";
 
 struct RunFile {

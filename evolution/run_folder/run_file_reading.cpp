@@ -297,6 +297,7 @@ RunFile parse(const std::filesystem::path& folder, std::string_view text, const 
   const std::filesystem::path path = folder / run_file_name;
   const toml::table table = parse_toml(path, text);
   RunFile run;
+  run.settings.evolution.trials = TrialSettings{};  // what files of earlier versions mean
   RunFileReader::Lines lines;
   RunFileReader reader(path, table, {}, lines);
   check_format(path, table, reader);

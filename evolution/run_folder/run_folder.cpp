@@ -123,7 +123,7 @@ void RunFolder::append(const Generation& generation, const GenerationTimes& time
   const std::string genomes = store_genomes(record, run.genomes);
   for (Individual& born : record.generation.born) use_stored_quantities(born.assessment, run.file.quantities);
   run.journal.check_not_replaced();
-  parts_->writer.append(record, genomes);
+  parts_->writer.append(record, genomes, run.journal.version());
   run.refresh();
   parts_->derived.write_now_and_then(parts_->history);
 }

@@ -11,6 +11,7 @@
 #include "evolution/run_folder/generation_record.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
+#include "mercury/spread.h"
 #include "robots/bytes.h"
 #include "robots/file/whole_file.h"
 
@@ -76,18 +77,8 @@ void GenomeStore::cache(std::uint64_t id, Bytes bytes) const {
 
 namespace {
 
-// The quantile between the two nearest of sorted values (Hyndman and Fan's definition 7, as NumPy's default).
-double quantile(std::span<const double> sorted, double share) {
-  const double position = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const double rest = position - static_cast<double>(below);
-  if (rest == 0) return sorted[below];
-  if (std::isinf(sorted[below])) return sorted[below];
-  return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
-}
-
-ScoreSpread spread_of(std::span<const std::uint64_t> living, std::span<const Individual> individuals,
-                      std::size_t objective) {
+ScoreSpread score_spread_of(std::span<const std::uint64_t> living, std::span<const Individual> individuals,
+                            std::size_t objective) {
   std::vector<double> scores;
   for (const std::uint64_t id : living) {
     const std::vector<double>& all = individuals[id].assessment.scores;
@@ -108,6 +99,7 @@ GenerationSummary summary_of(int number, GenerationTimes times, std::span<const 
     const Fate fate = individual.assessment.fate;
     summary.exploded += fate == Fate::exploded;
     summary.overstretched += fate == Fate::overstretched;
+    summary.too_small += fate == Fate::too_small;
     summary.stopped += fate == Fate::stopped;
     summary.failed += fate == Fate::failed;
   }
@@ -115,7 +107,7 @@ GenerationSummary summary_of(int number, GenerationTimes times, std::span<const 
     summary.best = living.front();
     summary.best_scores = individuals[living.front()].assessment.scores;
   }
-  for (std::size_t i = 0; i < objectives; ++i) summary.scores.push_back(spread_of(living, individuals, i));
+  for (std::size_t i = 0; i < objectives; ++i) summary.scores.push_back(score_spread_of(living, individuals, i));
   summary.median_score = summary.scores.empty() ? worst_score : summary.scores.front().median;
   summary.times = std::move(times);
   return summary;

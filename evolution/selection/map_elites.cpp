@@ -30,14 +30,17 @@ class MapElites : public Algorithm {
     return plans;
   }
 
-  // Robots of the worst score get no cell: what they measured may be the numbers of an explosion. If all have it, the
-  // first one lives on, so that a run has always somebody.
+  // Robots of the worst score get no cell, unless all have it: then those that are nearest to being sound do. What an
+  // exploded robot measured means nothing, so of those only the first one lives on, so that a run has always somebody.
   std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t) const override {
     const std::vector<std::size_t> order = best_first(pool);
     std::unordered_set<std::size_t> filled;
     std::vector<std::size_t> elites;
+    const bool all_unsound = order.empty() || comparable(pool[order.front()].score()) == worst_score;
     for (const std::size_t i : order) {
-      if (comparable(pool[i].score()) == worst_score) break;
+      const Assessment& assessment = pool[i].assessment;
+      const bool has_measured = assessment.violation > 0 && std::isfinite(assessment.violation);
+      if (comparable(pool[i].score()) == worst_score && !(all_unsound && has_measured)) break;
       if (filled.insert(map_cell(settings_.axes, pool[i].assessment.values)).second) elites.push_back(i);
     }
     if (elites.empty() && !order.empty()) elites.push_back(order.front());

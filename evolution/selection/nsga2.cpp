@@ -26,10 +26,25 @@ Points scores_of(std::span<const Individual> pool) {
   return points;
 }
 
+// Of robots that are not sound, the one that breaks the limits less dominates, and every sound one dominates them (VI,
+// constrained domination).
+std::vector<std::vector<std::size_t>> constrained_fronts(std::span<const Individual> pool, const Points& points) {
+  const auto violation = [](const Individual& individual) { return individual.assessment.violation; };
+  if (std::ranges::none_of(
+          pool, [](double v) { return v > 0; }, violation))
+    return fronts_of(points);
+  Points constrained{.dimensions = points.dimensions + 1, .values = {}};
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    constrained.values.insert(constrained.values.end(), points[i].begin(), points[i].end());
+    constrained.values.push_back(-violation(pool[i]));
+  }
+  return fronts_of(constrained);
+}
+
 Standing standing_of(std::span<const Individual> pool, const Points& points) {
   Standing standing{std::vector<std::size_t>(pool.size()), std::vector<double>(pool.size())};
   std::size_t rank = 0;
-  for (std::vector<std::size_t>& front : fronts_of(points)) {
+  for (std::vector<std::size_t>& front : constrained_fronts(pool, points)) {
     std::ranges::sort(front, {}, [&](std::size_t i) { return pool[i].id; });
     const std::vector<double> crowding = crowding_distances(points, front);
     for (std::size_t k = 0; k < front.size(); ++k) {

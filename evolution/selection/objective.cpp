@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "mercury/error.h"
@@ -138,6 +139,9 @@ struct Objective::Parsed {
         parser.DefineVar(std::string(quantities()[q].name), &variables[q]);
       parser.SetExpr(formula);
       parser.Eval();  // parses
+      for (const auto& [name, variable] : parser.GetUsedVar())
+        used.push_back(static_cast<std::size_t>(variable - variables.data()));
+      std::ranges::sort(used);
       if (parser.GetNumResults() != 1) refuse(formula, "is several formulas; give one, or several objectives");
     } catch (const mu::ParserError& error) {
       refuse(formula, message_of(error, formula));
@@ -146,11 +150,29 @@ struct Objective::Parsed {
 
   mutable std::mutex mutex;
   mutable std::vector<double> variables;
+  std::vector<std::size_t> used;
   mutable mu::Parser parser;
 };
 
 Objective::Objective(const std::string& formula)
     : formula_(formula), parsed_(std::make_shared<const Parsed>(formula)) {}
+
+const std::vector<std::size_t>& Objective::uses() const { return parsed_->used; }
+
+// In water that drags each mass in proportion to its velocity, the mean force on a body is proportional to its own mean
+// velocity, so it stays, or drifts with the flow, whatever its muscles do. Without water and ground, no force acts.
+std::string why_meaningless(const Objective& objective, const Environment& environment) {
+  const bool has_simple_drag = std::holds_alternative<PointDrag>(environment.water);
+  if (has_ground(environment) || !(has_simple_drag || std::holds_alternative<NoWater>(environment.water))) return "";
+  const auto travels = [](std::size_t q) { return quantities()[q].of_travel; };
+  const auto found = std::ranges::find_if(objective.uses(), travels);
+  if (found == objective.uses().end()) return "";
+  return "no robot can move itself in " + std::string(name_of(environment)) +
+         (has_simple_drag ? ": the drag of each mass is proportional to its velocity, so the mean force on a body is "
+                            "proportional to its own mean velocity"
+                          : ": there is nothing to push against") +
+         "; " + std::string(quantities()[*found].name) + " would be rounding";
+}
 
 double Objective::score(std::span<const double> values) const {
   if (values.size() != parsed_->variables.size()) throw std::invalid_argument("an objective needs all quantities");

@@ -60,31 +60,57 @@ double materials_in_use(const Trial& trial) {
   return static_cast<double>(std::ranges::count(used, true));
 }
 
-// name, unit, help, of the body alone, usual range, value
+Vec3 center_at_end(const Trial& trial) { return trial.evaluation.end.center_of_mass; }
+
+double along(const Trial& trial, Vec3 from, Vec3 to) {
+  return distance_between(from, to, trial.configuration.environment);
+}
+
+// NaN where the way is unknown.
+double cruise_speed(const Trial& trial) {
+  const Evaluation& evaluation = trial.evaluation;
+  return ratio(along(trial, evaluation.at_third, center_at_end(trial)), 2 * evaluation.third);
+}
+
+double is_steady(const Trial& trial) {
+  constexpr double most_apart = 0.2;
+  const Evaluation& evaluation = trial.evaluation;
+  const double second = along(trial, evaluation.at_third, evaluation.at_two_thirds),
+               last = along(trial, evaluation.at_two_thirds, center_at_end(trial));
+  if (std::isnan(second + last)) return second + last;
+  return std::abs(second - last) <= most_apart * std::max(second, last) ? 1 : 0;
+}
+
+// name, unit, help, of the body alone, usual range, value, whether it grows with how far the robot gets
 constexpr Quantity table[] = {
     {"distance", "m", "how far the center of mass went from start to end; on land along the ground", false, 0, 5,
-     distance},
+     distance, true},
     {"speed", "m/s", "distance per time of the trial", false, 0, 0.5,
-     [](const Trial& trial) { return ratio(distance(trial), seconds(trial)); }},
-    {"speed_x", "m/s", "displacement along x per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::x>},
-    {"speed_y", "m/s", "displacement along y per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::y>},
-    {"speed_z", "m/s", "displacement along z per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::z>},
+     [](const Trial& trial) { return ratio(distance(trial), seconds(trial)); }, true},
+    {"cruise_speed", "m/s", "distance per time after the first third of the trial", false, 0, 0.5, cruise_speed, true},
+    {"cruise_lengths", "1/s", "cruise_speed per length: body lengths per second", false, 0, 1,
+     [](const Trial& trial) { return ratio(cruise_speed(trial), length_at_rest(trial)); }, true},
+    {"steady", "", "1 if the speeds in the second and the last third of the trial agree within 20 %, else 0", false, 0,
+     1, is_steady},
+    {"speed_x", "m/s", "displacement along x per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::x>, true},
+    {"speed_y", "m/s", "displacement along y per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::y>, true},
+    {"speed_z", "m/s", "displacement along z per time of the trial", false, -0.5, 0.5, speed_along<&Vec3::z>, true},
     {"path", "m", "length of the path of the center of mass", false, 0, 5,
-     [](const Trial& trial) { return trial.evaluation.path; }},
-    {"straightness", "", "distance per path: 1 = along a line", false, 0, 1, straightness},
+     [](const Trial& trial) { return trial.evaluation.path; }, true},
+    {"straightness", "", "distance per path: 1 = along a line", false, 0, 1, straightness, true},
     {"direction", "degrees", "of the displacement in the x-y plane: 0 = along x, 90 = along y", false, -180, 180,
      direction},
     {"height", "m", "how far the center of mass rose above its start", false, 0, 1, height},
     {"work", "J", "that the muscles did", false, 0, 100, [](const Trial& trial) { return trial.evaluation.work; }},
     {"efficiency", "m/J", "distance per work; 0 where the muscles did none", false, 0, 1,
-     [](const Trial& trial) { return ratio(distance(trial), trial.evaluation.work); }},
+     [](const Trial& trial) { return ratio(distance(trial), trial.evaluation.work); }, true},
     {"strain", "", "largest strain of a spring", false, 0, 2,
      [](const Trial& trial) { return trial.evaluation.largest_strain; }},
     {"strained_share", "", "largest share of the springs that were strained by more than half at the same time", false,
      0, 1, [](const Trial& trial) { return trial.evaluation.strained_share; }},
     {"seconds", "s", "time of the trial", false, 0, 10, seconds},
     {"body_lengths", "", "distance per length", false, 0, 5,
-     [](const Trial& trial) { return ratio(distance(trial), length_at_rest(trial)); }},
+     [](const Trial& trial) { return ratio(distance(trial), length_at_rest(trial)); }, true},
     {"masses", "", "number of masses", true, 0, 200,
      [](const Trial& trial) { return static_cast<double>(trial.robot.masses.size()); }},
     {"springs", "", "number of springs", true, 0, 2000,

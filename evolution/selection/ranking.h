@@ -14,10 +14,13 @@ namespace mercury {
 // A score by which individuals can be sorted: NaN is the worst one.
 inline double comparable(double score) { return std::isnan(score) ? worst_score : score; }
 
-// Whether a stands before b: a higher first score, then the lower id.
+// Whether a stands before b: a higher first score; of those that have the worst, the one that is nearer to being sound,
+// so that a search among robots that are not sound leads to some that are; then the lower id.
 inline bool better(const Individual& a, const Individual& b) {
   const double x = comparable(a.score()), y = comparable(b.score());
-  return x != y ? x > y : a.id < b.id;
+  if (x != y) return x > y;
+  const double v = a.assessment.violation, w = b.assessment.violation;
+  return v != w ? v < w : a.id < b.id;
 }
 
 // Indices of the individuals, the best first.

@@ -9,6 +9,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@
 
 #include "mercury/error.h"
 #include "mercury/evaluator.h"
+#include "mercury/trials.h"
 #include "python/src/bindings.h"
 #include "python/src/gil.h"
 #include "python/src/result.h"
@@ -44,6 +46,9 @@ settle: at its start; nothing is measured before [s].
 sample_every: time between two samples [s]; path, work, highest and the strains are as good as they are dense. None =
 0.05 s.
 environment, solver, dt, damping, device, threads: as in Batch; with "cuda:all", each robot goes to one of the devices.
+trials, jitter: how often each robot is tried, with masses that begin displaced by a normal deviate of this standard
+deviation per coordinate, per shortest rest length; numbers are medians. None = 0.001 with several trials, else 0.
+seed: of the jitter, which is the same for all robots.
 hashes, states: whether results have the hash and the masses of the final state.
 memory_limit: of the host, for robots that are made and not yet returned [bytes]; None = a quarter of what is free.
 portion: how many robots are loaded together, at most; None = chosen. Results do not depend on it.
@@ -55,7 +60,7 @@ function, is a Result with `failure`. Raises InputError for a value that is not 
 // All functions are called with the GIL, which guards the members.
 class Results {
  public:
-  Results(const EvaluationRequest& request, nb::object source);
+  Results(const EvaluationRequest& request, nb::object source, const TrialSettings& trials, std::uint64_t seed);
   ~Results() { close(); }
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -75,8 +80,10 @@ class Results {
   void pull();
   std::optional<Result> wait();
 
+  const std::size_t trials_;
   std::shared_ptr<const Configuration> configuration_;
   bool hashes_, states_;
+  std::vector<Evaluation> collected_;  // trials of the next robot
   nb::object source_, iterator_;
   std::size_t pulled_robots_ = 0;
   std::shared_ptr<PulledSource> pulled_;  // null unless robots come from an iterator
@@ -101,8 +108,9 @@ class Results::Use {
   Results& results_;
 };
 
-Results::Results(const EvaluationRequest& request, nb::object source)
-    : configuration_(std::make_shared<Configuration>(request.configuration)), hashes_(request.hashes),
+Results::Results(const EvaluationRequest& request, nb::object source, const TrialSettings& trials, std::uint64_t seed)
+    : trials_(static_cast<std::size_t>(trials.trials)),
+      configuration_(std::make_shared<Configuration>(request.configuration)), hashes_(request.hashes),
       states_(request.states), source_(std::move(source)) {
   EvaluationRequest complete = request;
   RobotSource robots;
@@ -123,7 +131,8 @@ Results::Results(const EvaluationRequest& request, nb::object source)
     robots = source_of_function(source_, error_);
   }
   const ReleasedGil released;
-  evaluator_ = std::make_shared<Evaluator>(complete, std::move(robots), count);
+  if (count != Evaluator::unknown_count) count *= trials_;
+  evaluator_ = std::make_shared<Evaluator>(complete, trial_source(std::move(robots), trials, seed), count);
 }
 
 // Takes one robot from the iterator.
@@ -178,7 +187,13 @@ std::optional<Result> Results::wait() {
     error_->rethrow();
   }
   if (!evaluation) return std::nullopt;
-  return Result{*std::move(evaluation), configuration_, hashes_, states_};
+  collected_.push_back(*std::move(evaluation));
+  if (collected_.size() < trials_) return std::nullopt;
+  for (Evaluation& trial : collected_) trial.index /= trials_;
+  Result result{std::move(collected_.front()), {}, configuration_, hashes_, states_};
+  result.more.assign(std::make_move_iterator(collected_.begin() + 1), std::make_move_iterator(collected_.end()));
+  collected_.clear();
+  return result;
 }
 
 void Results::close() {
@@ -224,22 +239,28 @@ std::int64_t steps_in(double seconds, double dt, const char* name) {
 
 nb::object evaluate(nb::object source, double seconds, nb::handle environment, const std::string& solver, double dt,
                     double damping, nb::handle device, int threads, double settle, std::optional<double> sample_every,
-                    bool hashes, bool states, std::optional<std::size_t> memory_limit,
-                    std::optional<std::size_t> portion) {
+                    int trials, std::optional<double> jitter, std::uint64_t seed, bool hashes, bool states,
+                    std::optional<std::size_t> memory_limit, std::optional<std::size_t> portion) {
   const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
   validate(configuration);
   const std::int64_t steps = steps_in(seconds, dt, "seconds"), settling = steps_in(settle, dt, "settle");
   if (settling > steps) throw InputError("settle", "it is longer than seconds, which include it");
   const std::int64_t period = steps_in(sample_every.value_or(sample_period), dt, "sample_every");
-  const EvaluationRequest request{.configuration = configuration,
-                                  .settling = settling,
-                                  .steps = steps - settling,
-                                  .sample_every = std::max<std::int64_t>(1, period),
-                                  .hashes = hashes,
-                                  .states = states,
-                                  .memory_limit = memory_limit.value_or(0),
-                                  .portion = portion.value_or(0)};
-  nb::object results = nb::cast(std::make_unique<Results>(request, std::move(source)));
+  TrialSettings settings = one_trial();
+  settings.seconds = seconds;
+  settings.settle = settle;
+  settings.trials = trials;
+  settings.jitter = jitter.value_or(trials > 1 ? usual_jitter : 0);
+  check_parameters(settings);
+  EvaluationRequest request = trial_request(settings, configuration, seed);
+  request.settling = settling;
+  request.steps = steps - settling;
+  request.sample_every = std::max<std::int64_t>(1, period);
+  request.hashes = hashes;
+  request.states = states;
+  request.memory_limit = memory_limit.value_or(0);
+  request.portion = portion.value_or(0);
+  nb::object results = nb::cast(std::make_unique<Results>(request, std::move(source), settings, seed));
   nb::module_::import_("mercurysim._mercury").attr("_open_results").attr("add")(results);
   return results;
 }
@@ -266,7 +287,8 @@ void bind_evaluate(nb::module_& module) {
   module.def("evaluate", &evaluate, nb::arg("source").none(), nb::arg("seconds"), nb::kw_only(),
              nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
              nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,
-             nb::arg("sample_every") = nb::none(), nb::arg("hashes") = false, nb::arg("states") = false,
+             nb::arg("sample_every") = nb::none(), nb::arg("trials") = 1, nb::arg("jitter") = nb::none(),
+             nb::arg("seed") = 1, nb::arg("hashes") = false, nb::arg("states") = false,
              nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(), evaluate_description);
   // What is open when the interpreter exits is closed while threads can still run.
   const nb::object open = nb::module_::import_("weakref").attr("WeakSet")();

@@ -3,10 +3,13 @@
 
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "mercury/quantity.h"
+#include "mercury/spread.h"
 #include "python/src/arguments.h"
 #include "python/src/bindings.h"
 #include "python/src/telemetry.h"
@@ -16,23 +19,51 @@ namespace {
 
 bool was_stepped(const Result& self) { return self.evaluation.robot && self.evaluation.failure.empty(); }
 
-double quantity(const Result& self, const Quantity& quantity) {
-  return quantity.value({*self.evaluation.robot, self.evaluation, *self.configuration});
+// value(evaluation) of each trial.
+template <class Value>
+std::vector<double> of_trials(const Result& self, const Value& value) {
+  std::vector<double> values{static_cast<double>(value(self.evaluation))};
+  for (const Evaluation& trial : self.more) values.push_back(static_cast<double>(value(trial)));
+  return values;
+}
+
+bool has_exploded(const Result& self) {
+  return self.evaluation.end.exploded ||
+         std::ranges::any_of(self.more, [](const Evaluation& trial) { return trial.end.exploded; });
+}
+
+std::vector<double> values_of(const Result& self, const Quantity& quantity) {
+  return of_trials(self, [&](const Evaluation& trial) {
+    return quantity.value({*trial.robot, trial, *self.configuration});
+  });
 }
 
 // How far an exploded robot was thrown means nothing, so it must not win.
-bool has_figures(const Result& self) { return was_stepped(self) && !self.evaluation.end.exploded; }
+bool has_figures(const Result& self) { return was_stepped(self) && !has_exploded(self); }
 
-double distance(const Result& self) {
-  return has_figures(self) ? quantity(self, quantities()[*find_quantity("distance")]) : 0;
+Spread distances(const Result& self) {
+  if (!has_figures(self)) return {.lower_quartile = 0, .median = 0, .upper_quartile = 0};
+  return spread_of(values_of(self, quantities()[*find_quantity("distance")]));
 }
+double distance(const Result& self) { return distances(self).median; }
 
 nb::dict all_quantities(const Result& self) {
   nb::dict values;
   if (!was_stepped(self)) return values;
   for (const Quantity& each : quantities())
-    if (has_figures(self) || each.of_body) values[nb::str(each.name.data(), each.name.size())] = quantity(self, each);
+    if (has_figures(self) || each.of_body)
+      values[nb::str(each.name.data(), each.name.size())] = median_of(values_of(self, each));
   return values;
+}
+
+nb::list trials(const Result& self) {
+  nb::list all;
+  const auto add = [&](const Evaluation& trial) {
+    all.append(nb::cast(Result{trial, {}, self.configuration, self.has_hash, self.has_state}));
+  };
+  add(self.evaluation);
+  for (const Evaluation& trial : self.more) add(trial);
+  return all;
 }
 
 nb::object record(const Telemetry& telemetry) { return telemetry_array(std::span(&telemetry, 1))[0]; }
@@ -41,7 +72,7 @@ std::string represent_result(const Result& self) {
   const std::string robot = "<Result " + std::to_string(self.evaluation.index) + ": ";
   if (!was_stepped(self)) return robot + self.evaluation.failure + ">";
   return robot + nb::str(nb::handle(nb::cast(distance(self)))).c_str() + " m in " +
-         std::to_string(self.evaluation.steps) + " steps" + (self.evaluation.end.exploded ? ", exploded>" : ">");
+         std::to_string(self.evaluation.steps) + " steps" + (has_exploded(self) ? ", exploded>" : ">");
 }
 
 // Of a member of Evaluation.
@@ -50,12 +81,21 @@ auto value_of(Member member) {
   return [member](const Result& self) { return self.evaluation.*member; };
 }
 
+// The median of a member of all trials.
+auto median_value(double Evaluation::*member) {
+  return [member](const Result& self) {
+    return median_of(of_trials(self, [&](const Evaluation& trial) { return trial.*member; }));
+  };
+}
+
 }  // namespace
 
 void bind_result(nb::module_& module) {
-  nb::class_<Result>(module, "Result",
-                     "What became of one robot in evaluate(). All numbers are 0 if `failure` says that the robot could "
-                     "not be\nstepped.")
+  nb::class_<Result>(
+      module, "Result",
+      "What became of one robot in evaluate(). Numbers of several trials are medians; start, end, hash and "
+      "the final\nstate are those of the first. All numbers are 0 if `failure` says that the robot could "
+      "not be stepped.")
       .def_prop_ro("index", value_of(&Evaluation::index), "Of the robot in the source.")
       .def_prop_ro(
           "robot",
@@ -78,17 +118,25 @@ void bind_result(nb::module_& module) {
       .def_prop_ro("distance", &distance,
                    "How far the center of mass went from start to end; on land along the ground [m]. 0 if the robot "
                    "exploded, so\nthat it never leads a ranking.")
-      .def_prop_ro("path", value_of(&Evaluation::path),
-                   "Length of the path of the center of mass, from sample to sample [m].")
-      .def_prop_ro("work", value_of(&Evaluation::work), "That the muscles did, from sample to sample [J].")
-      .def_prop_ro("highest", value_of(&Evaluation::highest), "Largest z of the center of mass of all samples [m].")
-      .def_prop_ro("largest_strain", value_of(&Evaluation::largest_strain),
-                   "Largest strain of a spring of all samples [1].")
-      .def_prop_ro("strained_share", value_of(&Evaluation::strained_share),
-                   "Largest share of the springs that were strained by more than half at the same time [1].")
       .def_prop_ro(
-          "exploded", [](const Result& self) { return self.evaluation.end.exploded; },
-          "Whether the robot left the finite and was frozen.")
+          "quartiles",
+          [](const Result& self) {
+            const Spread spread = distances(self);
+            return nb::make_tuple(spread.lower_quartile, spread.upper_quartile);
+          },
+          nb::sig("def quartiles(self) -> tuple[float, float]"),
+          "Lower and upper quartile of the trials' distances [m].")
+      .def_prop_ro("trials", &trials, nb::sig("def trials(self) -> list[Result]"),
+                   "Each trial as a Result of its own; of one trial a list of one.")
+      .def_prop_ro("path", median_value(&Evaluation::path),
+                   "Length of the path of the center of mass, from sample to sample [m].")
+      .def_prop_ro("work", median_value(&Evaluation::work), "That the muscles did, from sample to sample [J].")
+      .def_prop_ro("highest", median_value(&Evaluation::highest), "Largest z of the center of mass of all samples [m].")
+      .def_prop_ro("largest_strain", median_value(&Evaluation::largest_strain),
+                   "Largest strain of a spring of all samples [1].")
+      .def_prop_ro("strained_share", median_value(&Evaluation::strained_share),
+                   "Largest share of the springs that were strained by more than half at the same time [1].")
+      .def_prop_ro("exploded", &has_exploded, "Whether the robot left the finite in a trial and was frozen.")
       .def_prop_ro(
           "quantities", &all_quantities, nb::sig("def quantities(self) -> dict[str, float]"),
           "All quantities that `mercury evolve` knows, by name: speed, efficiency, body_lengths, ... Of a robot "

@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 
 #include <memory>
+#include <vector>
 
 #include "mercury/configuration.h"
 #include "mercury/evaluator.h"
@@ -12,7 +13,8 @@ namespace mercury::python {
 
 // What became of one robot, as Python has it.
 struct Result {
-  Evaluation evaluation;
+  Evaluation evaluation;         // of the first trial
+  std::vector<Evaluation> more;  // the other trials
   std::shared_ptr<const Configuration> configuration;
   bool has_hash = false, has_state = false;
 };

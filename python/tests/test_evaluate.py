@@ -356,3 +356,37 @@ def test_the_interpreter_ends_while_evaluations_run(more):
     assert done.returncode == 0, done.stderr
     assert done.stdout == "done\n"
     assert done.stderr == ""
+
+
+def test_trials_are_medians_of_robots_that_begin_with_jitter():
+    robots = mercurysim.random_voxel(4, seed=2)
+    several = list(mercurysim.evaluate(robots, 0.5, trials=3, hashes=True, environment="land"))
+    assert [result.index for result in several] == [0, 1, 2, 3]
+    for result in several:
+        each = [trial.distance for trial in result.trials]
+        assert len(each) == 3 and len(set(each)) == 3
+        assert result.distance == np.median(each) == result.quantities["distance"]
+        assert result.quartiles == pytest.approx(tuple(np.quantile(each, [0.25, 0.75])), rel=1e-12)
+        assert result.work == np.median([trial.work for trial in result.trials])
+    # One robot alone has the same trials; another seed has others.
+    alone = next(mercurysim.evaluate(robots[3:], 0.5, trials=3, hashes=True, environment="land"))
+    assert [trial.hash for trial in alone.trials] == [trial.hash for trial in several[3].trials]
+    other = next(mercurysim.evaluate(robots[3:], 0.5, trials=3, seed=2, hashes=True, environment="land"))
+    assert other.hash != alone.hash
+    exact = next(mercurysim.evaluate(robots[3:], 0.5, hashes=True, environment="land"))
+    assert len(exact.trials) == 1 and exact.hash not in [trial.hash for trial in alone.trials]
+
+
+def test_trials_work_with_iterators_and_functions():
+    expected = [r.distance for r in mercurysim.evaluate(mercurysim.random_voxel(5, seed=2), 0.2, trials=2)]
+    source = (robot for robot in mercurysim.random_voxel(5, seed=2))
+    assert [r.distance for r in mercurysim.evaluate(source, 0.2, trials=2)] == expected
+    function = lambda i: mercurysim.random_voxel(1, seed=2, first=i)[0] if i < 5 else None
+    assert [r.distance for r in mercurysim.evaluate(function, 0.2, trials=2)] == expected
+
+
+def test_trials_out_of_range_are_refused():
+    with pytest.raises(mercurysim.InputError, match="trials: 0 is not accepted"):
+        mercurysim.evaluate([], 1, trials=0)
+    with pytest.raises(mercurysim.InputError, match="jitter: -1"):
+        mercurysim.evaluate([], 1, jitter=-1.0)

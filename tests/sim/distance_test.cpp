@@ -99,5 +99,21 @@ TEST_P(Distance, MeasuresAreThoseOfAnEvaluator) {
 
 INSTANTIATE_TEST_SUITE_P(Backends, Distance, every_device, BackendTest::name);
 
+// However long a trial is, the way takes bounded memory, and the thirds of an even motion are where they belong.
+TEST(TrialMeasures, ThirdsAreKnownOfTrialsOfAnyLength) {
+  for (const int samples : {1, 2, 3, 200, 511, 512, 513, 5000, 70'001}) {
+    TrialMeasures measures{Telemetry{}};
+    for (int i = 1; i <= samples; ++i) measures.add({.center_of_mass = {static_cast<float>(i), 0, 0}}, 0.05);
+    measures.add({.center_of_mass = {static_cast<float>(samples) + 0.2f, 0, 0}}, 0.01);  // a shorter one at the end
+    EXPECT_LE(measures.sums().way.size(), TrialMeasures::longest_way);
+    Evaluation result;
+    measures.write(result);
+    const double all = samples + 0.2;
+    EXPECT_NEAR(result.third, 0.05 * all / 3, 1e-9 * all);
+    EXPECT_NEAR(result.at_third.x, all / 3, 1e-6 * all + 1e-6) << samples;
+    EXPECT_NEAR(result.at_two_thirds.x, 2 * all / 3, 1e-6 * all + 1e-6) << samples;
+  }
+}
+
 }  // namespace
 }  // namespace mercury

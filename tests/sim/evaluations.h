@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "bodies.h"
 #include "mercury/evaluator.h"
 #include "mercury/simulation.h"
+#include "mercury/trial_measures.h"
 #include "same_telemetry.h"
 
 namespace mercury {
@@ -46,6 +48,9 @@ inline std::vector<Evaluator::MakeBackend> cpus(std::size_t count) {
   return std::vector<Evaluator::MakeBackend>(count, [] { return make_cpu_backend({.threads = 1}); });
 }
 
+// Times are sums of periods in one place and products in another.
+inline void expect_near(Vec3 a, Vec3 b) { EXPECT_LE(length(a - b), 1e-6f * (1 + length(a))); }
+
 inline void expect_equal(const std::vector<Evaluation>& a, const std::vector<Evaluation>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -60,6 +65,11 @@ inline void expect_equal(const std::vector<Evaluation>& a, const std::vector<Eva
     EXPECT_EQ(a[i].highest, b[i].highest);
     EXPECT_EQ(a[i].largest_strain, b[i].largest_strain);
     EXPECT_EQ(a[i].strained_share, b[i].strained_share);
+    if (!std::isnan(a[i].third) && !std::isnan(b[i].third)) {
+      EXPECT_NEAR(a[i].third, b[i].third, 1e-9);
+      expect_near(a[i].at_third, b[i].at_third);
+      expect_near(a[i].at_two_thirds, b[i].at_two_thirds);
+    }
     EXPECT_EQ(a[i].hash, b[i].hash);
     EXPECT_EQ(a[i].state.positions, b[i].state.positions);
     EXPECT_EQ(a[i].state.velocities, b[i].state.velocities);
@@ -69,6 +79,14 @@ inline void expect_equal(const std::vector<Evaluation>& a, const std::vector<Eva
 // What a simulation of all robots gives, step by step.
 inline std::vector<Evaluation> simulated(const EvaluationRequest& request, const Robots& robots) {
   Simulation simulation(request.configuration, robots);
+  if (request.start) {
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      positions.insert(positions.end(), robots[i]->masses.begin(), robots[i]->masses.end());
+      request.start(i, *robots[i], std::span(positions).last(robots[i]->masses.size()));
+    }
+    simulation.reset_to(positions);
+  }
   simulation.step(request.settling);
   const std::vector<Telemetry> start = simulation.telemetry();
   std::vector<Evaluation> expected(robots.size());
@@ -81,6 +99,8 @@ inline std::vector<Evaluation> simulated(const EvaluationRequest& request, const
                    .highest = start[i].center_of_mass.z,
                    .largest_strain = start[i].largest_strain,
                    .strained_share = start[i].strained_share};
+  std::vector<double> times{0};                    // of the samples
+  std::vector<std::vector<Telemetry>> all{start};  // [sample][robot]
   std::int64_t sampled = 0;
   for (std::int64_t step = 1; step <= request.steps; ++step) {
     simulation.step();
@@ -95,9 +115,21 @@ inline std::vector<Evaluation> simulated(const EvaluationRequest& request, const
       expected[i].strained_share = std::max(expected[i].strained_share, static_cast<double>(now[i].strained_share));
     }
     last = now;
+    times.push_back(request.configuration.dt * static_cast<double>(step));
+    all.push_back(now);
   }
+  const auto place_at = [&](double time, std::size_t robot) {
+    if (times.size() == 1) return start[robot].center_of_mass;
+    std::size_t after = 1;
+    while (after + 1 < times.size() && times[after] < time) ++after;
+    const Vec3 a = all[after - 1][robot].center_of_mass, b = all[after][robot].center_of_mass;
+    return a + static_cast<float>((time - times[after - 1]) / (times[after] - times[after - 1])) * (b - a);
+  };
   for (std::size_t i = 0; i < robots.size(); ++i) {
     expected[i].end = last[i];
+    expected[i].third = times.size() <= TrialMeasures::longest_way ? times.back() / 3 : NAN;  // not compared
+    expected[i].at_third = place_at(times.back() / 3, i);
+    expected[i].at_two_thirds = place_at(2 * times.back() / 3, i);
     if (request.hashes) expected[i].hash = simulation.hash(i);
     if (request.states) expected[i].state = simulation.state(i);
   }

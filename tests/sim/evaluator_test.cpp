@@ -38,6 +38,29 @@ TEST_P(EvaluatorOn, ResultsDoNotDependOnPortionsAndWorkers) {
     }
 }
 
+// Every robot begins in its own way, which does not depend on what it is loaded with.
+void displace(std::size_t index, const Robot&, std::span<Vec3> positions) {
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    positions[i].x += 1e-3f * static_cast<float>((i + index) % 7), positions[i].z -= 1e-3f * static_cast<float>(i % 3);
+}
+
+TEST_P(EvaluatorOn, RobotsBeginWhereTheRequestPutsThem) {
+  Robots robots = mixed(20);
+  for (std::size_t i = 1; i < 6; ++i) robots[i] = robots[0];  // trials of one robot are one object
+  EvaluationRequest request = usual();
+  request.configuration.device = device();
+  request.start = displace;
+  const std::vector<Evaluation> expected = simulated(request, robots);
+  expect_equal(evaluate(request, robots), expected);
+  for (const std::size_t portion : {1, 7}) {
+    request.portion = portion;
+    expect_equal(evaluate(request, robots), expected);
+  }
+  EXPECT_NE(expected[0].hash, expected[1].hash);
+  request.start = {};
+  EXPECT_NE(evaluate(request, robots)[0].hash, expected[0].hash);
+}
+
 TEST(Evaluator, ResultsDoNotDependOnDevices) {
   const Robots robots = mixed(50);
   EvaluationRequest request = usual(Ocean{});

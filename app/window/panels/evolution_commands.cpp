@@ -140,12 +140,14 @@ bool EvolveForm::draw(EventLog& log) {
   parameter_row("population", values_.settings.algorithm, log);
   parameter_row("generations", values_.settings, log);
   parameter_row("seconds", values_.settings.trials, log);
+  parameter_row("trials", values_.settings.trials, log);
   const EvolveRequest now = request();
   if (std::vector<std::string> words = evolve_arguments(now, {}); problem_ == "?" || words != checked_) {
     problem_ = problem_of(now);
     checked_ = std::move(words);
   }
-  const auto trials = static_cast<double>(now.settings.algorithm.population) * (now.settings.generations + 1.0);
+  const auto trials = static_cast<double>(now.settings.algorithm.population) * (now.settings.generations + 1.0) *
+                      now.settings.trials.trials;
   if (problem_.empty()) {
     note(
         fmt::format("{:.0f} trials of {:.3g} s, with the parameters of this scene", trials, now.settings.trials.seconds)

@@ -30,7 +30,7 @@ namespace mercury {
 struct EvolutionSettings {
   AlgorithmSettings algorithm;
   std::vector<std::string> objectives{"distance"};
-  TrialSettings trials;
+  TrialSettings trials = search_trials();
   Configuration configuration;
   std::size_t children = 0;  // per generation; 0 = as many as the population
   int generations = 100;     // after generation 0, which is random

@@ -14,19 +14,24 @@ namespace mercury {
 
 inline constexpr double worst_score = -std::numeric_limits<double>::infinity();
 
-// How the trials of an individual ended. Only `sound` individuals have scores above the worst; those `stopped` early by
-// racing have the score that they had when they were stopped.
-enum class Fate : std::uint8_t { sound, stopped, exploded, overstretched, failed };
+// How the trials of an individual ended: as the worst of them. Only `sound` individuals have scores above the worst;
+// those `stopped` early by racing have the score that they had when they were stopped. Files have the numbers.
+enum class Fate : std::uint8_t { sound, stopped, exploded, overstretched, failed, too_small };
+inline constexpr Fate last_fate = Fate::too_small;
 std::string_view name_of(Fate fate);  // "sound", ...
+Fate worse(Fate a, Fate b);
 
 // What the trials of one individual gave.
 struct Assessment {
   Fate fate = Fate::failed;
   std::string problem;                 // why it failed: its robot could not be grown or breaks a rule
-  std::vector<double> scores;          // per objective, the mean of all trials; worst_score unless sound or stopped
-  std::vector<double> values;          // per quantity (quantity.h), the mean of all trials; empty if it failed
+  std::vector<double> scores;          // per objective, of all trials together; worst_score unless sound or stopped
+  std::vector<double> values;          // per quantity (quantity.h), of all trials together; empty if it failed
   std::vector<double> interim_scores;  // of the first objective at the checks of racing that it passed or lost
   std::uint64_t hash = 0;              // of the final states of all trials
+  // Of the trials' scores, per objective; empty where a score is the mean of trials, or the worst.
+  std::vector<double> lower_quartiles, upper_quartiles;
+  double violation = 0;  // the largest violation_of() a trial (trials.h): how far it is from being sound
   friend bool operator==(const Assessment&, const Assessment&) = default;
 };
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an evolution looks for: formulas of the quantities of a trial. More is better.
+// What a search looks for: formulas of the quantities of a trial. More is better.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
+
+#include "mercury/environment.h"
 
 namespace mercury {
 
@@ -19,11 +22,17 @@ class Objective {
   // Its value; `values` has one number per quantity, in the order of quantities(). NaN and infinities become
   // worst_score: what divides by zero does not win. Throws std::invalid_argument for another number of values.
   double score(std::span<const double> values) const;
+  // Indices of the quantities that the formula names, ascending.
+  const std::vector<std::size_t>& uses() const;
 
  private:
   struct Parsed;
   std::string formula_;
   std::shared_ptr<const Parsed> parsed_;
 };
+
+// Why an objective means nothing in an environment: it grows with how far a robot gets, and none can move itself there.
+// Empty if it means something. Runs of earlier versions may have such objectives.
+std::string why_meaningless(const Objective& objective, const Environment& environment);
 
 }  // namespace mercury

@@ -51,11 +51,11 @@ struct ScoreSpread {
 struct GenerationSummary {
   int number = 0;
   std::size_t born = 0, living = 0;
-  std::size_t exploded = 0, overstretched = 0, stopped = 0, failed = 0;  // of those born in it
-  std::uint64_t best = 0;                                                // id of the best living individual
-  std::vector<double> best_scores;                                       // its scores
-  double median_score = 0;                                               // of the living, first objective
-  std::vector<ScoreSpread> scores;                                       // of the living, per objective
+  std::size_t exploded = 0, overstretched = 0, too_small = 0, stopped = 0, failed = 0;  // of those born in it
+  std::uint64_t best = 0;           // id of the best living individual
+  std::vector<double> best_scores;  // its scores
+  double median_score = 0;          // of the living, first objective
+  std::vector<ScoreSpread> scores;  // of the living, per objective
   GenerationTimes times;
 };
 

@@ -112,8 +112,8 @@ class Backend {
   // State of one robot, one element per mass.
   virtual void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const = 0;
   virtual void write(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities) = 0;
-  // Puts consecutive robots at rest where they began, but lifts[i] [m] higher. They have not exploded. The default
-  // writes each robot's state and status.
+  // Puts consecutive robots at rest where the masses of robots[i] are, but lifts[i] [m] higher. They have not exploded.
+  // The default writes each robot's state and status.
   virtual void put_at_rest(std::span<const Robot* const> robots, std::size_t first, std::span<const float> lifts);
   // All robots, one after the other, one element per mass.
   virtual void read_positions(std::span<Vec3> out) const = 0;

@@ -20,6 +20,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,11 @@ struct EvaluationRequest {
   // Steps between two samples of the telemetry; 0 = only at start and end. `path`, `work`, `highest` and the strains of
   // an Evaluation are as good as the samples are dense.
   std::int64_t sample_every = 0;
+  // Where the masses of a robot begin: it changes `positions`, one per mass, from those of the robot at rest. With
+  // ground, the robot is then set down on it. Robots that are one object (the same pointer, index after index) are
+  // checked and scheduled once, so this is the cheap way to try a robot several times. Optional. Several threads call
+  // it at the same time.
+  std::function<void(std::size_t index, const Robot& robot, std::span<Vec3> positions)> start;
   bool hashes = false;  // of the final states
   bool states = false;  // the final states themselves
 
@@ -85,8 +91,11 @@ struct Evaluation {
   double highest = 0;                  // largest z of the center of mass of all samples [m]
   double largest_strain = 0;           // of all samples [1]
   double strained_share = 0;           // largest Telemetry::strained_share of all samples [1]
-  std::uint64_t hash = 0;              // Simulation::hash() of the final state, if requested
-  State state;                         // the final state, if requested
+  double third = 0;                    // of the time of the trial [s]
+  // Center of mass after a third and after two thirds of that time, between samples; NaN if it is unknown [m].
+  Vec3 at_third, at_two_thirds;
+  std::uint64_t hash = 0;  // Simulation::hash() of the final state, if requested
+  State state;             // the final state, if requested
 };
 
 // Where an evaluation stands. The parts overlap: while robots are stepped, others are made and loaded.

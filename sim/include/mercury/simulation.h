@@ -104,6 +104,9 @@ class Simulation {
 
   // Puts every robot back to its rest pose at time 0; none has exploded. Materials keep their changes.
   void reset();
+  // The same with the masses of all robots elsewhere: `positions` has one per mass, robot after robot [m]. With ground,
+  // a robot is set down on it with its lowest mass. Throws std::invalid_argument for another number of positions.
+  void reset_to(std::span<const Vec3> positions);
   // Puts some robots back to their rest pose: those whose element of `mask`, one per robot, is not 0. Time goes on.
   void reset(std::span<const std::uint8_t> mask);
   // The same with a mask in the memory of cuda_device(), queued as step_in_stream() does.

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
 
 #include "mercury/evaluator.h"
 
@@ -15,7 +18,16 @@ class TrialMeasures {
   struct Sums {
     Telemetry start, last;
     double path = 0, work = 0, highest = 0, largest_strain = 0, strained_share = 0;
+    double elapsed = 0;  // from the start to the last sample [s]
+    // The way of the center of mass: its places at every stride-th sample, from the start; samples are `period` [s]
+    // apart. Without places the way is unknown.
+    double period = 0;
+    std::int64_t samples = 0, stride = 1;
+    std::vector<Vec3> way;
   };
+  // Places that a way keeps at most; then it forgets every second one. So its memory does not grow with the time, and
+  // what is left does not depend on when the trial will end.
+  static constexpr std::size_t longest_way = 512;
 
   // `start` = the telemetry at the start of the trial.
   explicit TrialMeasures(const Telemetry& start)
@@ -23,10 +35,11 @@ class TrialMeasures {
               .last = start,
               .highest = start.center_of_mass.z,
               .largest_strain = start.largest_strain,
-              .strained_share = start.strained_share} {}
+              .strained_share = start.strained_share,
+              .way = {start.center_of_mass}} {}
 
-  // `now` = the telemetry `seconds` after the last sample. A robot that has exploded is frozen: it does no work, though
-  // its muscles are still reported to push.
+  // `now` = the telemetry `seconds` after the last sample; all samples but the last are equally far apart. A robot that
+  // has exploded is frozen: it does no work, though its muscles are still reported to push.
   void add(const Telemetry& now, double seconds) {
     sums_.path += static_cast<double>(length(now.center_of_mass - sums_.last.center_of_mass));
     if (!now.exploded) sums_.work += seconds * 0.5 * (sums_.last.muscle_power + now.muscle_power);
@@ -34,6 +47,8 @@ class TrialMeasures {
     sums_.largest_strain = std::max(sums_.largest_strain, static_cast<double>(now.largest_strain));
     sums_.strained_share = std::max(sums_.strained_share, static_cast<double>(now.strained_share));
     sums_.last = now;
+    sums_.elapsed += seconds;
+    note(now.center_of_mass, seconds);
   }
 
   // Writes all that derives from the samples; the rest of the result stays as it is.
@@ -45,6 +60,9 @@ class TrialMeasures {
     result.highest = sums_.highest;
     result.largest_strain = sums_.largest_strain;
     result.strained_share = sums_.strained_share;
+    result.third = sums_.elapsed / 3;
+    result.at_third = place_at(sums_.elapsed / 3);
+    result.at_two_thirds = place_at(2 * sums_.elapsed / 3);
   }
 
   // To go on elsewhere: TrialMeasures(measures.sums()) has the same samples.
@@ -52,6 +70,33 @@ class TrialMeasures {
   explicit TrialMeasures(const Sums& sums) : sums_(sums) {}
 
  private:
+  void note(Vec3 place, double seconds) {
+    if (sums_.samples == 0) sums_.period = seconds;
+    if (seconds != sums_.period || sums_.way.empty()) return;
+    if (++sums_.samples % sums_.stride != 0) return;
+    if (sums_.way.size() == longest_way) {
+      for (std::size_t i = 0; 2 * i < longest_way; ++i) sums_.way[i] = sums_.way[2 * i];
+      sums_.way.resize(longest_way / 2);
+      sums_.stride *= 2;
+      if (sums_.samples % sums_.stride != 0) return;
+    }
+    sums_.way.push_back(place);
+  }
+
+  // Of the center of mass, on a line between the places before and after that time; NaN if the way is unknown.
+  Vec3 place_at(double time) const {
+    constexpr float unknown = std::numeric_limits<float>::quiet_NaN();
+    if (sums_.way.empty()) return {unknown, unknown, unknown};
+    const double apart = sums_.period * static_cast<double>(sums_.stride);
+    if (!(apart > 0)) return sums_.last.center_of_mass;
+    const auto before = std::min(static_cast<std::size_t>(time / apart), sums_.way.size() - 1);
+    const bool is_last = before + 1 == sums_.way.size();
+    const Vec3 a = sums_.way[before], b = is_last ? sums_.last.center_of_mass : sums_.way[before + 1];
+    const double from = apart * static_cast<double>(before), to = is_last ? sums_.elapsed : from + apart;
+    if (!(to > from)) return a;
+    return a + static_cast<float>(std::clamp((time - from) / (to - from), 0.0, 1.0)) * (b - a);
+  }
+
   Sums sums_;
 };
 

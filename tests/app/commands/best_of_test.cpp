@@ -62,7 +62,7 @@ TEST_P(BestOf, ResultsAreThoseOfRun) {
   const RobotSequence robots{.source = [](std::size_t i) { return std::make_shared<const Robot>(make(3, i)); },
                              .count = 5,
                              .random = {{.kind = "voxel", .count = 5, .seed = 3}}};
-  const RunReport evaluated = evaluate(robots, configuration, trials, results);
+  const RunReport evaluated = evaluate(robots, configuration, trials, 3, results);
   GatheredRobots gathered = gather(robots);
   Simulation simulation(configuration, gathered.robots);
   RunReport simulated = simulate(simulation, std::move(gathered.identities), trials, {});
@@ -75,7 +75,35 @@ TEST_P(BestOf, ResultsAreThoseOfRun) {
     EXPECT_EQ(csv_line(evaluated.robots[i]), searched[i]);
     EXPECT_EQ(csv_line(simulated.robots[i]), searched[i]);
   }
-  EXPECT_EQ(searched[1], "1,voxel-3-1,,voxel:1:3:1,failed,cloud: none" + std::string(18, ',') + "\n");
+  EXPECT_EQ(searched[1], "1,voxel-3-1,,voxel:1:3:1,failed,cloud: none" + std::string(24, ',') + "\n");
+}
+
+// Three trials with jitter: the figures are the medians of the trials one by one, as a run of each gives them.
+TEST_P(BestOf, SeveralTrialsGiveMediansAndQuartiles) {
+  const Configuration configuration{.environment = Land{}, .device = device()};
+  Contest contest = contest_of(1, 0.7, configuration);
+  contest.trials.trials = 3;
+  contest.trials.jitter = 1e-3;
+  contest.trials.delay = 0;
+  const RobotResult best = best_of(contest, make, 1, results).winners.at(0).result;
+  std::vector<double> distances;
+  for (std::size_t trial = 0; trial < 3; ++trial) {
+    const Robot robot = make(3, 0);
+    std::vector<Vec3> positions = robot.masses;
+    add_jitter(robot, contest.trials, contest.seed, trial, positions);
+    Simulation simulation(configuration, std::vector<Robot>{robot});
+    simulation.reset_to(positions);
+    const Vec3 start = simulation.telemetry(0).center_of_mass;
+    simulation.step(700);
+    const Vec3 path = simulation.telemetry(0).center_of_mass - start;
+    distances.push_back(std::hypot(static_cast<double>(path.x), static_cast<double>(path.y)));
+  }
+  std::ranges::sort(distances);
+  EXPECT_LT(distances[0], distances[2]);
+  EXPECT_EQ(best.trials, 3);
+  EXPECT_DOUBLE_EQ(best.distance, distances[1]);
+  EXPECT_DOUBLE_EQ(best.lower_quartile, (distances[0] + distances[1]) / 2);
+  EXPECT_DOUBLE_EQ(best.upper_quartile, (distances[1] + distances[2]) / 2);
 }
 
 TEST_P(BestOf, LeavesOutFailedRobotsAndSortsTheOthers) {

@@ -59,8 +59,8 @@ TEST_F(NewCommand, BestOfKeepsTheFarthest) {
   const Outcome outcome =
       mercury({"new", "voxel", "-o", path("best"), "--count", "2", "--best-of", "12", "--seed", "2", "--seconds", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
-  const auto report =
-      nlohmann::json::parse(mercury({"run", "--random", "voxel:12", "--seed", "2", "--seconds", "1", "--json"}).output);
+  const auto report = nlohmann::json::parse(
+      mercury({"run", "--random", "voxel:12", "--seed", "2", "--seconds", "1", "--trials", "3", "--json"}).output);
   std::vector<std::pair<double, std::string>> ranking;
   for (const auto& robot : report["robots"]) ranking.emplace_back(-robot["distance"].get<double>(), robot["name"]);
   std::sort(ranking.begin(), ranking.end());
@@ -73,7 +73,7 @@ TEST_F(NewCommand, BestOfKeepsTheFarthest) {
 TEST_F(NewCommand, BestOfWritesEveryCandidate) {
   const std::vector<std::string> trial{"--seed", "2", "--seconds", "0.3", "--environment", "land", "--settle", "0.1"};
   std::vector<std::string> search{"new", "voxel", "-o", path("best/"), "--best-of", "6", "--csv", path("a.csv")};
-  std::vector<std::string> run{"run", "--random", "voxel:6", "--csv", path("b.csv")};
+  std::vector<std::string> run{"run", "--random", "voxel:6", "--trials", "3", "--csv", path("b.csv")};
   for (auto* command : {&search, &run}) {
     command->insert(command->end(), trial.begin(), trial.end());
     const Outcome outcome = mercury(*command);

@@ -203,8 +203,8 @@ TEST(RunFile, ErrorsNameFileAndLine) {
   EXPECT_THAT(error_with("population", "population = 0"), HasSubstr(place("population")));
   EXPECT_THAT(error_with("objectives", "objectives = [\"distanse\"]"), HasSubstr(place("objectives")));
   EXPECT_THAT(error_with("seed", "seed = = 1"), HasSubstr(place("seed")));
-  EXPECT_EQ(error_with("version", "version = 2"),
-            place("version") + "version 2 is newer than this program, which reads up to version 1");
+  EXPECT_EQ(error_with("version", "version = 3"),
+            place("version") + "version 3 is newer than this program, which reads up to version 2");
   EXPECT_THAT(error_with("format", "format = \"x\""), HasSubstr("RUN/run.toml"));
   EXPECT_THAT(error_with("founders", "founders = [\"../../etc/passwd\"]"), EndsWith("is not the name of a file"));
 }

@@ -416,5 +416,26 @@ TEST(Algorithms, OnlyNsga2TakesSeveralObjectives) {
   EXPECT_THAT(several, UnorderedElementsAre("nsga2"));
 }
 
+// Where no robot is sound, those live on that break the limits least; a sound one stands before all of them.
+TEST(AnyAlgorithm, RobotsThatAreNotSoundAreRankedByHowMuchTheyBreakLimits) {
+  std::vector<Individual> pool;
+  for (std::uint64_t id = 0; id < 12; ++id) {
+    pool.push_back(individual(id, {worst_score}));
+    pool.back().assessment.fate = Fate::overstretched;
+    pool.back().assessment.violation = static_cast<double>((id * 5 + 3) % 12 + 1);  // 1 .. 12, each once
+    pool.back().assessment.values[*find_quantity("size")] = 0.25 * static_cast<double>(id % 4) + 0.1;
+  }
+  for (const char* name : {"ga", "afpo", "nsga2", "random", "map-elites"}) {
+    std::vector<Individual> with_sound = pool;
+    const std::vector<std::size_t> alive = make_algorithm(algorithm_settings(name, 4))->survivors(pool, 0);
+    ASSERT_EQ(alive.size(), 4u) << name;
+    EXPECT_EQ(pool[alive[0]].assessment.violation, 1) << name;
+    for (std::size_t i = 1; i < 4; ++i)
+      EXPECT_GT(pool[alive[i]].assessment.violation, pool[alive[i - 1]].assessment.violation) << name;
+    with_sound.push_back(individual(12, {-1e9}));
+    EXPECT_EQ(make_algorithm(algorithm_settings(name, 4))->survivors(with_sound, 0).front(), 12u) << name;
+  }
+}
+
 }  // namespace
 }  // namespace mercury

@@ -155,5 +155,29 @@ TEST(Objective, DeeplyNestedFormulasAreAcceptedOrRefused) {
   EXPECT_NE(problem_of(std::string(1000, '-')), "");
 }
 
+TEST(Objective, KnowsWhichQuantitiesItUses) {
+  const auto names = [](const std::string& formula) {
+    std::vector<std::string> used;
+    for (const std::size_t q : Objective(formula).uses()) used.emplace_back(quantities()[q].name);
+    return used;
+  };
+  EXPECT_THAT(names("distance - 0.1 * work"), testing::UnorderedElementsAre("distance", "work"));
+  EXPECT_THAT(names("height > 1 ? straightness : -strain"),
+              testing::UnorderedElementsAre("height", "straightness", "strain"));
+  EXPECT_THAT(names("2 + 2"), testing::IsEmpty());
+}
+
+// Where the mean force is proportional to the mean velocity, a distance is rounding.
+TEST(Objective, DistancesMeanNothingWhereNoRobotCanMoveItself) {
+  for (const char* formula : {"distance", "1 - cruise_speed", "work + speed_x"}) {
+    const Objective objective(formula);
+    EXPECT_THAT(why_meaningless(objective, OceanSimple{}), HasSubstr("no robot can move itself in ocean-simple"));
+    EXPECT_THAT(why_meaningless(objective, environment_named("space")), HasSubstr("nothing to push against"));
+    for (const char* world : {"ocean", "land", "water", "ocean-simple+ground", "space+ground"})
+      EXPECT_EQ(why_meaningless(objective, environment_named(world)), "") << world;
+  }
+  EXPECT_EQ(why_meaningless(Objective("work - strain"), OceanSimple{}), "");
+}
+
 }  // namespace
 }  // namespace mercury

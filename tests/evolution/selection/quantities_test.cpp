@@ -113,7 +113,9 @@ TEST_F(OneTrial, QuantitiesOfTheBodyDoNotDependOnTheTrial) {
                          .work = 4,
                          .highest = 9,
                          .largest_strain = 0.5,
-                         .strained_share = 1};
+                         .strained_share = 1,
+                         .third = 0.02,
+                         .at_two_thirds = {-0.5f, -0.5f, -0.5f}};
   const std::vector<double> after =
       quantities_of({.robot = robot, .evaluation = other, .configuration = configuration});
   for (std::size_t q = 0; q < quantities().size(); ++q)

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "evolution/trial_robot.h"
+#include "mercury/error.h"
+#include "mercury/origin.h"
+#include "mercury/quantity.h"
+#include "mercury/random.h"
+#include "mercury/real_body.h"
+
+namespace mercury {
+namespace {
+
+// Robots are taken from their source for their first trial that is asked for, and kept until their last.
+class TrialSource {
+ public:
+  TrialSource(RobotSource robots, const TrialSettings& settings, std::uint64_t seed)
+      : robots_(std::move(robots)), settings_(settings), seed_(seed) {}
+
+  std::shared_ptr<const Robot> robot_of(std::size_t index) {
+    const auto trials = static_cast<std::size_t>(settings_.trials);
+    const std::shared_ptr<const Robot> robot = taken(index / trials);
+    if (!robot || trials_are_alike(settings_)) return robot;
+    return std::make_shared<const Robot>(trial_robot(*robot, settings_, seed_, static_cast<int>(index % trials)));
+  }
+
+ private:
+  struct Taken {
+    std::mutex mutex;
+    bool is_there = false;
+    std::shared_ptr<const Robot> robot;
+    std::exception_ptr error;
+    int uses = 0;  // guarded by the mutex of all
+  };
+
+  std::shared_ptr<const Robot> taken(std::size_t index) {
+    const std::shared_ptr<Taken> taken = entry(index);
+    const std::lock_guard lock(taken->mutex);
+    if (!taken->is_there) {
+      try {
+        taken->robot = robots_(index);
+      } catch (const InputError&) {
+        taken->error = std::current_exception();
+      }
+      taken->is_there = true;
+    }
+    if (taken->error) std::rethrow_exception(taken->error);
+    return taken->robot;
+  }
+
+  std::shared_ptr<Taken> entry(std::size_t index) {
+    const std::lock_guard lock(mutex_);
+    const auto found = taken_.try_emplace(index, std::make_shared<Taken>()).first;
+    std::shared_ptr<Taken> entry = found->second;
+    if (++entry->uses == settings_.trials) taken_.erase(found);
+    return entry;
+  }
+
+  const RobotSource robots_;
+  const TrialSettings settings_;
+  const std::uint64_t seed_;
+  std::mutex mutex_;
+  std::map<std::size_t, std::shared_ptr<Taken>> taken_;
+};
+
+float shortest_rest_length(const Robot& robot) {
+  if (robot.springs.empty()) return 0;
+  return std::ranges::min(robot.springs, {}, &Spring::rest_length).rest_length;
+}
+
+bool is_of_network(const Robot& robot) { return kind_of(robot) == "nn"; }
+bool has_real_body(const Robot& robot) { return real_material_of(robot).has_value(); }
+
+constexpr Limit table[] = {
+    {.quantity = "strain", .value = &TrialSettings::strain_limit},
+    {.quantity = "strained_share", .value = &TrialSettings::strained_limit, .applies = has_real_body},
+    {.quantity = "masses",
+     .value = &TrialSettings::least_masses,
+     .is_least = true,
+     .fate = Fate::too_small,
+     .applies = is_of_network},
+};
+
+// Calls found(limit, by how much it was exceeded as a share of it) for each limit that a trial broke.
+template <class Found>
+void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest& request,
+                           const TrialSettings& settings, const Found& found) {
+  const Trial trial{.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request.configuration};
+  for (const Limit& limit : table) {
+    const double accepted = settings.*limit.value;
+    const double value = quantities()[find_quantity(limit.quantity).value()].value(trial);
+    if (limit.is_least ? value >= accepted : value <= accepted) continue;
+    if (limit.applies && !limit.applies(trial.robot)) continue;
+    const double excess = std::abs(value - accepted) / (accepted > 0 ? accepted : 1);
+    found(limit, std::isnan(excess) ? std::numeric_limits<double>::infinity() : excess);
+  }
+}
+
+}  // namespace
+
+EvaluationRequest trial_request(const TrialSettings& settings, const Configuration& configuration, std::uint64_t seed) {
+  const auto steps_in = [&](double seconds) { return std::int64_t{std::llround(seconds / configuration.dt)}; };
+  const std::int64_t settling = steps_in(settings.settle);
+  EvaluationRequest request{.configuration = configuration,
+                            .settling = settling,
+                            .steps = steps_in(settings.seconds) - settling,
+                            .sample_every = std::max<std::int64_t>(1, steps_in(trial_sample_period)),
+                            .hashes = true};
+  if (settings.jitter > 0)
+    request.start = [settings, seed](std::size_t index, const Robot& robot, std::span<Vec3> positions) {
+      add_jitter(robot, settings, seed, index % static_cast<std::size_t>(settings.trials), positions);
+    };
+  return request;
+}
+
+RobotSource trial_source(RobotSource robots, const TrialSettings& settings, std::uint64_t seed) {
+  if (settings.trials == 1 && trials_are_alike(settings)) return robots;
+  const auto source = std::make_shared<TrialSource>(std::move(robots), settings, seed);
+  return [source](std::size_t index) { return source->robot_of(index); };
+}
+
+void add_jitter(const Robot& robot, const TrialSettings& settings, std::uint64_t seed, std::size_t trial,
+                std::span<Vec3> positions) {
+  constexpr std::uint64_t of_jitter = 0x6a69747465720000u;  // other numbers than those of trial_robot()
+  Random random(seed_of(seed_of(seed, trial), of_jitter));
+  const double deviation = settings.jitter * static_cast<double>(shortest_rest_length(robot));
+  std::vector<bool> is_fixed(positions.size());
+  for (const std::uint16_t point : robot.fixed) is_fixed[point] = true;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+      const double displacement = deviation * random.normal();
+      if (!is_fixed[i]) positions[i].*axis = static_cast<float>(static_cast<double>(positions[i].*axis) + displacement);
+    }
+}
+
+std::span<const Limit> limits() { return table; }
+
+Fate fate_of(const Evaluation& evaluation, const EvaluationRequest& request, const TrialSettings& settings) {
+  if (!evaluation.failure.empty()) return Fate::failed;
+  if (evaluation.end.exploded) return Fate::exploded;
+  Fate fate = evaluation.steps < request.steps ? Fate::stopped : Fate::sound;
+  for_each_broken_limit(evaluation, request, settings, [&](const Limit& limit, double) {
+    if (fate == Fate::stopped || fate == Fate::sound) fate = limit.fate;
+  });
+  return fate;
+}
+
+double violation_of(const Evaluation& evaluation, const EvaluationRequest& request, const TrialSettings& settings) {
+  if (!evaluation.failure.empty() || evaluation.end.exploded) return std::numeric_limits<double>::infinity();
+  double sum = 0;
+  for_each_broken_limit(evaluation, request, settings, [&](const Limit&, double excess) { sum += excess; });
+  return sum;
+}
+
+}  // namespace mercury
