@@ -99,8 +99,8 @@ void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest
     const double value = quantities()[find_quantity(limit.quantity).value()].value(trial);
     if (limit.is_least ? value >= accepted : value <= accepted) continue;
     if (limit.applies && !limit.applies(trial.robot)) continue;
-    const double excess = std::abs(value - accepted) / (accepted > 0 ? accepted : 1);
-    found(limit, std::isnan(excess) ? std::numeric_limits<double>::infinity() : excess);
+    const double beyond = std::abs(value - accepted) / (accepted > 0 ? accepted : 1);
+    found(limit, std::isnan(beyond) ? std::numeric_limits<double>::infinity() : beyond);
   }
 }
 
@@ -156,7 +156,7 @@ Fate fate_of(const Evaluation& evaluation, const EvaluationRequest& request, con
 double violation_of(const Evaluation& evaluation, const EvaluationRequest& request, const TrialSettings& settings) {
   if (!evaluation.failure.empty() || evaluation.end.exploded) return std::numeric_limits<double>::infinity();
   double sum = 0;
-  for_each_broken_limit(evaluation, request, settings, [&](const Limit&, double excess) { sum += excess; });
+  for_each_broken_limit(evaluation, request, settings, [&](const Limit&, double beyond) { sum += beyond; });
   return sum;
 }
 

@@ -34,14 +34,14 @@ namespace mercury {
 // All commands in the order of the help, each in a file of its own. describe-options comes after help.
 AddCommand add_view_command, add_render_command, add_run_command, add_evolve_command, add_new_command,
     add_mutate_command, add_cross_command, add_grow_command, add_export_command, add_import_command, add_bench_command,
-    add_verify_command, add_info_command, add_describe_command;
+    add_verify_command, add_check_command, add_info_command, add_describe_command;
 
 namespace {
 
 constexpr std::array commands{add_view_command,   add_render_command, add_run_command,   add_evolve_command,
                               add_new_command,    add_mutate_command, add_cross_command, add_grow_command,
                               add_export_command, add_import_command, add_bench_command, add_verify_command,
-                              add_info_command};
+                              add_check_command,  add_info_command};
 
 constexpr const char* footer =
     "Options may stand before or after the name of the command, and in a file for --config.\n\n"

@@ -139,8 +139,7 @@ struct Objective::Parsed {
         parser.DefineVar(std::string(quantities()[q].name), &variables[q]);
       parser.SetExpr(formula);
       parser.Eval();  // parses
-      for (const auto& [name, variable] : parser.GetUsedVar())
-        used.push_back(static_cast<std::size_t>(variable - variables.data()));
+      for (const auto& [name, variable] : parser.GetUsedVar()) used.push_back(find_quantity(name).value());
       std::ranges::sort(used);
       if (parser.GetNumResults() != 1) refuse(formula, "is several formulas; give one, or several objectives");
     } catch (const mu::ParserError& error) {

@@ -158,7 +158,8 @@ TEST(Objective, DeeplyNestedFormulasAreAcceptedOrRefused) {
 TEST(Objective, KnowsWhichQuantitiesItUses) {
   const auto names = [](const std::string& formula) {
     std::vector<std::string> used;
-    for (const std::size_t q : Objective(formula).uses()) used.emplace_back(quantities()[q].name);
+    const Objective objective(formula);
+    for (const std::size_t q : objective.uses()) used.emplace_back(quantities()[q].name);
     return used;
   };
   EXPECT_THAT(names("distance - 0.1 * work"), testing::UnorderedElementsAre("distance", "work"));

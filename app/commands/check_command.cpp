@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury check: whether the results of robots hold, at dt, dt/2 and dt/4, each with several jitters.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/base/csv.h"
+#include "app/base/interrupt.h"
+#include "app/base/messages.h"
+#include "app/base/progress.h"
+#include "app/base/standard_streams.h"
+#include "app/base/version.h"
+#include "app/commands/commands.h"
+#include "app/commands/description.h"
+#include "app/commands/dry_run.h"
+#include "app/commands/results_file.h"
+#include "app/commands/run_evaluation.h"
+#include "app/options/option_values.h"
+#include "app/options/output_options.h"
+#include "app/options/parameter_options.h"
+#include "app/options/robot_options.h"
+#include "app/options/simulation_options.h"
+#include "app/recording/configuration_json.h"
+#include "mercury/confirmation.h"
+#include "mercury/error.h"
+#include "mercury/quantity.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::size_t longest_label = 60;
+
+struct CheckOptions {
+  RobotOptions robots;
+  SimulationOptions simulation;
+  TrialSettings trials = check_settings();
+  OutputOptions output;
+  std::string objective = "distance", csv;
+  bool json = false;
+};
+
+struct CheckReport {
+  Configuration configuration;
+  TrialSettings trials;
+  std::string objective, device;
+  std::vector<RobotIdentity> identities;
+  std::vector<Confirmation> robots;
+
+  std::size_t count(Verdict verdict) const {
+    return static_cast<std::size_t>(std::ranges::count(robots, verdict, &Confirmation::verdict));
+  }
+};
+
+// "dt", "dt_2", "dt_4"
+std::string suffix_of(std::size_t step) { return step == 0 ? "dt" : fmt::format("dt_{}", 1 << step); }
+
+std::string figures(const CheckedStep& step) {
+  if (step.fate != Fate::sound) return std::string(name_of(step.fate));
+  return fmt::format("{:.4f} ({:.4f} to {:.4f})", step.score.median, step.score.lower_quartile,
+                     step.score.upper_quartile);
+}
+
+std::string table_of(const CheckReport& report) {
+  const Configuration& configuration = report.configuration;
+  std::vector<std::string> labels;
+  std::size_t width = 5;
+  for (std::size_t i = 0; i < report.robots.size(); ++i) {
+    labels.push_back(printable(report.identities[i].name, longest_label));
+    width = std::max(width, labels.back().size());
+  }
+  std::string text =
+      fmt::format("{}, {}, {} solver; {} of {} trials of {:g} s at each time step: median (quartiles)\n\n{:>5}  {:<{}}",
+                  report.device, name_of(configuration.environment), name_of(configuration.solver), report.objective,
+                  report.trials.trials, report.trials.seconds, "index", "robot", width);
+  for (std::size_t k = 0; k < checked_steps; ++k)
+    text += fmt::format("  {:>30}", fmt::format("dt {:g} s", configuration.dt / static_cast<double>(1 << k)));
+  text += "  verdict\n";
+  for (std::size_t i = 0; i < report.robots.size(); ++i) {
+    const Confirmation& robot = report.robots[i];
+    text += fmt::format("{:>5}  {:<{}}", report.identities[i].index, labels[i], width);
+    for (const CheckedStep& step : robot.steps) text += fmt::format("  {:>30}", figures(step));
+    text += fmt::format("  {}{}{}\n", name_of(robot.verdict), robot.reason.empty() ? "" : ": ", robot.reason);
+  }
+  return text + fmt::format("\n{} of {} confirmed\n", report.count(Verdict::confirmed), report.robots.size());
+}
+
+std::string csv_of(const CheckReport& report) {
+  std::string text = "index,name,file,random,verdict,reason,objective";
+  for (std::size_t k = 0; k < checked_steps; ++k)
+    for (const char* name : {"fate", "median", "lower_quartile", "upper_quartile", "steady"})
+      text += fmt::format(",{}_{}", name, suffix_of(k));
+  text += '\n';
+  for (std::size_t i = 0; i < report.robots.size(); ++i) {
+    const auto& [index, name, file, random] = report.identities[i];
+    const Confirmation& robot = report.robots[i];
+    text += fmt::format("{},{},{},{},{},{},{}", index, csv_field(name), csv_field(file), csv_field(random),
+                        name_of(robot.verdict), csv_field(robot.reason), csv_field(report.objective));
+    for (const CheckedStep& step : robot.steps) {
+      const bool is_sound = step.fate == Fate::sound;
+      text += fmt::format(",{},{},{},{},{}", name_of(step.fate), csv_number(step.score.median),
+                          csv_number(step.score.lower_quartile), csv_number(step.score.upper_quartile),
+                          is_sound ? csv_number(step.steady_share) : "");
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string json_of(const CheckReport& report) {
+  using Json = nlohmann::ordered_json;
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+  const auto text = [](const std::string& value) { return value.empty() ? Json() : Json(value); };
+  Json json{{"program", program_version},
+            {"configuration", mercury::json_of(report.configuration)},
+            {"device", report.device},
+            {"objective", report.objective},
+            {"trials", report.trials.trials},
+            {"jitter", report.trials.jitter},
+            {"seconds", report.trials.seconds},
+            {"settle", report.trials.settle},
+            {"confirmed", report.count(Verdict::confirmed)},
+            {"robots", Json::array()}};
+  for (std::size_t i = 0; i < report.robots.size(); ++i) {
+    const auto& [index, name, file, random] = report.identities[i];
+    const Confirmation& robot = report.robots[i];
+    Json steps = Json::array();
+    for (const CheckedStep& step : robot.steps)
+      steps.push_back({{"dt", step.dt},
+                       {"fate", name_of(step.fate)},
+                       {"median", number(step.score.median)},
+                       {"lower_quartile", number(step.score.lower_quartile)},
+                       {"upper_quartile", number(step.score.upper_quartile)},
+                       {"steady", step.fate == Fate::sound ? Json(step.steady_share) : Json()}});
+    json["robots"].push_back({{"index", index},
+                              {"name", text(name)},
+                              {"file", text(file)},
+                              {"random", text(random)},
+                              {"verdict", name_of(robot.verdict)},
+                              {"reason", text(robot.reason)},
+                              {"steps", std::move(steps)}});
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+int check(const CheckOptions& options) {
+  OutputFiles outputs = options.output.files();
+  for (const std::filesystem::path& file : options.robots.files()) outputs.add_input(file);
+  if (!options.csv.empty()) outputs.add_stream("--csv", options.csv);
+  outputs.check();
+  if (!options.output.dry_run()) outputs.make_folders();
+  if (options.json && is_standard_output(options.csv))
+    throw InputError("--csv", options.csv + " and --json both mean standard output; give --csv a file");
+  options.simulation.check(options.robots.physics());
+  const Objective objective(options.objective);
+  CheckReport report{.configuration = {}, .trials = options.trials, .objective = options.objective};
+  report.trials.seconds = options.simulation.seconds();
+  validate(report.trials);
+  const RobotSequence robots = options.robots.sequence();
+  std::vector<std::string> notes;
+  report.configuration = options.simulation.configuration(robots.environments, notes, robots.physics);
+  for (const std::string& note : notes) warn(note);
+  if (const std::string why = why_meaningless(objective, report.configuration.environment); !why.empty())
+    throw InputError("--objective", why);
+  if (options.output.dry_run())
+    return print_dry_run("check",
+                         {{"robots", size_text(robots)},
+                          {"simulate", time_text(report.configuration, options.simulation.steps()) +
+                                           fmt::format(", {} trials, also at dt/2 and dt/4", report.trials.trials)},
+                          {"in", environment_text(report.configuration)},
+                          {"on", device_text(report.configuration.device)},
+                          {"write", options.csv}});
+  {
+    const std::size_t per_robot = static_cast<std::size_t>(report.trials.trials) * 7;  // 1 + 2 + 4 times as many steps
+    Progress progress("checking", "trials", static_cast<std::int64_t>(robots.count * per_robot));
+    const auto watch = [&](std::size_t done, std::size_t) {
+      progress.update(static_cast<std::int64_t>(done));
+      return !interrupted();
+    };
+    auto checked = check_robots(robots.source, robots.count, report.configuration, report.trials, objective,
+                                options.robots.seed_or_default(), watch, &report.device);
+    if (!checked) throw Interrupted();
+    report.robots = std::move(*checked);
+  }
+  for (std::size_t i = 0; i < report.robots.size(); ++i) {
+    report.identities.push_back(identity_of(robots, i));
+    if (!report.robots[i].robot.empty()) report.identities.back().name = report.robots[i].robot;
+  }
+  if (!is_standard_output(options.csv)) {
+    const std::string text = options.json ? json_of(report) : table_of(report);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    flush_standard_output();
+  }
+  if (!options.csv.empty()) write_results(options.csv, csv_of(report));
+  return report.count(Verdict::confirmed) == report.robots.size() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_check_command(const Command& program, const Choose& choose) {
+  auto options = std::make_shared<CheckOptions>();
+  const Command command =
+      program.add_command("check", "Say whether results of robots hold, at smaller time steps and with jitter");
+  options->robots.add_to(command);
+  add_text(command, "--objective", options->objective, "Formula of quantities that is to hold (default distance)",
+           "FORMULA")
+      .offering(names_of_quantities());
+  add_text(command, "--csv", options->csv,
+           "Also write one line per robot to this file; - prints it instead of the table", "FILE")
+      .on_first_screen();
+  options->output.add_to(command);
+  command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
+  add_trial_options(command, options->trials);
+  options->simulation.add_to(command);
+  command.set_footer(
+      "Each robot is tried at dt, dt/2 and dt/4, with --trials jitters at each, and gets one verdict:\n"
+      "  confirmed      the result holds\n"
+      "  not sound      at dt, it explodes or breaks a limit\n"
+      "  chaotic        the quartiles are more than 20 % of the median apart\n"
+      "  depends on dt  it is not sound at a smaller step, or the median at dt/4 is another one, by more than 10 %\n"
+      "  transient      the speed does not last\n"
+      "docs/evaluation.md defines them. The exit status is 0 if all robots are confirmed, else 1.\n\n"
+      "Examples:\n"
+      "  mercury check sample:eel\n"
+      "  mercury check swim/best --seconds 20 --csv champions.csv\n"
+      "  mercury check my-robots --objective \"cruise_speed\" --environment land");
+  command.when_chosen([options, choose] { choose([options] { return options->robots.status(check(*options)); }); });
+}
+
+}  // namespace mercury

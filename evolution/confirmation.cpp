@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/confirmation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "mercury/quantity.h"
+#include "robots/number_text.h"
+
+namespace mercury {
+namespace {
+
+constexpr std::string_view names[] = {"failed", "not sound", "chaotic", "depends on dt", "transient", "confirmed"};
+
+std::string percent(double share) { return fixed_text(100 * share, share < 0.1 ? 1 : 0) + " %"; }
+std::string at(const CheckedStep& step) {
+  char text[40];
+  std::snprintf(text, sizeof text, "at dt %g s", step.dt);
+  return text;
+}
+
+bool is_sound(const CheckedStep& step) { return step.fate == Fate::sound; }
+
+// Empty = it is not chaotic.
+std::string chaos(const Confirmation& checked, double same) {
+  for (const CheckedStep& step : checked.steps) {
+    if (!is_sound(step)) continue;
+    const double between = step.score.between_quartiles(), median = std::abs(step.score.median);
+    if (between <= std::max(most_between_quartiles * median, same)) continue;
+    return "the quartiles " + at(step) + ", " + fixed_text(step.score.lower_quartile, 4) + " and " +
+           fixed_text(step.score.upper_quartile, 4) + ", are " +
+           (median > 0 ? percent(between / median) + " of the median apart" : "apart");
+  }
+  return "";
+}
+
+// Empty = it does not depend on dt.
+std::string dependence(const Confirmation& checked, double same) {
+  for (const CheckedStep& step : checked.steps)
+    if (!is_sound(step)) return std::string(name_of(step.fate)) + " " + at(step);
+  const CheckedStep &coarse = checked.steps.front(), &fine = checked.steps.back();
+  const double change = std::abs(coarse.score.median - fine.score.median), scale = std::abs(fine.score.median);
+  const double accepted =
+      std::max({most_change_with_dt * scale, same, coarse.score.between_quartiles(), fine.score.between_quartiles()});
+  if (change <= accepted) return "";
+  return "the median is " + fixed_text(coarse.score.median, 4) + " " + at(coarse) + " and " +
+         fixed_text(fine.score.median, 4) + " " + at(fine);
+}
+
+// The trials of one robot at one time step.
+CheckedStep checked_step(std::span<const Evaluation> trials, const EvaluationRequest& request,
+                         const TrialSettings& settings, const Objective& objective) {
+  static const std::size_t steady = find_quantity("steady").value();
+  CheckedStep step{.dt = request.configuration.dt, .fate = Fate::sound};
+  std::vector<double> scores;
+  double steady_trials = 0;
+  for (const Evaluation& trial : trials) {
+    step.fate = worse(step.fate, fate_of(trial, request, settings));
+    if (!trial.failure.empty()) continue;
+    const std::vector<double> values =
+        quantities_of({.robot = *trial.robot, .evaluation = trial, .configuration = request.configuration});
+    scores.push_back(objective.score(values));
+    steady_trials += values[steady];
+  }
+  if (!is_sound(step)) return step;
+  step.score = spread_of(std::move(scores));
+  step.steady_share = steady_trials / static_cast<double>(trials.size());
+  return step;
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) { return names[static_cast<std::size_t>(verdict)]; }
+
+std::optional<Verdict> verdict_named(std::string_view name) {
+  const auto* found = std::ranges::find(names, name);
+  if (found == std::end(names)) return std::nullopt;
+  return static_cast<Verdict>(found - std::begin(names));
+}
+
+void judge(Confirmation& checked, double same, bool travels) {
+  const auto decide = [&](Verdict verdict, std::string reason) {
+    checked.verdict = verdict;
+    checked.reason = std::move(reason);
+  };
+  const CheckedStep& first = checked.steps.front();
+  if (first.fate == Fate::failed) return decide(Verdict::failed, std::move(checked.reason));
+  if (!is_sound(first)) return decide(Verdict::unsound, std::string(name_of(first.fate)) + " " + at(first));
+  if (std::string reason = chaos(checked, same); !reason.empty()) return decide(Verdict::chaotic, std::move(reason));
+  if (std::string reason = dependence(checked, same); !reason.empty())
+    return decide(Verdict::depends_on_dt, std::move(reason));
+  if (travels && first.steady_share < 0.5)
+    return decide(Verdict::transient, "the speeds in the second and the last third differ by more than 20 % in " +
+                                          percent(1 - first.steady_share) + " of the trials");
+  decide(Verdict::confirmed, "");
+}
+
+std::optional<std::vector<Confirmation>> check_robots(
+    const RobotSource& robots, std::size_t count, const Configuration& configuration, const TrialSettings& trials,
+    const Objective& objective, std::uint64_t seed, const std::function<bool(std::size_t done, std::size_t all)>& watch,
+    std::string* device_name) {
+  constexpr std::chrono::milliseconds watch_period(100);
+  const auto per_step = static_cast<std::size_t>(trials.trials);
+  // Smaller steps take longer; trials count by their steps.
+  std::size_t all = 0, done = 0;
+  for (std::size_t k = 0; k < checked_steps; ++k) all += count * per_step << k;
+  std::vector<Confirmation> checked(count);
+  std::vector<double> lengths(count);
+  for (std::size_t k = 0; k < checked_steps; ++k) {
+    Configuration finer = configuration;
+    finer.dt = configuration.dt / static_cast<double>(1 << k);
+    const EvaluationRequest request = trial_request(trials, finer, seed);
+    Evaluator evaluator(request, trial_source(robots, trials, seed), count * per_step);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::vector<Evaluation> of_robot;
+      while (of_robot.size() < per_step) {
+        while (!evaluator.wait_for(watch_period))
+          if (watch && !watch(done + (evaluator.progress().done << k), all)) return std::nullopt;
+        of_robot.push_back(evaluator.next().value());
+      }
+      checked[i].steps[k] = checked_step(of_robot, request, trials, objective);
+      if (!of_robot.front().failure.empty()) checked[i].reason = of_robot.front().failure;
+      if (!of_robot.front().robot) continue;
+      checked[i].robot = of_robot.front().robot->name;
+      lengths[i] =
+          quantities()[find_quantity("length").value()].value({*of_robot.front().robot, of_robot.front(), finer});
+    }
+    done += count * per_step << k;
+    if (watch && !watch(done, all)) return std::nullopt;
+    if (device_name) *device_name = evaluator.device_name();
+  }
+  const bool is_distance = objective.formula() == "distance";
+  const bool travels = std::ranges::any_of(objective.uses(), [](std::size_t q) { return quantities()[q].of_travel; });
+  for (std::size_t i = 0; i < count; ++i) judge(checked[i], is_distance ? same_place * lengths[i] : 0, travels);
+  return checked;
+}
+
+}  // namespace mercury
