@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// mercury check: its report, and what it refuses.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+
+namespace mercury::test {
+namespace {
+
+using testing::HasSubstr;
+using Arguments = std::vector<std::string>;
+
+class CheckCommand : public FolderTest {};
+
+const Arguments robots{"--random", "voxel:3", "--seed", "2", "--seconds", "0.5", "--environment", "land"};
+
+Arguments operator+(Arguments a, const Arguments& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// Medians and quartiles are those of `run` with as many trials at each time step.
+TEST_F(CheckCommand, ReportsTheMediansOfRunAtEachTimeStep) {
+  const Outcome outcome = mercury(Arguments{"check", "--json"} + robots);
+  const auto report = nlohmann::json::parse(outcome.output);
+  ASSERT_EQ(report["robots"].size(), 3u);
+  EXPECT_EQ(outcome.status, report["confirmed"] == 3 ? 0 : 1);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double dt = 1e-3 / (1 << k);
+    const auto run = nlohmann::json::parse(
+        mercury(Arguments{"run", "--json", "--trials", "5", "--dt", std::to_string(dt)} + robots).output);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& robot = report["robots"][i];
+      EXPECT_EQ(robot["name"], run["robots"][i]["name"]);
+      EXPECT_EQ(robot["random"], run["robots"][i]["random"]);
+      EXPECT_EQ(robot["steps"][k]["dt"], dt);
+      EXPECT_EQ(robot["steps"][k]["median"], run["robots"][i]["distance"]);
+      EXPECT_EQ(robot["steps"][k]["lower_quartile"], run["robots"][i]["lower_quartile"]);
+      EXPECT_EQ(robot["steps"][k]["upper_quartile"], run["robots"][i]["upper_quartile"]);
+    }
+  }
+}
+
+TEST_F(CheckCommand, WritesALinePerRobot) {
+  const Outcome outcome = mercury(Arguments{"check", "--csv", path("a.csv")} + robots);
+  EXPECT_THAT(outcome.output, HasSubstr("voxel-2-1"));
+  EXPECT_THAT(outcome.output, HasSubstr(" of 3 confirmed\n"));
+  const std::string csv = read("a.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
+  EXPECT_THAT(csv, testing::StartsWith("index,name,file,random,verdict,reason,objective,fate_dt,median_dt,"));
+  EXPECT_EQ(mercury(Arguments{"check", "--csv", "-"} + robots).output, csv);
+}
+
+TEST_F(CheckCommand, RefusesWhatMeansNothing) {
+  const auto refusal = [](const Arguments& more) {
+    const Outcome outcome = mercury(Arguments{"check", "--random", "voxel:1"} + more);
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.messages;
+  };
+  EXPECT_THAT(refusal({"--environment", "ocean-simple"}), HasSubstr("no robot can move itself in ocean-simple"));
+  EXPECT_THAT(refusal({"--objective", "distanse"}), HasSubstr("did you mean distance?"));
+  EXPECT_THAT(refusal({"--trials", "0"}), HasSubstr("--trials: 0 is not accepted"));
+  EXPECT_THAT(refusal({"--jitter", "0.7"}), HasSubstr("--jitter: 0.7 is not accepted"));
+}
+
+TEST_F(CheckCommand, ADryRunChangesNothing) {
+  const Outcome outcome = mercury(Arguments{"check", "--dry-run", "--csv", path("a.csv")} + robots);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("also at dt/2 and dt/4"));
+  EXPECT_TRUE(listing("").empty());
+}
+
+}  // namespace
+}  // namespace mercury::test
