@@ -33,7 +33,7 @@ class Window {
   double picture(LiveScene& scene) {
     const double start = now();
     scene.frame();
-    LivePicture& live = scene.picture();
+    DrawnScene& live = scene.drawn();
     if (bodies_ != live.bodies_revision()) {
       live.set_bodies(renderer_);
       bodies_ = live.bodies_revision();

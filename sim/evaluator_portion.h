@@ -39,7 +39,7 @@ struct PortionLimits {
 };
 
 // Makes robots of the source from `first` on until the source or a limit ends the portion; at least one, if there is
-// one. `is_serial`: one after the other in this thread, otherwise on all cores. `largest` = bytes of the largest robot
+// one. `is_serial`: in order in this thread, otherwise on all cores. `largest` = bytes of the largest robot
 // so far; it is updated.
 Portion make_portion(const RobotSource& source, std::size_t first, std::size_t end, const PortionLimits& limits,
                      bool is_serial, std::atomic<std::size_t>& largest);

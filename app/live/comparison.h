@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What goes along with the robots for comparison: the second side of the picture, which is the same robots under
+// What goes along with the robots for comparison: the second side of the view, which is the same robots under
 // another configuration, and ghosts of robots as they were before a change.
 //
 //   first     ---*------+------+---x----+--->   steps; x: robots, parameters or materials change

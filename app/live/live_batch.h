@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch of robots as pictures need it: simulated, measured, and observed in the details that the view selects.
+// A batch of robots as frames need it: simulated, measured, and observed in the details that the view selects.
 #pragma once
 
 #include <cstdint>

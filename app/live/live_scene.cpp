@@ -64,8 +64,8 @@ void LiveScene::frame(float aspect) {
     shown.camera.elevation = land ? std::max(flattest, parts.facing->elevation) : parts.facing->elevation;
   }
   const std::optional<RobotId> held = pull ? std::optional(pull->robot) : std::nullopt;
-  parts.picture.update(parts.snapshot, shown, parts.aspect, parts.selection.set(), parts.hidden, held, wall_now());
-  parts.update_second_picture(shown, held);
+  parts.drawn.update(parts.snapshot, shown, parts.aspect, parts.selection.set(), parts.hidden, held, wall_now());
+  parts.update_second_drawn(shown, held);
 }
 
 void LiveScene::face(bool from_above, const std::optional<render::Orbit>& direction) {
@@ -74,12 +74,12 @@ void LiveScene::face(bool from_above, const std::optional<render::Orbit>& direct
 }
 const Snapshot& LiveScene::snapshot() const { return *parts_->snapshot; }
 std::shared_ptr<const Snapshot> LiveScene::hold_snapshot() const { return parts_->snapshot; }
-LivePicture& LiveScene::picture() { return parts_->picture; }
+DrawnScene& LiveScene::drawn() { return parts_->drawn; }
 std::vector<Message> LiveScene::take_messages() { return parts_->messages.take(); }
 std::string LiveScene::device_name() const { return parts_->physics.device_name(); }
 int LiveScene::cuda_device() const { return parts_->physics.cuda_device(); }
 void LiveScene::set_bridge(std::shared_ptr<PositionBridge> bridge) {
-  parts_->picture.set_bridge(bridge);
+  parts_->drawn.set_bridge(bridge);
   parts_->physics.set_bridge(std::move(bridge));
 }
 
@@ -233,7 +233,7 @@ std::vector<RankingRow> LiveScene::ranking() const { return parts_->physics.meas
 
 std::vector<ExplodedRobot> LiveScene::exploded() const {
   std::vector<ExplodedRobot> robots =
-      exploded_robots(*parts_->snapshot, parts_->picture.offsets(), parts_->picture.last_boxes());
+      exploded_robots(*parts_->snapshot, parts_->drawn.offsets(), parts_->drawn.last_boxes());
   std::erase_if(robots, [&](const ExplodedRobot& robot) { return parts_->hidden.contains(robot.robot); });
   return robots;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene of the interactive window: everything that the window does except windows and OpenGL.
 //
-//   SceneDocument (robots, parameters; edits, undo) --> PhysicsThread --> Snapshot --> LivePicture --> the window draws
+//   SceneDocument (robots, parameters; edits, undo) --> PhysicsThread --> Snapshot --> DrawnScene --> the window draws
 //
 // An edit changes the document on the window's thread and sends it to the physics thread; frame() fetches the newest
 // snapshot. Reading files and making robots are background tasks; their results enter the document in frame().
@@ -17,8 +17,8 @@
 
 #include "app/live/background.h"
 #include "app/live/command_text.h"
+#include "app/live/drawn_scene.h"
 #include "app/live/group_video.h"
-#include "app/live/live_picture.h"
 #include "app/live/physics.h"
 #include "app/live/picking.h"
 #include "app/live/robot_saving.h"
@@ -34,7 +34,7 @@ struct LiveSceneOptions {
   ViewSettings view;
 };
 
-// A perturbation by the mouse as the window draws it. Positions are those in the picture.
+// A perturbation by the mouse as the window draws it. Positions are those in the view.
 struct PerturbationDetails {
   RobotId robot = 0;
   std::uint16_t mass = 0;
@@ -89,14 +89,14 @@ class LiveScene {
   ~LiveScene();
 
   // Call it first in every frame: fetches the newest snapshot and the results of background tasks, and updates
-  // picture(). `aspect` is the picture's width divided by its height; the layout of the robots depends on it.
+  // drawn(). `aspect` is the view's width divided by its height; the layout of the robots depends on it.
   void frame(float aspect = 16.0f / 9);
   // What a grid faces from the next frame() on; before the first call, the camera of view() decides. From above, the
   // robots lie beside each other, as on the ground. `direction`: else the angles of the eye; absent = those of view().
   void face(bool from_above, const std::optional<render::Orbit>& direction = {});
   const Snapshot& snapshot() const;  // of the last frame(); valid until the next one
   std::shared_ptr<const Snapshot> hold_snapshot() const;
-  LivePicture& picture();
+  DrawnScene& drawn();
   std::vector<Message> take_messages();
   std::string device_name() const;
   int cuda_device() const;  // of all robots; -1 = none, or several
@@ -198,11 +198,11 @@ class LiveScene {
   const ViewSettings& view() const;
   void set_view(const ViewSettings& settings);  // details that the environment lacks are ignored
 
-  // Mouse. Rays and positions are those in the picture, or in that of the second side.
+  // Mouse. Rays and positions are those in the view, or in that of the second side.
   void point_at_second(bool second);
   bool points_at_second() const;
   const Snapshot& pointed_snapshot() const;
-  const LivePicture& pointed_picture() const;
+  const DrawnScene& pointed_drawn() const;
   std::optional<Hit> pick(const render::Ray& ray) const;
   HitDetails describe(const Hit& hit) const;
   void begin_perturbation(const Hit& hit, float stiffness = 0);  // [N/m]; 0 = suits the robot
@@ -224,8 +224,8 @@ class LiveScene {
   // all that changes robots or time acts on both. nullopt ends it.
   void set_second(const std::optional<SideDifference>& difference);
   const std::optional<SideDifference>& second() const;
-  // The second side's picture; null if there is none, as while a recording is played.
-  LivePicture* second_picture();
+  // The second side's view; null if there is none, as while a recording is played.
+  DrawnScene* second_drawn();
   // Ghosts of these robots, from the moment shown on, in the place of those there were. Returns how many there are:
   // robots without a parent have no ghost of it.
   std::size_t show_ghosts(const std::vector<RobotId>& robots, GhostOf of = GhostOf::automatic);

@@ -65,7 +65,7 @@ std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
   const auto hidden = std::make_unique<bool[]>(snapshot.robots->size());
   for (std::size_t i = 0; i < snapshot.robots->size(); ++i)
     hidden[i] = parts_->hidden.contains(snapshot.robots->robots[i].id);
-  return mercury::pick(snapshot, parts_->pointed_picture().offsets(), ray,
+  return mercury::pick(snapshot, parts_->pointed_drawn().offsets(), ray,
                        {.skin = shown.skin,
                         .springs = shown.springs,
                         .masses = shown.masses,
@@ -96,8 +96,8 @@ void LiveScene::move_perturbation(const render::Vector3& target) {
   std::optional<LivePerturbation> pull = parts_->pulls.by_mouse();
   if (!pull || !target.is_finite()) return;
   const auto index = parts_->pointed_snapshot().robots->index_of(pull->robot);
-  if (!index || *index >= parts_->pointed_picture().offsets().size()) return;
-  const render::Vector3 own = target - parts_->pointed_picture().offsets()[*index];
+  if (!index || *index >= parts_->pointed_drawn().offsets().size()) return;
+  const render::Vector3 own = target - parts_->pointed_drawn().offsets()[*index];
   pull->target = {own.x, own.y, own.z};
   parts_->pulls.set_by_mouse(pull);
 }
@@ -117,11 +117,10 @@ std::optional<PerturbationDetails> LiveScene::perturbation() const {
 
 std::optional<PerturbationDetails> LiveScene::Parts::details_of(const LivePerturbation& pull) {
   const auto index = pointed_snapshot().robots->index_of(pull.robot);
-  if (!index || *index >= pointed_picture().offsets().size() ||
-      pull.mass >= pointed_picture().positions_of(*index).size())
+  if (!index || *index >= pointed_drawn().offsets().size() || pull.mass >= pointed_drawn().positions_of(*index).size())
     return std::nullopt;
-  const render::Vector3 offset = pointed_picture().offsets()[*index];
-  const Vec3 mass = pointed_picture().positions_of(*index)[pull.mass];
+  const render::Vector3 offset = pointed_drawn().offsets()[*index];
+  const Vec3 mass = pointed_drawn().positions_of(*index)[pull.mass];
   return PerturbationDetails{.robot = pull.robot,
                              .mass = pull.mass,
                              .at = render::Vector3(mass) + offset,

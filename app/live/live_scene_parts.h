@@ -128,10 +128,10 @@ struct LiveScene::Parts {
   RobotId last_id = 0;
 
   std::shared_ptr<const Snapshot> snapshot;
-  LivePicture picture;
-  std::unique_ptr<LivePicture> second_picture;  // while there is a second side
-  bool pointed_second = false;                  // the mouse is on the second side
-  std::vector<LiveGhost> ghosts;                // that are wanted
+  DrawnScene drawn;
+  std::unique_ptr<DrawnScene> second_drawn;  // while there is a second side
+  bool pointed_second = false;               // the mouse is on the second side
+  std::vector<LiveGhost> ghosts;             // that are wanted
   float aspect = 16.0f / 9;
   std::optional<bool> from_above;  // see LiveScene::face
   std::optional<render::Orbit> facing;
@@ -169,10 +169,10 @@ struct LiveScene::Parts {
   }
   void adopt_moment();
   void forget_later_bookmarks();
-  bool points_at_second() const { return pointed_second && second_picture && snapshot->second; }
+  bool points_at_second() const { return pointed_second && second_drawn && snapshot->second; }
   const Snapshot& pointed_snapshot() const { return points_at_second() ? *snapshot->second : *snapshot; }
-  const LivePicture& pointed_picture() const { return points_at_second() ? *second_picture : picture; }
-  void update_second_picture(ViewSettings shown, const std::optional<RobotId>& held);
+  const DrawnScene& pointed_drawn() const { return points_at_second() ? *second_drawn : drawn; }
+  void update_second_drawn(ViewSettings shown, const std::optional<RobotId>& held);
   // Forgets ghosts of robots that are gone.
   void update_ghosts();
   void play_recording(const std::shared_ptr<TrajectoryReader>& recording, const std::filesystem::path& file);

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double frame_rate = 30;  // of motions, per second of simulated time
 
-// As pictures show it: with its colors, its name and its materials as they are in the window.
+// As frames show it: with its colors, its name and its materials as they are in the window.
 struct Exported {
   Robot robot;
   std::vector<Material> materials;

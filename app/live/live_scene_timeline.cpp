@@ -51,7 +51,7 @@ std::optional<std::pair<double, double>> TimelineMarks::loop_between(double a, d
 }
 
 // The document takes the robots and parameters of the moment that is shown, as an edit if they differ. Call it before
-// an edit: what the user changes then is what the picture shows.
+// an edit: what the user changes then is what the view shows.
 void LiveScene::Parts::adopt_moment() {
   if (!snapshot || !snapshot->timeline.viewing || goes_on) return;
   SceneDocument then{
@@ -172,26 +172,26 @@ void LiveScene::set_second(const std::optional<SideDifference>& difference) {
   set_view(settings);
 }
 const std::optional<SideDifference>& LiveScene::second() const { return parts_->view.compare; }
-LivePicture* LiveScene::second_picture() { return parts_->second_picture.get(); }
+DrawnScene* LiveScene::second_drawn() { return parts_->second_drawn.get(); }
 
 void LiveScene::point_at_second(bool second) { parts_->pointed_second = second; }
 bool LiveScene::points_at_second() const { return parts_->points_at_second(); }
 const Snapshot& LiveScene::pointed_snapshot() const { return parts_->pointed_snapshot(); }
-const LivePicture& LiveScene::pointed_picture() const { return parts_->pointed_picture(); }
+const DrawnScene& LiveScene::pointed_drawn() const { return parts_->pointed_drawn(); }
 
 // Both sides have the same layout, colors and scale, so that what differs is the robots.
-void LiveScene::Parts::update_second_picture(ViewSettings shown, const std::optional<RobotId>& held) {
+void LiveScene::Parts::update_second_drawn(ViewSettings shown, const std::optional<RobotId>& held) {
   const auto on_land = [](const Snapshot& one) { return has_ground(one.configuration.environment); };
   if (!snapshot->second) {
-    second_picture.reset();
+    second_drawn.reset();
     return;
   }
-  if (!second_picture) second_picture = std::make_unique<LivePicture>();
-  const render::Scene& first = picture.scene();
+  if (!second_drawn) second_drawn = std::make_unique<DrawnScene>();
+  const render::Scene& first = drawn.scene();
   if (shown.color->has_values() && first.scale.low < first.scale.high)
     shown.scale = std::pair(first.scale.low, first.scale.high);
   if (on_land(*snapshot) && !on_land(*snapshot->second)) shown.camera.mode = CameraMode::top;  // side by side, as there
-  second_picture->update(snapshot->second, shown, aspect, selection.set(), hidden, held, wall_now());
+  second_drawn->update(snapshot->second, shown, aspect, selection.set(), hidden, held, wall_now());
 }
 
 std::size_t LiveScene::show_ghosts(const std::vector<RobotId>& robots, GhostOf of) {

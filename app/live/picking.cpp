@@ -177,7 +177,7 @@ class Target {
   }
 
   const Robot& robot_;
-  render::CutPlane cut_;  // in the picture's coordinates
+  render::CutPlane cut_;  // in the view's coordinates
   std::vector<Vector3> points_;
 };
 

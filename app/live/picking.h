@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds things in the picture: the nearest face, spring or mass that a ray meets, such as the mouse's, and the springs
+// Finds things in the view: the nearest face, spring or mass that a ray meets, such as the mouse's, and the springs
 // that made robots explode.
 #pragma once
 
@@ -22,7 +22,7 @@ struct Hit {
   std::uint16_t mass = 0;               // the mass of the face or spring that is nearest to `point`
   std::optional<std::uint32_t> face;    // index in Robot::faces, if the ray met the skin
   std::optional<std::uint32_t> spring;  // index in Robot::springs: the one met, or the nearest edge of the face
-  render::Vector3 point{0, 0, 0};       // in the picture [m]
+  render::Vector3 point{0, 0, 0};       // in the view [m]
   float distance = 0;                   // from the ray's origin [m]
 };
 
@@ -33,7 +33,7 @@ struct PickOptions {
   std::span<const bool> hidden;    // robots left out; empty = none
 };
 
-// Returns the nearest hit. `offsets`: per robot, added to its coordinates in the picture [m]. A robot without faces is
+// Returns the nearest hit. `offsets`: per robot, added to its coordinates in the view [m]. A robot without faces is
 // hit at its springs, a robot without springs at its masses.
 std::optional<Hit> pick(const Snapshot& snapshot, std::span<const render::Vector3> offsets, const render::Ray& ray,
                         const PickOptions& options = {});
@@ -67,9 +67,9 @@ HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t robot,
 struct CulpritSpring {
   std::uint32_t index = 0;       // in Robot::springs
   std::uint16_t a = 0, b = 0;    // its masses
-  render::Vector3 at_a, at_b;    // their positions in the picture; the robot is frozen there [m]
+  render::Vector3 at_a, at_b;    // their positions in the view; the robot is frozen there [m]
   HitDetails::OfSpring figures;  // at the explosion
-  render::Bounds surroundings;   // the part of the picture that shows the spring and enough of its robot
+  render::Bounds surroundings;   // the part of the view that shows the spring and enough of its robot
 };
 
 struct ExplodedRobot {
@@ -81,7 +81,7 @@ struct ExplodedRobot {
 };
 
 // The exploded robots of a snapshot in the order of their explosions. `offsets`: per robot, added to its coordinates in
-// the picture [m]. `boxes`: where each robot was last in the picture; empty = where it was at rest.
+// the view [m]. `boxes`: where each robot was last in the view; empty = where it was at rest.
 std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const render::Vector3> offsets,
                                            std::span<const render::Bounds> boxes = {});
 

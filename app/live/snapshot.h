@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state that a picture shows. The physics thread makes it; it never changes afterwards (physics.h, Threads).
+// The state that a view shows. The physics thread makes it; it never changes afterwards (physics.h, Threads).
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ struct LiveRobots {
   std::vector<std::size_t> mass_offsets;             // size + 1
   std::unordered_map<RobotId, std::size_t> indices;  // of all robots, or empty
   std::size_t springs = 0;                           // of all robots
-  // For pictures; made by the physics thread, constant while `revision` is.
+  // For frames; made by the physics thread, constant while `revision` is.
   std::vector<std::shared_ptr<const RobotShape>> shapes;
   std::shared_ptr<const render::BodyData> bodies;
 
@@ -91,7 +91,7 @@ class SnapshotPositions {
   mutable std::vector<Vec3> host_;
 };
 
-// What a picture says about the timeline of its robots (timeline.h). Times are simulated [s].
+// What a view says about the timeline of its robots (timeline.h). Times are simulated [s].
 struct TimelineState {
   double begin = 0, head = 0;  // the moments that can be shown
   bool viewing = false;        // shows an earlier moment, or a recording

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How many steps the physics thread makes, and when: keeps simulated time at a given speed relative to wall time, in
-// slices that leave time for commands and pictures.
+// slices that leave time for commands and frames.
 #pragma once
 
 #include <cstdint>
@@ -71,7 +71,7 @@ class Stepping {
   // Begins to count at the current moment: after a jump in time, or when speed or time step changed.
   void start();
   void follow_time_step();  // starts if that changed
-  // Wall time at which the next steps are due [s]. `watched`: the window waits for a picture.
+  // Wall time at which the next steps are due [s]. `watched`: the window waits for a view.
   double next_due(bool watched) const;
   bool interrupts_device() const { return cuda_device_ >= 0 && is_running() && !is_unlimited(); }
   // How many steps are due; 0 if it is too early.

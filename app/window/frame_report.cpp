@@ -17,13 +17,13 @@ constexpr double interval = 0.2;        // between frames that are written [s]
 constexpr std::size_t max_robots = 20;  // whose positions are written
 
 // The centers of the robots, in window coordinates.
-std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownPicture& picture) {
-  const ViewportArea& area = picture.area;
+std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownView& shown) {
+  const ViewportArea& area = shown.area;
   std::vector<std::array<float, 2>> places;
-  for (const render::Bounds& box : scene.picture().bounds()) {
+  for (const render::Bounds& box : scene.drawn().bounds()) {
     if (places.size() == max_robots) break;
     const render::Vector3 p =
-        picture.camera.project(box.center(), static_cast<int>(area.width()), static_cast<int>(area.height()));
+        shown.camera.project(box.center(), static_cast<int>(area.width()), static_cast<int>(area.height()));
     places.push_back({area.low.x + p.x, area.low.y + p.y});
   }
   return places;
@@ -39,7 +39,7 @@ nlohmann::json second_of(const Snapshot& snapshot) {
           {"environment", name_of(configuration.environment)}};
 }
 
-// GPU time of each part of a picture [ms].
+// GPU time of each part of a view [ms].
 nlohmann::json passes_of(const render::Renderer& renderer) {
   nlohmann::json passes = nlohmann::json::object();
   for (const render::PassTime& pass : renderer.times()) passes[pass.name] = pass.milliseconds;
@@ -63,7 +63,7 @@ void FrameReport::write_robots(PanelContext& context) {
   context.log.write("robots", {{"count", robots_}, {"names", names}});
 }
 
-void FrameReport::write(PanelContext& context, const ShownPicture& picture, const FrameTimes& cost, double dt) {
+void FrameReport::write(PanelContext& context, const ShownView& shown, const FrameTimes& cost, double dt) {
   EventLog& log = context.log;
   log.end_frame();
   write_gl_messages(context);
@@ -78,7 +78,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
   LiveScene& scene = context.scene;
   const TimelineState& timeline = scene.snapshot().timeline;
   log.write("frame", {{"number", frames_},
-                      {"where", places(scene, picture)},
+                      {"where", places(scene, shown)},
                       {"distance", context.camera.orbit().distance},
                       {"azimuth", context.camera.orbit().azimuth},
                       {"elevation", context.camera.orbit().elevation},
@@ -86,7 +86,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                       {"input", input_},
                       {"steps", scene.snapshot().steps},
                       {"time", scene.snapshot().time},
-                      {"shown", picture.time},
+                      {"shown", shown.time},
                       {"playing", scene.playing() || scene.snapshot().playing},  // until the last step is shown
                       {"timeline",
                        {{"begin", timeline.begin},
@@ -98,20 +98,20 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                         {"bookmarks", scene.bookmarks()},
                         {"budget", timeline.budget}}},
                       {"second", second_of(scene.snapshot())},
-                      {"ghosts", scene.picture().scene().ghosts.size()},
+                      {"ghosts", scene.drawn().scene().ghosts.size()},
                       {"cursor", context.cursor.time ? nlohmann::json(*context.cursor.time) : nlohmann::json()},
                       {"selected", scene.selection().size()},
                       {"attached", scene.attachments().size()},
                       {"panels", context.preferences.panels},
                       {"text", context.preferences.text_scale},
                       {"color", scene.view().color->key},
-                      {"scale", {scene.picture().scene().scale.low, scene.picture().scene().scale.high}},
+                      {"scale", {scene.drawn().scene().scale.low, scene.drawn().scene().scale.high}},
                       {"cut", scene.view().cut ? scene.view().cut->percent : -1},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
-                      {"on_device", scene.picture().positions_on_device()},
+                      {"on_device", scene.drawn().positions_on_device()},
                       {"speed", scene.snapshot().achieved_speed},
-                      {"drawn", picture.drawn},
+                      {"drawn", shown.drawn},
                       {"clock", seconds()},
                       {"seconds", dt},
                       {"cost",
@@ -119,7 +119,7 @@ void FrameReport::write(PanelContext& context, const ShownPicture& picture, cons
                         {"thumbnails", cost.thumbnails},
                         {"panels", cost.panels},
                         {"positions", cost.positions},
-                        {"picture", cost.picture},
+                        {"view", cost.drawn},
                         {"present", cost.present}}},
                       {"passes", passes_of(context.viewport.renderer())}});
 }

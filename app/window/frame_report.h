@@ -11,17 +11,17 @@
 
 namespace mercury::window {
 
-struct ShownPicture {
+struct ShownView {
   ViewportArea area;
   render::Camera camera;
   double time;         // simulated [s]
-  std::int64_t drawn;  // number of pictures of the robots so far
+  std::int64_t drawn;  // number of frames of the robots so far
 };
 
 class FrameReport {
  public:
   // Call once at the end of each frame. `dt`: time since the last frame [s].
-  void write(PanelContext& context, const ShownPicture& picture, const FrameTimes& cost, double dt);
+  void write(PanelContext& context, const ShownView& shown, const FrameTimes& cost, double dt);
 
  private:
   void write_gl_messages(PanelContext& context);

@@ -103,13 +103,13 @@ class Viewer {
   std::uint64_t bodies_revision_ = 0;         // of the bodies that the renderer has
   bool camera_moved_ = false;                 // between the last two frames
   bool camera_placed_ = false;                // the camera has been placed before the first robots
-  int redraws_ = 3;                           // pictures to draw even if nothing changes
+  int redraws_ = 3;                           // frames to draw even if nothing changes
 
-  // The last picture.
+  // The last view.
   std::int64_t shown_steps_ = -1;
   double shown_time_ = -1;  // simulated time [s]
   render::Camera shown_camera_;
-  std::int64_t pictures_ = 0;  // of the robots, drawn so far
+  std::int64_t drawn_ = 0;  // of the robots, drawn so far
 
   Pacing pacing_;
   FrameTimes times_;  // of this frame
@@ -213,7 +213,7 @@ void Viewer::frame(double dt) {
   draw_frame(events, dt);
   times_.whole = dt;
   frame_history_.add(times_);
-  report_.write(context_, {area_, shown_camera_, shown_time_, pictures_}, times_, dt);
+  report_.write(context_, {area_, shown_camera_, shown_time_, drawn_}, times_, dt);
 }
 
 void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
@@ -241,15 +241,15 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   pacing_.showed_frame(since(drawing));
 }
 
-// Two sides have a half each, and pictures of the same size.
+// Two sides have a half each, and frames of the same size.
 void Viewer::split_area(const ViewportArea& whole) {
   whole_area_ = whole;
   area_ = second_.split(scene_, whole);
   context_.aspect = area_.aspect();
   if (second_.changed()) {
     redraws_ = 3;
-    scene_.picture().lay_out(area_.aspect());
-    if (LivePicture* second = scene_.second_picture()) second->lay_out(area_.aspect());
+    scene_.drawn().lay_out(area_.aspect());
+    if (DrawnScene* second = scene_.second_drawn()) second->lay_out(area_.aspect());
   }
   if (second_.area()) log_.item("second", second_.area()->low, second_.area()->high);
 }
@@ -270,21 +270,21 @@ void Viewer::draw_text() {
   titles_ = second_.area() ? draw_side_titles(scene_, halves_of(whole_area_), log_) : 0;
   options.top = titles_;
   context_.caption =
-      draw_viewport_text(scene_.picture().scene(), scene_.picture().bounds(), area_, shown_camera_, options, log_);
+      draw_viewport_text(scene_.drawn().scene(), scene_.drawn().bounds(), area_, shown_camera_, options, log_);
   draw_ghost_figures(scene_, area_, shown_camera_, log_);
-  LivePicture* const second = scene_.second_picture();
+  DrawnScene* const second = scene_.second_drawn();
   if (!second || !second_.area()) return;
-  options.caption = second->scene().caption != scene_.picture().scene().caption;
+  options.caption = second->scene().caption != scene_.drawn().scene().caption;
   draw_viewport_text(second->scene(), second->bounds(), *second_.area(), shown_camera_, options, no_log_);
 }
 
-// What the mouse moves in the picture besides robots and camera.
+// What the mouse moves in the view besides robots and camera.
 void Viewer::draw_handles() {
   ViewSettings view = scene_.view();
   ViewportArea place = second_.area().value_or(area_);
   // Where a side is too narrow for title and legend beside each other, the legend is below.
   if (place.width() < 30 * ImGui::GetFontSize()) place.low.y += titles_;
-  bool changed = legend_.draw(scene_.picture().scene().legend, place, view, log_);
+  bool changed = legend_.draw(scene_.drawn().scene().legend, place, view, log_);
   context_.legend = legend_.box();
   changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
   if (changed) scene_.set_view(view);
@@ -303,7 +303,7 @@ void Viewer::update_renderer() {
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
   viewport_.place(static_cast<int>(area_.low.x * scale.x), static_cast<int>(area_.low.y * scale.y),
                   static_cast<int>(area_.width() * scale.x), static_cast<int>(area_.height() * scale.y));
-  LivePicture& live = scene_.picture();
+  DrawnScene& live = scene_.drawn();
   if (preferences_.quality != render::Quality::automatic && preferences_.quality != viewport_.renderer().quality()) {
     viewport_.renderer().set_quality(preferences_.quality);
     redraws_ = 3;
@@ -333,9 +333,9 @@ bool Viewer::leaves_gpu_to_steps() const {
 
 void Viewer::draw_picture(double dt) {
   update_renderer();
-  LivePicture& live = scene_.picture();
+  DrawnScene& live = scene_.drawn();
   const render::Camera camera = camera_.at(live.camera_boxes(), area_.aspect(), dt);
-  // A glide ends with moves too small to see, which must not keep the picture coarse.
+  // A glide ends with moves too small to see, which must not keep the view coarse.
   const float least = 2e-4f * (camera.eye - camera.target).norm();
   camera_moved_ = (camera.eye - shown_camera_.eye).norm() > least ||
                   (camera.target - shown_camera_.target).norm() > least ||
@@ -350,8 +350,8 @@ void Viewer::draw_picture(double dt) {
   viewport_.draw(without_text(live.scene()), camera, moving);
   second_.draw(scene_, camera, moving);
   pacing_.drew_robots();
-  ++pictures_;
-  times_.picture = since(begin);
+  ++drawn_;
+  times_.drawn = since(begin);
   shown_camera_ = camera;
   shown_steps_ = scene_.snapshot().steps;
   shown_time_ = live.scene().time;

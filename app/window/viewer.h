@@ -29,7 +29,7 @@ struct ViewerOptions {
   bool playing = true;             // start playing
   double speed = 1;                // simulated seconds per second; infinity = as fast as possible
   bool interop = true;             // positions stay on the GPU that simulates and draws
-  bool paced = true;               // draw as often as the display shows pictures; otherwise as often as possible
+  bool paced = true;               // draw as often as the display shows frames; otherwise as often as possible
   bool remember = true;            // load the saved settings, and save them at the end
   std::vector<std::string> notes;  // messages to show first
 };

@@ -62,7 +62,7 @@ void draw_body_editor(PanelContext& context, const ViewportArea& area) {
     return;
   }
   const float text = ImGui::GetFontSize();
-  const float caption = context.scene.picture().scene().caption.empty() ? 0 : 2 * text;
+  const float caption = context.scene.drawn().scene().caption.empty() ? 0 : 2 * text;
   ImGui::SetNextWindowPos({(area.low.x + area.high.x) / 2, area.low.y + 0.6f * text + caption}, ImGuiCond_Always,
                           {0.5f, 0});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {std::max(10 * text, area.width() - text), 20 * text});

@@ -46,7 +46,7 @@ void show_details(const RobotFolderEntry& entry) {
   ImGui::EndTooltip();
 }
 
-// A picture, and the name and two lines of figures below it.
+// A view, and the name and two lines of figures below it.
 float card_height(float width) {
   return width * Thumbnails::height / Thumbnails::width + 3.5f * ImGui::GetTextLineHeight();
 }
@@ -199,7 +199,7 @@ void BrowserPanel::draw(PanelContext& context) {
 
 void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float width) {
   const RobotFolderEntry& entry = entries_[index];
-  const float line = ImGui::GetTextLineHeight(), picture = width * Thumbnails::height / Thumbnails::width;
+  const float line = ImGui::GetTextLineHeight(), image = width * Thumbnails::height / Thumbnails::width;
   const ImVec2 corner = ImGui::GetCursorScreenPos(), size{width, card_height(width)};
   ImGui::PushID(static_cast<int>(index));
   const bool clicked = ImGui::InvisibleButton("card", size);
@@ -210,7 +210,7 @@ void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float wid
   const float rounding = ImGui::GetStyle().ChildRounding;
   const ImVec2 end{corner.x + size.x, corner.y + size.y};
   list.AddRectFilled(corner, end, ImGui::GetColorU32(hovered ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
-  const ImVec2 below{corner.x + width, corner.y + picture};
+  const ImVec2 below{corner.x + width, corner.y + image};
   // OpenGL textures start with the lowest row.
   if (const ImTextureID texture = thumbnails_.find(entry.path.string()))
     list.AddImageRounded(texture, corner, below, {0, 1}, {1, 0}, IM_COL32_WHITE, rounding, ImDrawFlags_RoundCornersTop);

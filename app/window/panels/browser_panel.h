@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The robots of a folder, each with a picture and its size.
+// The robots of a folder, each with a view and its size.
 #pragma once
 
 #include <filesystem>
@@ -69,7 +69,7 @@ class BrowserPanel : public Panel {
   Thumbnails thumbnails_;
   std::unique_ptr<RobotFolderReader> reader_;
   std::vector<RobotFolderEntry> entries_;
-  std::vector<std::size_t> wanted_;  // entries on the screen that lack a picture, the next one last
+  std::vector<std::size_t> wanted_;  // entries on the screen that lack a view, the next one last
   std::string folder_text_;
 };
 

@@ -17,7 +17,7 @@ void go_to_bookmark(PanelContext& context, std::size_t place);
 // Looks along an axis, 0 to 2, from its positive side, or from its negative one.
 void look_along(PanelContext& context, int axis, bool from_negative = false);
 
-// The axes in a corner of the picture, at its lower right; a click on an end looks from there. `above`: free room below
+// The axes in a corner of the view, at its lower right; a click on an end looks from there. `above`: free room below
 // it [pixels].
 Box draw_axes(PanelContext& context, const ViewportArea& area, const render::Camera& camera, float above);
 

@@ -22,7 +22,7 @@
 namespace mercury::window {
 namespace {
 
-// A switch of the picture.
+// A switch of the view.
 struct Switch {
   const char* name;
   bool& (*of)(ViewSettings& view);

@@ -40,7 +40,7 @@ class CommandPalette {
   int mark_ = 0, moved_ = 0;        // in found_; keys since the last frame
 };
 
-// What can be set by a number or a choice: parameters of solver, environment and camera, switches of the picture,
+// What can be set by a number or a choice: parameters of solver, environment and camera, switches of the view,
 // colors, the robots of the scene, panels.
 std::vector<PaletteEntry> settings_for_palette(PanelContext& context, const std::function<void(const char*)>& show);
 

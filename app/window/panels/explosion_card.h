@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A card over the picture for robots that exploded: which robot and when, its culprit spring, and what to do about it.
+// A card over the view for robots that exploded: which robot and when, its culprit spring, and what to do about it.
 #pragma once
 
 #include <optional>
@@ -14,10 +14,10 @@ namespace mercury::window {
 
 class ExplosionCard {
  public:
-  // Takes over new explosions and marks the culprit springs in the picture. `camera` is the one the picture was drawn
+  // Takes over new explosions and marks the culprit springs in the view. `camera` is the one the view was drawn
   // with. Call once per frame, before draw().
   void update(PanelContext& context, const ViewportArea& area, const render::Camera& camera);
-  // Draws the card at the lower left of the picture, if there is an explosion that was not dismissed.
+  // Draws the card at the lower left of the view, if there is an explosion that was not dismissed.
   void draw(PanelContext& context, const ViewportArea& area);
   Box box() const { return {low_, high_}; }  // of the card; empty = not shown
 

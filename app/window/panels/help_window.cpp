@@ -67,7 +67,7 @@ float width_of(const Gesture& gesture) {
 void draw_chip(const Gesture& gesture, ImVec2 at, float opacity) {
   const float text = ImGui::GetFontSize(), margin = 0.5f * text;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.AddRectFilled(at, {at.x + width_of(gesture), at.y + 1.7f * text}, faded(palette().on_picture, 0.85f * opacity),
+  list.AddRectFilled(at, {at.x + width_of(gesture), at.y + 1.7f * text}, faded(palette().on_view, 0.85f * opacity),
                      0.4f * text);
   list.AddText({at.x + margin, at.y + 0.35f * text}, faded(palette().accent, opacity), gesture.hand);
   list.AddText({at.x + margin + ImGui::CalcTextSize(gesture.hand).x + 0.6f * text, at.y + 0.35f * text},
@@ -107,7 +107,7 @@ void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
       ImGui::TableNextColumn();
       mouse();
       group("Time", keys);
-      group("Picture", keys);
+      group("View", keys);
       group("Colors", keys);
       ImGui::TableNextColumn();
       group("Robots", keys);
@@ -119,7 +119,7 @@ void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
   ImGui::End();
 }
 
-void FirstSteps::draw(PanelContext& context, const ViewportArea& picture, std::initializer_list<Box> taken, double dt) {
+void FirstSteps::draw(PanelContext& context, const ViewportArea& view, std::initializer_list<Box> taken, double dt) {
   Preferences& preferences = context.preferences;
   const UsedGestures& used = context.gestures;
   const std::array now{used.turned, used.moved, used.zoomed, used.pulled};
@@ -134,8 +134,8 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& picture, std::i
     if (opacity_[i] > 0) shown.push_back(i);
   }
   if (!context.preferences.panels) return;
-  const ViewportArea area = free_part(picture, taken);
-  // As many rows as the width of the picture needs.
+  const ViewportArea area = free_part(view, taken);
+  // As many rows as the width of the view needs.
   const float text = ImGui::GetFontSize(), spacing = 0.5f * text, room = area.width() - 2 * text;
   std::vector<std::vector<std::size_t>> rows;
   float filled = room;
@@ -148,7 +148,7 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& picture, std::i
     rows.back().push_back(i);
     filled += spacing + width;
   }
-  if (area.height() < 0.5f * picture.height()) return;
+  if (area.height() < 0.5f * view.height()) return;
   // A narrow side has other texts there.
   if (rows.size() > 1 && (context.scene.second() || !context.scene.ghosts().empty())) return;
   float y = area.high.y - (2.1f * static_cast<float>(rows.size()) + 0.5f) * text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Help: a window that lists all keys and mouse gestures, and the first gestures over the picture.
+// Help: a window that lists all keys and mouse gestures, and the first gestures over the view.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ namespace mercury::window {
 // The user may close it, which sets `open` to false.
 void draw_help(bool& open, const KeyMap& keys, EventLog& log);
 
-// The four gestures of the mouse, shown quietly over the picture until each has been used once.
+// The four gestures of the mouse, shown quietly over the view until each has been used once.
 class FirstSteps {
  public:
-  // Draws the gestures that are new to the user at the bottom of the picture, between what is `taken`, as far as there
+  // Draws the gestures that are new to the user at the bottom of the view, between what is `taken`, as far as there
   // is room. Never takes the mouse. `dt`: time since the last frame [s].
   void draw(PanelContext& context, const ViewportArea& area, std::initializer_list<Box> taken, double dt);
   bool fading() const { return fading_; }

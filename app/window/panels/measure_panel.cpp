@@ -67,7 +67,7 @@ void MeasurePanel::draw(PanelContext& context) {
   view_.cursor = context.cursor.time;
   view_.next_cursor.reset();
   view_.went_to.reset();
-  view_.mark = context.scene.picture().scene().time;
+  view_.mark = context.scene.drawn().scene().time;
   if (!large_) draw_plots(context, 9 * ImGui::GetFontSize());
   draw_buttons(context);
   if (large_) draw_window(context);
@@ -76,7 +76,7 @@ void MeasurePanel::draw(PanelContext& context) {
   log_view(context);
 }
 
-// Plots with all the room that the picture has.
+// Plots with all the room that the view has.
 void MeasurePanel::draw_window(PanelContext& context) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize();

@@ -59,7 +59,7 @@ struct BodyEdit {
 struct RobotMenu {
   bool requested = false;  // it opens in the next frame
   RobotId robot = 0;
-  std::optional<Hit> hit;  // in the picture
+  std::optional<Hit> hit;  // in the view
 };
 
 // What a panel may read and change. The viewer owns all of it and passes it to each panel in each frame.

@@ -17,7 +17,7 @@
 namespace mercury::window {
 namespace {
 
-// The upper edge of messages, which are in the middle of the picture.
+// The upper edge of messages, which are in the middle of the view.
 float below_caption(const Box& caption, const ViewportArea& area) {
   const float text = ImGui::GetFontSize(), middle = (area.low.x + area.high.x) / 2;
   const float half = std::min(area.width() / 2, 19 * text);
@@ -143,7 +143,7 @@ bool PanelColumn::draw_handle(EventLog& log, float middle, float size, bool open
   log.item(right_ ? "handle.right" : "handle.left");
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(low, high, hovered ? palette().accent : palette().on_picture, 0.35f * text,
+  list.AddRectFilled(low, high, hovered ? palette().accent : palette().on_view, 0.35f * text,
                      right_ ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersRight);
   const float x = (low.x + high.x) / 2, y = (low.y + high.y) / 2, side = 0.22f * text,
               tip = right_ == open ? side : -side;
@@ -166,11 +166,11 @@ ViewportArea Panels::draw_frame() {
     draw_play_bar(context_, {0, area.high.y}, screen);
   }
   context_.aspect = area.aspect();
-  context_.log.item("picture", area.low, area.high);
+  context_.log.item("view", area.low, area.high);
   return area;
 }
 
-// Whether the window has no room for two columns and a picture.
+// Whether the window has no room for two columns and a view.
 bool Panels::is_narrow() const {
   constexpr float least = 1000;  // pixels of a screen of normal resolution
   return ImGui::GetIO().DisplaySize.x < least * context_.window.content_scale();

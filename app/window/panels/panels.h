@@ -65,9 +65,9 @@ class Panels {
   explicit Panels(PanelContext& context)
       : context_(context), left_(Side::left, context), right_(Side::right, context) {}
 
-  // Draws menu, columns and play bar; returns the area that is left for the picture.
+  // Draws menu, columns and play bar; returns the area that is left for the view.
   ViewportArea draw_frame();
-  // Draws what lies over the picture: explosions, help, messages.
+  // Draws what lies over the view: explosions, help, messages.
   void draw_over(const ViewportArea& area, const render::Camera& camera, double dt);
   // Draws the open dialog. Call it after everything else that draws windows or tooltips.
   void draw_dialogs();

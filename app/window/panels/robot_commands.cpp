@@ -13,9 +13,9 @@
 namespace mercury::window {
 namespace {
 
-// The bounding boxes of these robots in the picture. Robots that are hidden have none.
+// The bounding boxes of these robots in the view. Robots that are hidden have none.
 std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId>& robots) {
-  const std::span<const render::Bounds> bounds = scene.picture().bounds();
+  const std::span<const render::Bounds> bounds = scene.drawn().bounds();
   std::vector<render::Bounds> boxes;
   for (const RobotId robot : robots)
     if (const auto index = scene.snapshot().robots->index_of(robot);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of robots: search, sort, select, and the menu of a right click on a robot, in a list or in the picture.
+// The list of robots: search, sort, select, and the menu of a right click on a robot, in a list or in the view.
 #pragma once
 
 #include <functional>
@@ -45,7 +45,7 @@ class RobotList {
 // several that are.
 void robot_menu_of_row(PanelContext& context, RobotId robot);
 
-// Opens the menu for what was right-clicked in the picture.
+// Opens the menu for what was right-clicked in the view.
 void open_robot_menu(PanelContext& context, const Hit& hit);
 // Draws the menu that is open. `execute` carries out a command.
 void draw_robot_menu(PanelContext& context, const std::function<void(Action)>& execute);

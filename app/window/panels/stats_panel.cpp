@@ -50,11 +50,11 @@ void draw_frame_times(PanelContext& context) {
   if (!begin_figures("frame")) return;
   figure("frames", fmt::format("{:.0f}/s", mean.whole > 0 ? 1 / mean.whole : 0), "mean of the last 240 frames");
   figure("scene", milliseconds(mean.scene), "taking over the newest state from the physics");
-  figure("picture", milliseconds(mean.picture), "drawing the robots, including the wait for the GPU");
+  figure("view", milliseconds(mean.drawn), "drawing the robots, including the wait for the GPU");
   figure("panels", milliseconds(mean.panels), "drawing the panels");
   figure("thumbnails", milliseconds(mean.thumbnails), "of the browser");
-  figure("display", milliseconds(mean.present), "bringing picture and panels to the display");
-  figure("picture size",
+  figure("display", milliseconds(mean.present), "bringing view and panels to the display");
+  figure("view size",
          fmt::format("{} x {} ({:.0f} %)", viewport.renderer().width(), viewport.renderer().height(),
                      100 * viewport.share()),
          "reduced during motion if drawing is slow");
@@ -66,12 +66,12 @@ void draw_frame_plot(const FrameHistory& history) {
   for (const FrameTimes& times : history.frames()) {
     number.push_back(static_cast<double>(number.size()) - static_cast<double>(history.frames().size()));
     whole.push_back(1000 * times.whole);
-    drawn.push_back(1000 * times.picture);
+    drawn.push_back(1000 * times.drawn);
   }
   const PlotLine lines[] = {{"frame", render::category_color(0), number, whole},
-                            {"picture", render::category_color(1), number, drawn}};
+                            {"view", render::category_color(1), number, drawn}};
   plot("costs",
-       {.title = "frame and picture",
+       {.title = "frame and view",
         .unit = "ms",
         .x_title = "frame, 0 = now",
         .x_unit = "",
@@ -87,7 +87,7 @@ void StatsPanel::draw(PanelContext& context) {
   draw_frame_times(context);
   draw_frame_plot(context.frame_history);
   const auto& passes = context.viewport.renderer().times();
-  if (!passes.empty() && ImGui::CollapsingHeader("Parts of the picture") && begin_figures("passes")) {
+  if (!passes.empty() && ImGui::CollapsingHeader("Parts of the view") && begin_figures("passes")) {
     for (const render::PassTime& pass : passes)
       figure(std::string(pass.name).c_str(), fmt::format("{:.2f} ms", pass.milliseconds), nullptr);
     ImGui::EndTable();

@@ -160,7 +160,7 @@ void draw_recording_sign(ImDrawList& list, PanelContext& context, const Viewport
   const ImVec2 low{area.low.x + 1.2f * text, area.low.y + 0.8f * text};
   const ImVec2 high{low.x + 1.9f * text + ImGui::CalcTextSize(time.c_str()).x, low.y + 1.5f * text};
   const float middle = (low.y + high.y) / 2;
-  list.AddRectFilled(low, high, palette().on_picture, 0.4f * text);
+  list.AddRectFilled(low, high, palette().on_view, 0.4f * text);
   list.AddCircleFilled({low.x + 0.8f * text, middle}, 0.4f * text, IM_COL32(235, 40, 40, 255));
   list.AddText(ImGui::GetFont(), text, {low.x + 1.5f * text, middle - 0.5f * text}, ImGui::GetColorU32(ImGuiCol_Text),
                time.c_str());

@@ -32,7 +32,7 @@ class VideoRecorder {
 
   // Starts or ends a recording of the window.
   void toggle(PanelContext& context);
-  // Call once per frame, before the buffers are swapped: passes the window's picture to the recording. A recording ends
+  // Call once per frame, before the buffers are swapped: passes the window's view to the recording. A recording ends
   // when the window is resized, since a video has one size.
   void capture_frame(PanelContext& context, WindowSize pixels);
   const ScreenRecording* recording() const { return screen_.get(); }  // null = the window is not recorded
@@ -59,7 +59,7 @@ class VideoRecorder {
 // The folder for videos and screenshots: the last one saved to, or the working directory.
 std::filesystem::path picture_folder(const PanelContext& context);
 
-// Draws a red dot and the time of the recording in the upper left corner of the picture.
+// Draws a red dot and the time of the recording in the upper left corner of the view.
 void draw_recording_sign(ImDrawList& list, PanelContext& context, const ViewportArea& area);
 
 class VideoPanel : public Panel {

@@ -104,7 +104,7 @@ bool draw_cut_section(ViewSettings& view, EventLog& log) {
     changed = true;
   }
   log.item("cut");
-  tooltip("each robot across its own middle; drag the handle in the picture to move the planes");
+  tooltip("each robot across its own middle; drag the handle in the view to move the planes");
   if (!view.cut) return changed;
   changed |= combo("across", "the axis perpendicular to the plane, of each robot as it was at rest", view.cut->axis,
                    {"x", "y", "z"});
@@ -191,14 +191,14 @@ bool draw_appearance_section(PanelContext& context, ViewSettings& view, TextSize
   Preferences& preferences = context.preferences;
   bool changed = draw_layout(view, static_cast<int>(context.scene.entries().size()), log);
   int theme = view.theme == render::Theme::dark ? 0 : 1;
-  if (combo("theme", with_keys(context.keys, "of the picture and the panels", Action::theme).c_str(), theme,
+  if (combo("theme", with_keys(context.keys, "of the view and the panels", Action::theme).c_str(), theme,
             {"dark", "light"})) {
     view.theme = theme == 0 ? render::Theme::dark : render::Theme::light;
     changed = true;
   }
   log.item("theme");
   int quality = static_cast<int>(preferences.quality);
-  if (combo("quality", "of the picture; higher is slower", quality, {"automatic", "low", "medium", "high"}))
+  if (combo("quality", "of the frames; higher is slower", quality, {"automatic", "low", "medium", "high"}))
     preferences.quality = static_cast<render::Quality>(quality);
   log.item("quality");
   text_size.draw(context);
@@ -266,7 +266,7 @@ void TextSizeRow::draw_pinned(PanelContext& context) {
 void ViewPanel::draw(PanelContext& context) {
   ViewSettings view = context.scene.view();
   const Environment& environment = context.scene.configuration().environment;
-  const auto& scale = context.scene.picture().scene().scale;
+  const auto& scale = context.scene.drawn().scene().scale;
   bool changed = draw_color_section(view, {scale.low, scale.high}, environment, context.keys, context.log);
   changed |= draw_show_section(view, context.keys, context.log);
   changed |= draw_arrow_section(view, environment, context.keys, context.log);

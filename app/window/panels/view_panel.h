@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the picture shows and how: colors, arrows, camera, appearance.
+// What the view shows and how: colors, arrows, camera, appearance.
 #pragma once
 
 #include <optional>

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
 constexpr double rare_frame_time = 1.0 / 20;  // while the GPU is left to the steps [s]
-constexpr double picture_share = 0.05;        // of the GPU's time, then
+constexpr double frame_share = 0.05;          // of the GPU's time, then
 // While input is waiting, frames are left out for this multiple of the time that the last one took.
 constexpr double backlog_factor = 4;
 
@@ -24,7 +24,7 @@ bool Pacing::leaves_out_frame(bool backlog) const {
 }
 
 bool Pacing::keeps_picture(bool gpu_for_steps, double draw_seconds) const {
-  return gpu_for_steps && since(drawn_at_) < (1 / picture_share - 1) * draw_seconds;
+  return gpu_for_steps && since(drawn_at_) < (1 / frame_share - 1) * draw_seconds;
 }
 
 void Pacing::showed_frame(double seconds) {
@@ -45,7 +45,7 @@ FrameTimes FrameHistory::mean() const {
     mean.whole += share * times.whole;
     mean.scene += share * times.scene;
     mean.positions += share * times.positions;
-    mean.picture += share * times.picture;
+    mean.drawn += share * times.drawn;
     mean.panels += share * times.panels;
     mean.thumbnails += share * times.thumbnails;
     mean.present += share * times.present;

@@ -10,15 +10,15 @@ namespace mercury::window {
 
 class Pacing {
  public:
-  // `paced`: at most as often as displays show pictures; otherwise as often as possible.
+  // `paced`: at most as often as displays show frames; otherwise as often as possible.
   explicit Pacing(bool paced) : paced_(paced) {}
 
   // How long the next frame may wait for events [s]. `spent`: since the last one began [s]. `gpu_for_steps`: the user
   // only watches robots that step as fast as a GPU can, and what drawing takes of its time is missing there.
   double wait(double spent, bool gpu_for_steps) const;
-  // If drawing is slow, input queues up. Handling it comes first; a picture now and then shows the progress.
+  // If drawing is slow, input queues up. Handling it comes first; a view now and then shows the progress.
   bool leaves_out_frame(bool backlog) const;
-  // Whether the robots of the last frame stay: then pictures get a small share of the GPU's time.
+  // Whether the robots of the last frame stay: then frames get a small share of the GPU's time.
   bool keeps_picture(bool gpu_for_steps, double draw_seconds) const;
 
   void drew_robots() { drawn_at_ = Clock::now(); }
@@ -37,11 +37,11 @@ class Pacing {
 struct FrameTimes {
   double whole = 0;      // from one frame to the next
   double scene = 0;      // taking over the newest state from the physics
-  double positions = 0;  // part of the picture: bringing positions to the renderer
-  double picture = 0;    // drawing the robots
+  double positions = 0;  // part of the view: bringing positions to the renderer
+  double drawn = 0;      // drawing the robots
   double panels = 0;     // drawing the panels
   double thumbnails = 0;
-  double present = 0;  // bringing picture and panels to the display
+  double present = 0;  // bringing view and panels to the display
 };
 
 class FrameHistory {

@@ -37,7 +37,7 @@ struct PlotView {
   std::optional<std::pair<double, double>> range;  // none = everything
   std::optional<double> cursor;                    // where the mouse was over one of the plots in the last frame
   std::optional<double> next_cursor;               // where it is in this one
-  std::optional<double> mark;                      // such as the time of the picture
+  std::optional<double> mark;                      // such as the time of the view
   bool goes = false;                               // a press with Ctrl is held: the mouse goes along x
   std::optional<double> went_to;                   // where it is then
 

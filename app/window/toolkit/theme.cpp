@@ -107,7 +107,7 @@ void apply_theme(render::Theme theme, float scale) {
   chosen.faint = ImGui::GetColorU32(hex(base.faint));
   chosen.grid = ImGui::GetColorU32(hex(base.line, 0.7f));
   chosen.panel = ImGui::GetColorU32(hex(base.panel));
-  chosen.on_picture = ImGui::GetColorU32(hex(base.panel, 0.88f));
+  chosen.on_view = ImGui::GetColorU32(hex(base.panel, 0.88f));
   chosen.mark = ImGui::GetColorU32(hex(dark ? 0xffe14a : 0xd1006c));
   chosen.mark_outline = ImGui::GetColorU32(hex(dark ? 0x14060a : 0xffffff, 0.9f));
 }

@@ -14,8 +14,8 @@ void apply_theme(render::Theme theme, float scale);
 
 // Colors in addition to ImGui's own, from the theme that was applied last.
 struct Palette {
-  ImU32 accent, good, warning, bad, faint, grid, panel, on_picture;
-  ImU32 mark, mark_outline;  // contrast with everything in the picture
+  ImU32 accent, good, warning, bad, faint, grid, panel, on_view;
+  ImU32 mark, mark_outline;  // contrast with everything in the view
 };
 const Palette& palette();
 

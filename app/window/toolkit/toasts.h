@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short messages that appear over the picture and disappear after some seconds, and the history of all of them.
+// Short messages that appear over the view and disappear after some seconds, and the history of all of them.
 #pragma once
 
 #include <chrono>

@@ -92,7 +92,7 @@ class Window {
 
   // Waits up to `wait` seconds for input, then reads all that has arrived. 0 = does not wait.
   void poll(double wait);
-  void swap_buffers();  // shows the picture
+  void swap_buffers();  // shows the view
 
   WindowSize size() const;      // in screen coordinates
   WindowSize pixels() const;    // of the framebuffer

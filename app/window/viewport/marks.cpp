@@ -51,7 +51,7 @@ std::optional<std::size_t> robot_with_handle(LiveScene& scene) {
   const Snapshot& snapshot = scene.snapshot();
   const auto shown = [&](RobotId id) {
     const auto index = snapshot.robots->index_of(id);
-    const bool seen = index && *index < scene.picture().offsets().size() && !snapshot.telemetry[*index].exploded;
+    const bool seen = index && *index < scene.drawn().offsets().size() && !snapshot.telemetry[*index].exploded;
     return seen && !scene.is_hidden(id) ? index : std::nullopt;
   };
   for (const RobotId id : scene.selection())
@@ -144,7 +144,7 @@ std::optional<Box> place_of(const std::vector<std::string>& lines, const Line& l
 void write(const std::vector<std::string>& lines, const Box& place) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float text = ImGui::GetFontSize(), margin = 0.5f * text;
-  list.AddRectFilled(place.low, place.high, palette().on_picture, 0.35f * text);
+  list.AddRectFilled(place.low, place.high, palette().on_view, 0.35f * text);
   list.AddRect(place.low, place.high, palette().mark, 0.35f * text, 0, 0.08f * text);
   float y = place.low.y + margin / 2;
   for (std::size_t i = 0; i < lines.size(); ++i, y += 1.2f * text)
@@ -157,12 +157,12 @@ void write(const std::vector<std::string>& lines, const Box& place) {
 std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
                                     const render::Camera& camera) {
   const auto index = scene.pointed_snapshot().robots->index_of(hit.robot);
-  const LivePicture& picture = scene.pointed_picture();
-  if (!index || *index >= picture.offsets().size()) return std::nullopt;
+  const DrawnScene& drawn = scene.pointed_drawn();
+  if (!index || *index >= drawn.offsets().size()) return std::nullopt;
   const Robot& robot = *scene.pointed_snapshot().robots->robots[*index].robot;
-  const std::span<const Vec3> positions = picture.positions_of(*index);
+  const std::span<const Vec3> positions = drawn.positions_of(*index);
   const auto place = [&](std::uint16_t mass) {
-    return seen_at(area, camera, render::Vector3(positions[mass]) + picture.offsets()[*index]);
+    return seen_at(area, camera, render::Vector3(positions[mass]) + drawn.offsets()[*index]);
   };
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float text = ImGui::GetFontSize(), thick = 0.16f * text, edge = 0.09f * text;
@@ -237,12 +237,12 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
   const std::optional<std::size_t> robot = view.cut ? robot_with_handle(scene) : std::nullopt;
   if (!robot) return false;
   const auto frame = render::cut_frame(view.cut->axis, floats(scene.snapshot().robots->robots[*robot].robot->masses),
-                                       floats(scene.picture().positions_of(*robot)));
+                                       floats(scene.drawn().positions_of(*robot)));
   if (!frame) return false;
   const auto at = [&](float place) {
     return on_screen(
         area, camera,
-        scene.picture().offsets()[*robot] + frame->center + (place - frame->axis.dot(frame->center)) * frame->axis);
+        scene.drawn().offsets()[*robot] + frame->center + (place - frame->axis.dot(frame->center)) * frame->axis);
   };
   const ImVec2 low = at(frame->low), high = at(frame->high), handle = at(frame->place_of(*view.cut));
   const float text = ImGui::GetFontSize(), radius = 0.55f * text;
@@ -264,10 +264,10 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
   const ImU32 color = marked ? palette().accent : ImGui::GetColorU32(ImGuiCol_Text);
-  list.AddLine(low, high, palette().on_picture, 0.32f * text);
+  list.AddLine(low, high, palette().on_view, 0.32f * text);
   list.AddLine(low, high, color, 0.1f * text);
   for (const ImVec2 end : {low, high}) list.AddCircleFilled(end, 0.16f * text, color);
-  list.AddCircleFilled(handle, radius + 0.1f * text, palette().on_picture);
+  list.AddCircleFilled(handle, radius + 0.1f * text, palette().on_view);
   list.AddCircleFilled(handle, radius, color);
   list.AddCircle(handle, radius, IM_COL32(0, 0, 0, 160));
   list.PopClipRect();
@@ -289,7 +289,7 @@ void draw_explosion_marks(std::span<const ExplodedRobot> robots, const Explosion
       drawn.emplace_back(&robot, *line);
   std::stable_partition(drawn.begin(), drawn.end(), [&](const auto& one) { return one.first->robot == marks.chosen; });
   ImGui::GetBackgroundDrawList()->PushClipRect(area.low, area.high);
-  // The upper edge has the picture's caption.
+  // The upper edge has the view's caption.
   const Box caption{area.low, {area.high.x, area.low.y + 2.2f * ImGui::GetFontSize()}};
   std::vector<Box> taken{{marks.covered_low, marks.covered_high}, caption};
   const float end = 0.7f * ImGui::GetFontSize();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marks on the picture: of what is under the mouse, with its figures beside it, of springs that made robots explode,
+// Marks on the view: of what is under the mouse, with its figures beside it, of springs that made robots explode,
 // and the handle of the cut.
 #pragma once
 
@@ -13,8 +13,8 @@
 
 namespace mercury::window {
 
-// Marks the mass and the spring of a hit on the picture, over everything else. Does nothing if the robot is gone. Call
-// between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the picture was drawn with. Returns where the
+// Marks the mass and the spring of a hit on the view, over everything else. Does nothing if the robot is gone. Call
+// between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the view was drawn with. Returns where the
 // mass is in the window, if it is in front of the camera.
 std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
                                     const render::Camera& camera);
@@ -30,23 +30,23 @@ float figures_height();
 bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const ViewportArea& area,
                          const render::Camera& camera, const Box& legend);
 
-// A handle in the picture that moves the planes which cut the robots open.
+// A handle in the view that moves the planes which cut the robots open.
 class CutHandle {
  public:
   // Draws the handle on the plane of the first selected robot, or of the first one that is visible, and a line along
   // which it moves, from that robot's one end to the other. Returns true if the mouse moved the planes in `view`. Call
-  // between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the picture was drawn with.
+  // between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the view was drawn with.
   bool draw(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, ViewSettings& view,
             EventLog& log) const;
 };
 
-// Marks the culprit spring of each robot that exploded. Drawn over the picture, so that nothing hides it.
+// Marks the culprit spring of each robot that exploded. Drawn over the view, so that nothing hides it.
 struct ExplosionMarks {
   std::optional<RobotId> chosen;                 // shown with details; the others only with their names
   ImVec2 covered_low{0, 0}, covered_high{0, 0};  // no text in this rectangle
 };
 
-// Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the picture was drawn with.
+// Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the view was drawn with.
 void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks, EventLog& log,
                           const ViewportArea& area, const render::Camera& camera);
 

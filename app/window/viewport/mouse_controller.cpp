@@ -36,7 +36,7 @@ void label(ImVec2 at, const std::string& text) {
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const float margin = 0.4f * ImGui::GetFontSize();
   list.AddRectFilled({at.x - margin, at.y - margin / 2}, {at.x + size.x + margin, at.y + size.y + margin / 2},
-                     palette().on_picture, margin);
+                     palette().on_view, margin);
   list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
 }
 
@@ -144,7 +144,7 @@ void MouseController::select_box(const ViewportArea& area, const render::Camera&
   const ImVec2 end = ImGui::GetIO().MousePos;
   const ImVec2 low{std::min(pressed_at_.x, end.x), std::min(pressed_at_.y, end.y)};
   const ImVec2 high{std::max(pressed_at_.x, end.x), std::max(pressed_at_.y, end.y)};
-  const std::span<const render::Bounds> bounds = scene_.pointed_picture().bounds();
+  const std::span<const render::Bounds> bounds = scene_.pointed_drawn().bounds();
   const LiveRobots& robots = *scene_.snapshot().robots;
   std::vector<RobotId> selected = scene_.selection();
   for (std::size_t i = 0; i < std::min(bounds.size(), robots.size()); ++i) {

@@ -10,7 +10,7 @@ namespace mercury::window {
 namespace {
 
 constexpr double glide_time = 0.45;  // [s]
-constexpr float turn_speed = 3.6f;   // angle of a drag over the picture's height [rad]
+constexpr float turn_speed = 3.6f;   // angle of a drag over the view's height [rad]
 constexpr float margin = 1.1f;       // around framed robots
 constexpr float steepest = 1.3f;     // elevation to which the camera returns after it looked down [rad]
 

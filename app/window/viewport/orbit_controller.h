@@ -24,7 +24,7 @@ class OrbitController {
   void follow(std::optional<std::size_t> robot);
   std::optional<std::size_t> followed() const { return robot_; }
 
-  // Mouse drags, as fractions of the picture's height. Turning ends the modes turntable and top; panning ends all modes
+  // Mouse drags, as fractions of the view's height. Turning ends the modes turntable and top; panning ends all modes
   // but still.
   void turn(float right, float up);
   void pan(float right, float up);

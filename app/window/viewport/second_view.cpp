@@ -30,13 +30,13 @@ float centered(ImVec2 at, const std::string& text, ImU32 color, EventLog& log, c
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const ImVec2 low{at.x - size.x / 2 - margin, at.y}, high{at.x + size.x / 2 + margin, at.y + size.y + margin};
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  list.AddRectFilled(low, high, palette().on_picture, 0.35f * font);
+  list.AddRectFilled(low, high, palette().on_view, 0.35f * font);
   list.AddText({low.x + margin, low.y + margin / 2}, color, text.c_str());
   log.item(name, low, high);
   return high.y;
 }
 
-// The middle of a box in the picture, and the lowest of its corners.
+// The middle of a box in the view, and the lowest of its corners.
 struct Place {
   float x = 0, low = 0;
 };
@@ -111,7 +111,7 @@ std::string text_of(const GhostFigures& figures) {
 }
 
 void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log) {
-  const auto boxes = scene.picture().last_boxes();
+  const auto boxes = scene.drawn().last_boxes();
   const float font = ImGui::GetFontSize();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
@@ -132,7 +132,7 @@ void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, const render
 }
 
 ViewportArea SecondView::split(LiveScene& scene, const ViewportArea& whole) {
-  const bool two = scene.second_picture() != nullptr;
+  const bool two = scene.second_drawn() != nullptr;
   changed_ = two != area_.has_value();
   area_.reset();
   if (!two) {
@@ -153,15 +153,15 @@ bool SecondView::update(LiveScene& scene, render::Quality quality, ImVec2 scale)
   viewport_->place(static_cast<int>(area_->low.x * scale.x), static_cast<int>(area_->low.y * scale.y),
                    static_cast<int>(area_->width() * scale.x), static_cast<int>(area_->height() * scale.y));
   if (viewport_->renderer().quality() != quality) viewport_->renderer().set_quality(quality);
-  const LivePicture& picture = *scene.second_picture();
-  if (revision_ == picture.bodies_revision()) return false;
-  picture.set_bodies(viewport_->renderer());
-  revision_ = picture.bodies_revision();
+  const DrawnScene& drawn = *scene.second_drawn();
+  if (revision_ == drawn.bodies_revision()) return false;
+  drawn.set_bodies(viewport_->renderer());
+  revision_ = drawn.bodies_revision();
   return true;
 }
 
 void SecondView::draw(LiveScene& scene, const render::Camera& camera, bool moving) {
-  if (viewport_) viewport_->draw(without_text(scene.second_picture()->scene()), camera, moving);
+  if (viewport_) viewport_->draw(without_text(scene.second_drawn()->scene()), camera, moving);
 }
 
 void SecondView::present(int framebuffer_height) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The right half of the picture while there are two sides, and what stands over the picture while robots are compared:
+// The right half of the view while there are two sides, and what stands over the view while robots are compared:
 // a title over each side, and how robots do against their ghosts.
 #pragma once
 

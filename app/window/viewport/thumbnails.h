@@ -17,7 +17,7 @@ class Thumbnails {
   explicit Thumbnails(render::Context& gl_context);
   ~Thumbnails();
 
-  // The picture with this name; 0 until it is drawn.
+  // A picture by its name; 0 until it is drawn.
   ImTextureID find(const std::string& name) const;
   // Draws a picture; replaces an earlier one with this name.
   void draw(const std::string& name, const Robot& robot, render::Theme theme);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 3D picture of the robots, in its part of the window.
+// The 3D view of the robots, in its part of the window.
 //
-// The window must react quickly even if drawing is slow, as in software rendering. While the picture moves, it is
+// The window must react quickly even if drawing is slow, as in software rendering. While the view moves, it is
 // therefore drawn with fewer pixels if the last one took too long, and enlarged to its area; once it rests, it is drawn
 // with all pixels.
 #pragma once

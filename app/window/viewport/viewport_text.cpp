@@ -23,7 +23,7 @@ namespace {
 ImU32 text_color(float opacity = 1) { return ImGui::GetColorU32(ImGuiCol_Text, opacity); }
 
 void backing(ImVec2 low, ImVec2 high) {
-  ImGui::GetBackgroundDrawList()->AddRectFilled(low, high, palette().on_picture, 0.35f * ImGui::GetFontSize());
+  ImGui::GetBackgroundDrawList()->AddRectFilled(low, high, palette().on_view, 0.35f * ImGui::GetFontSize());
 }
 
 // A line of text with a background; `at` is its upper left corner.
@@ -252,14 +252,14 @@ bool LegendView::draw(const std::optional<render::Legend>& legend, const Viewpor
   box_ = {box_low, box_high};
   ImGui::SetNextWindowPos(box_low);
   ImGui::SetNextWindowSize({box_high.x - box_low.x, box_high.y - box_low.y});
-  // Only a scale takes the mouse; swatches let it through to the picture.
+  // Only a scale takes the mouse; swatches let it through to the view.
   const ImGuiWindowFlags mouse = legend->scale ? ImGuiWindowFlags_None : ImGuiWindowFlags_NoInputs;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
   ImGui::Begin("##legend", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus |
                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoScrollWithMouse | mouse);
-  ImGui::GetWindowDrawList()->AddRectFilled(box_low, box_high, palette().on_picture, 0.35f * text);
+  ImGui::GetWindowDrawList()->AddRectFilled(box_low, box_high, palette().on_view, 0.35f * text);
   ImGui::GetWindowDrawList()->AddText(low, text_color(), title_of(*legend).c_str());
   bool changed = false;
   if (legend->scale) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text on the picture: names, clock, scale bar, and the legend, whose ends the mouse drags. ImGui draws it, so that
-// it is sharp even if the picture is coarse.
+// The text on the view: names, clock, scale bar, and the legend, whose ends the mouse drags. ImGui draws it, so that
+// it is sharp even if the view is coarse.
 #pragma once
 
 #include <cstddef>
@@ -20,21 +20,21 @@ render::Scene without_text(const render::Scene& scene);
 
 struct ViewportTextOptions {
   bool clock = false;                  // draw the clock
-  float top = 0;                       // of the picture that is taken [pixels]
+  float top = 0;                       // of the view that is taken [pixels]
   bool caption = true;                 // draw the caption
   std::optional<std::size_t> hovered;  // the body under the mouse, whose name is shown in any case
   Box legend;                          // which the caption leaves free
 };
 
-// Draws the text of the scene over the picture, and logs where each name is as the item "label.BODY". `bounds`: one box
-// per body, in the coordinates of the picture. Returns the box of the caption; without one it is empty.
+// Draws the text of the scene over the view, and logs where each name is as the item "label.BODY". `bounds`: one box
+// per body, in the coordinates of the view. Returns the box of the caption; without one it is empty.
 Box draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
                        const render::Camera& camera, const ViewportTextOptions& options, EventLog& log);
 
-// The legend of the colors, over the picture: a scale whose ends the mouse drags, or swatches with names.
+// The legend of the colors, over the view: a scale whose ends the mouse drags, or swatches with names.
 class LegendView {
  public:
-  // Draws the legend in the upper right corner of the picture. Returns true if the mouse changed the scale in `view`:
+  // Draws the legend in the upper right corner of the view. Returns true if the mouse changed the scale in `view`:
   // dragging an end sets it, and a double click on one lets the scale fit again. Call between begin_frame() and
   // end_frame() of ImGuiLayer, also without a legend.
   bool draw(const std::optional<render::Legend>& legend, const ViewportArea& area, ViewSettings& view, EventLog& log);

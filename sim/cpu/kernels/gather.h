@@ -25,7 +25,7 @@ struct Lanes4 {
   Lanes x, y, z, w;
 };
 
-// four(i), four(i + 4) and so on, one after the other in one vector.
+// four(i), four(i + 4) and so on, in this order in one vector.
 template <class D, class Four>
 HWY_INLINE hn::Vec<D> concatenated(D d, const Four& four, std::size_t i) {
   if constexpr (hn::MaxLanes(D()) == 4) {

@@ -53,7 +53,7 @@ struct Triples {
 // In units of FixedPointScale; see above.
 struct Sums {
   Triples<std::int32_t> own;
-  Triples<std::int32_t> reaction;  // reaction_arrays arrays, one after the other
+  Triples<std::int32_t> reaction;  // reaction_arrays arrays, consecutive
   Aligned<std::int32_t> scattered;
   Triples<std::int32_t> taken;
   bool with_scattered = false;  // whether `taken` includes `scattered`

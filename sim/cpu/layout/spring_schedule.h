@@ -36,7 +36,7 @@ inline constexpr std::uint32_t reaction_arrays = 2;
 
 struct Run {
   std::uint32_t partner;   // slot of the first lane's partner
-  std::uint32_t reaction;  // index in the reaction arrays, which stand one after the other, for the same lane
+  std::uint32_t reaction;  // index in the consecutive reaction arrays, for the same lane
 };
 
 struct SpringSchedule {

@@ -115,7 +115,7 @@ class Backend {
   // Puts consecutive robots at rest where the masses of robots[i] are, but lifts[i] [m] higher. They have not exploded.
   // The default writes each robot's state and status.
   virtual void put_at_rest(std::span<const Robot* const> robots, std::size_t first, std::span<const float> lifts);
-  // All robots, one after the other, one element per mass.
+  // All robots in order, one element per mass.
   virtual void read_positions(std::span<Vec3> out) const = 0;
   virtual void read_velocities(std::span<Vec3> out) const = 0;
 

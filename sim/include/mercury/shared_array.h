@@ -17,7 +17,7 @@ struct SharedArray {
 
 // Parts of the state that a program may share.
 enum class StateArray {
-  positions,         // [mass][3], of all robots, one after the other [m]
+  positions,         // [mass][3], of all robots in order [m]
   velocities,        // [mass][3] [m/s]
   centers,           // [robot][3], centers of mass [m]
   center_velocities  // [robot][3] [m/s]

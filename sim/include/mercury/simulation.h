@@ -120,7 +120,7 @@ class Simulation {
 
   std::size_t mass_count() const;                     // of all robots together
   std::span<const std::size_t> mass_offsets() const;  // size() + 1 elements; robot i's masses begin at element i
-  // All robots, one after the other: `out` has mass_count() elements, otherwise they throw std::invalid_argument.
+  // All robots in order: `out` has mass_count() elements, otherwise they throw std::invalid_argument.
   void read_positions(std::span<Vec3> out) const;
   void read_velocities(std::span<Vec3> out) const;
   // The CUDA device that holds all robots; -1 = none, or several.

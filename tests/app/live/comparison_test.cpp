@@ -243,21 +243,21 @@ TEST(Comparison, GhostsCountNowhere) {
   test::make_robots(scene, 2);
   const std::vector<RobotId> robots = test::ids_of(scene);
   make_steps(scene, 30);
-  const std::vector<render::Bounds> boxes(scene.picture().camera_boxes().begin(), scene.picture().camera_boxes().end());
+  const std::vector<render::Bounds> boxes(scene.drawn().camera_boxes().begin(), scene.drawn().camera_boxes().end());
   scene.show_ghosts({robots[0]});
   make_steps(scene, 1);
-  EXPECT_EQ(scene.picture().scene().ghosts.size(), 1u);
+  EXPECT_EQ(scene.drawn().scene().ghosts.size(), 1u);
   EXPECT_EQ(scene.robot_count(), 2u);
   EXPECT_EQ(scene.entries().size(), 2u);
   EXPECT_EQ(scene.ranking().size(), 2u);
-  EXPECT_EQ(scene.picture().camera_boxes().size(), boxes.size());
+  EXPECT_EQ(scene.drawn().camera_boxes().size(), boxes.size());
   EXPECT_EQ(scene.snapshot().robots->size(), 2u);
   EXPECT_EQ(scene.undo_name(), "make 2 robots");
 
   scene.hide_ghosts();
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().ghosts);
-  EXPECT_TRUE(scene.picture().scene().ghosts.empty());
+  EXPECT_TRUE(scene.drawn().scene().ghosts.empty());
 }
 
 TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
@@ -269,9 +269,9 @@ TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
   scene.show_ghosts({robot});
   stiffen(scene, robot);
   make_steps(scene, 400);
-  const render::Ghost& ghost = scene.picture().scene().ghosts[0];
-  EXPECT_EQ(ghost.offset, scene.picture().offsets()[0]);
-  EXPECT_EQ(ghost.positions.size(), scene.picture().scene().positions.size());
+  const render::Ghost& ghost = scene.drawn().scene().ghosts[0];
+  EXPECT_EQ(ghost.offset, scene.drawn().offsets()[0]);
+  EXPECT_EQ(ghost.positions.size(), scene.drawn().scene().positions.size());
   const std::vector<GhostFigures> figures = scene.ghost_figures();
   ASSERT_EQ(figures.size(), 1u);
   EXPECT_TRUE(figures[0].same_age);

@@ -76,7 +76,7 @@ TEST(LiveExplosion, UnstableSpringAmongSeparatePairsIsShown) {
   EXPECT_EQ(spring.b, 4);
   EXPECT_EQ(spring.figures.material_name, "unstable");
   EXPECT_GT(spring.figures.length, 16 * length);
-  const render::Vector3 offset = scene.picture().offsets()[0];
+  const render::Vector3 offset = scene.drawn().offsets()[0];
   EXPECT_EQ(spring.at_a, render::Vector3(render::Vector3(scene.snapshot().positions_of(0)[5]) + offset));
   EXPECT_EQ(spring.at_b, render::Vector3(render::Vector3(scene.snapshot().positions_of(0)[4]) + offset));
   EXPECT_FLOAT_EQ((spring.at_b - spring.at_a).norm(), spring.figures.length);
@@ -153,9 +153,9 @@ TEST(LiveExplosion, SeveralExplosionsAreSortedByTime) {
   EXPECT_LT(exploded[0].time, exploded[2].time);
   for (const ExplodedRobot& one : exploded) {
     ASSERT_TRUE(one.spring);
-    const render::Vector3 offset = scene.picture().offsets()[one.index];
+    const render::Vector3 offset = scene.drawn().offsets()[one.index];
     EXPECT_EQ((one.spring->at_a - offset).y, 0) << "the chain lies on a line";
-    EXPECT_TRUE(scene.picture().scene().placements[one.index].faulty);
+    EXPECT_TRUE(scene.drawn().scene().placements[one.index].faulty);
   }
   scene.set_hidden(ids[3], true);
   EXPECT_THAT(scene.exploded(), SizeIs(2));
@@ -189,7 +189,7 @@ TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   ASSERT_TRUE(after[0].spring);
   EXPECT_EQ(after[0].spring->index, before[0].spring->index);
   EXPECT_EQ(after[0].spring->at_a, before[0].spring->at_a);
-  EXPECT_TRUE(scene.picture().scene().placements[after[0].index].faulty);
+  EXPECT_TRUE(scene.drawn().scene().placements[after[0].index].faulty);
   EXPECT_TRUE(scene.entries()[0].exploded);
   EXPECT_EQ(stops, 0u) << "it did not explode again";
   scene.redo();
@@ -205,7 +205,7 @@ TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   scene.reset();
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), IsEmpty());
-  EXPECT_FALSE(scene.picture().scene().placements[0].faulty);
+  EXPECT_FALSE(scene.drawn().scene().placements[0].faulty);
 }
 
 }  // namespace

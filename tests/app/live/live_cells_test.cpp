@@ -17,9 +17,9 @@ using test::on_cpu;
 // Where the center of mass of a robot is drawn.
 Vector3 shown(LiveScene& scene, std::size_t robot) {
   Vector3 sum = Vector3::all(0);
-  const auto positions = scene.picture().positions_of(robot);
+  const auto positions = scene.drawn().positions_of(robot);
   for (const Vec3 p : positions) sum += Vector3(p);
-  return sum / static_cast<float>(positions.size()) + scene.picture().offsets()[robot];
+  return sum / static_cast<float>(positions.size()) + scene.drawn().offsets()[robot];
 }
 
 class Cells : public testing::TestWithParam<const char*> {
@@ -35,12 +35,12 @@ TEST_P(Cells, ARobotThatMovesStaysAndIsPickedWhereItIsDrawn) {
   make_robots(scene_, 3);
   scene_.step(1);
   scene_.wait_until_done();
-  const Vector3 before = shown(scene_, 1), offset = scene_.picture().offsets()[1];
+  const Vector3 before = shown(scene_, 1), offset = scene_.drawn().offsets()[1];
   scene_.step(2000);
   scene_.wait_until_done();
   const Vector3 after = shown(scene_, 1);
   EXPECT_LT((after - before).xy().norm(), 1e-3f);
-  EXPECT_GT((scene_.picture().offsets()[1] - offset).norm(), 1e-3f) << "it has moved";
+  EXPECT_GT((scene_.drawn().offsets()[1] - offset).norm(), 1e-3f) << "it has moved";
   const auto hit = scene_.pick({after + Vector3(0, 0, 50), -Vector3::unit(2)});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->robot, ids_of(scene_)[1]);
@@ -54,12 +54,12 @@ TEST_P(Cells, APulledRobotFollowsTheMouseAndReturnsToItsCell) {
   const Vector3 cell = shown(scene_, 0);
   scene_.begin_perturbation({.robot = ids_of(scene_)[0], .index = 0, .mass = 1});
   scene_.frame();
-  const Vector3 offset = scene_.picture().offsets()[0];
+  const Vector3 offset = scene_.drawn().offsets()[0];
   const Vector3 target = scene_.perturbation()->at + Vector3(0.4f, 0.2f, 0.1f);
   scene_.move_perturbation(target);
   scene_.step(300);
   scene_.wait_until_done();
-  EXPECT_LT((scene_.picture().offsets()[0] - offset).norm(), 1e-5f) << "nothing is subtracted of a pull";
+  EXPECT_LT((scene_.drawn().offsets()[0] - offset).norm(), 1e-5f) << "nothing is subtracted of a pull";
   EXPECT_LT((scene_.perturbation()->target - target).norm(), 1e-4f) << "the target stays under the mouse";
   EXPECT_GT((shown(scene_, 0) - cell).norm(), 1e-3f);
   scene_.end_perturbation();

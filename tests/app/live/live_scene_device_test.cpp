@@ -77,7 +77,7 @@ class LiveSceneOnDevice : public testing::TestWithParam<Place> {
 
   render::Image picture_of(LiveScene& scene) {
     render::Renderer renderer(*context_, {.width = 320, .height = 180});
-    LivePicture& picture = scene.picture();
+    DrawnScene& picture = scene.drawn();
     picture.set_bodies(renderer);
     picture.show_positions(renderer);
     renderer.draw(picture.scene(), camera_);
@@ -96,8 +96,8 @@ TEST_P(LiveSceneOnDevice, GivesTheSamePicturesBitForBit) {
   both([](LiveScene& scene) { test::make_robots(scene, 4); });
   for (int moment = 0; moment < 5; ++moment) {
     both([](LiveScene& scene) { scene.step(300); });
-    ASSERT_TRUE(on_device_->picture().positions_on_device());
-    ASSERT_FALSE(on_host_->picture().positions_on_device());
+    ASSERT_TRUE(on_device_->drawn().positions_on_device());
+    ASSERT_FALSE(on_host_->drawn().positions_on_device());
     EXPECT_EQ(picture_of(*on_device_).bytes, picture_of(*on_host_).bytes) << moment;
   }
 }
@@ -135,7 +135,7 @@ TEST_P(LiveSceneOnDevice, PicksTheSameRobots) {
     test::make_robots(scene, 4);
     scene.step(200);
   });
-  const render::Bounds& target = on_host_->picture().bounds()[2];
+  const render::Bounds& target = on_host_->drawn().bounds()[2];
   const render::Vector3 eye = target.center() + render::Vector3(0, -5, 0);
   const render::Ray ray{.origin = eye, .direction = {0, 1, 0}};
   const auto from_device = on_device_->pick(ray), from_host = on_host_->pick(ray);

@@ -182,8 +182,8 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
     const Snapshot& snapshot = scene.snapshot();
     ASSERT_EQ(snapshot.telemetry.size(), snapshot.robots->size());
     ASSERT_EQ(snapshot.positions.size(), snapshot.robots->mass_offsets.back());
-    ASSERT_EQ(scene.picture().offsets().size(), snapshot.robots->size());
-    ASSERT_EQ(scene.picture().scene().placements.size(), snapshot.robots->size());
+    ASSERT_EQ(scene.drawn().offsets().size(), snapshot.robots->size());
+    ASSERT_EQ(scene.drawn().scene().placements.size(), snapshot.robots->size());
     if (!snapshot.details.values.mass.empty()) {
       ASSERT_EQ(snapshot.details.values.mass.size(), snapshot.positions.size());
     }

@@ -192,7 +192,7 @@ TEST(LiveScene, SelectionKeepsItsOrderAndForgetsRemovedRobots) {
   scene.select_all();
   EXPECT_THAT(scene.selection(), ElementsAre(ids[1], ids[2]));
   scene.wait_until_done();
-  EXPECT_TRUE(scene.picture().scene().placements[0].selected);
+  EXPECT_TRUE(scene.drawn().scene().placements[0].selected);
 }
 
 TEST(LiveScene, SpeedStepsAreOneTwoFiveUpToUnlimited) {
@@ -216,7 +216,7 @@ TEST(LiveScene, PerturbationShowsTheForceOfItsSpring) {
   make_robots(scene, 4);
   const std::size_t last = 3;
   const RobotId id = ids_of(scene)[last];
-  const render::Vector3 offset = scene.picture().offsets()[last];
+  const render::Vector3 offset = scene.drawn().offsets()[last];
   EXPECT_GT(offset.norm(), 0.1f) << "the robots stand side by side";
   scene.begin_perturbation({.robot = id, .index = last, .mass = 2}, 30);
   ASSERT_TRUE(scene.perturbation());

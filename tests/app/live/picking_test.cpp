@@ -45,7 +45,7 @@ TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
   for (int shot = 0; shot < 400; ++shot) {
     const std::size_t aim = random.below(snapshot.robots->size());
     const Vector3 target = Vector3(snapshot.positions_of(aim)[random.below(snapshot.positions_of(aim).size())]) +
-                           scene.picture().offsets()[aim];
+                           scene.drawn().offsets()[aim];
     render::Ray ray{.origin = {static_cast<float>(random.uniform(-5, 5)), static_cast<float>(random.uniform(-5, 5)),
                                static_cast<float>(random.uniform(-5, 5))}};
     const Vector3 jitter(static_cast<float>(random.uniform(-0.2, 0.2)), static_cast<float>(random.uniform(-0.2, 0.2)),
@@ -57,7 +57,7 @@ TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
     for (std::size_t i = 0; i < snapshot.robots->size(); ++i) {
       const auto& faces = snapshot.robots->robots[i].robot->faces;
       const auto place = [&](std::uint16_t mass) -> Vector3d {
-        return exact(Vector3(snapshot.positions_of(i)[mass]) + scene.picture().offsets()[i]);
+        return exact(Vector3(snapshot.positions_of(i)[mass]) + scene.drawn().offsets()[i]);
       };
       for (std::uint32_t f = 0; f < faces.size(); ++f) {
         const auto t = crossing(ray, place(faces[f].a), place(faces[f].b), place(faces[f].c));
@@ -98,16 +98,16 @@ TEST(LivePicking, HitsSpringsWithinTheRadiusAndReportsTheirForce) {
   LiveScene scene(test::on_cpu(OceanSimple{.stiffness_scale = 3}));
   scene.add({two_springs()});
   scene.wait_until_done();
-  const Vector3 offset = scene.picture().offsets()[0];
+  const Vector3 offset = scene.drawn().offsets()[0];
   const auto from_above = [&](float x, float y) {
     return render::Ray{.origin = offset + Vector3(x, y, 2), .direction = {0, 0, -1}};
   };
-  const auto hit = pick(scene.snapshot(), scene.picture().offsets(), from_above(0.7f, -0.04f), {.radius = 0.05f});
+  const auto hit = pick(scene.snapshot(), scene.drawn().offsets(), from_above(0.7f, -0.04f), {.radius = 0.05f});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->spring, 0u);
   EXPECT_EQ(hit->mass, 1);
   EXPECT_NEAR(hit->distance, 2, 1e-5f);
-  EXPECT_FALSE(pick(scene.snapshot(), scene.picture().offsets(), from_above(0.7f, -0.06f), {.radius = 0.05f}));
+  EXPECT_FALSE(pick(scene.snapshot(), scene.drawn().offsets(), from_above(0.7f, -0.06f), {.radius = 0.05f}));
   const HitDetails figures = scene.describe(*hit);
   ASSERT_TRUE(figures.spring);
   EXPECT_EQ(figures.robot, "pair");
@@ -122,7 +122,7 @@ TEST(LivePicking, HitsSpringsWithinTheRadiusAndReportsTheirForce) {
 TEST(LivePicking, IgnoresHiddenRobotsAndPartsCutAway) {
   LiveScene scene(test::on_cpu());
   test::make_robots(scene, 1);
-  const render::Bounds box = scene.picture().bounds()[0];
+  const render::Bounds box = scene.drawn().bounds()[0];
   const render::Ray ray{.origin = box.center() + Vector3(0, 0, 5), .direction = {0, 0, -1}};
   const auto hit = scene.pick(ray);
   ASSERT_TRUE(hit);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "app/live/live_picture.h"
+#include "app/live/drawn_scene.h"
 
 namespace mercury {
 namespace {

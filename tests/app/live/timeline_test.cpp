@@ -263,7 +263,7 @@ TEST_P(TimelineOn, PathsEndWhereTheRobotsWereAtTheMomentShown) {
   wanted.view.shown.path = true;
   LiveScene scene(wanted);
   test::make_robots(scene, 1);
-  const auto points = [&] { return scene.picture().scene().paths[0].points; };
+  const auto points = [&] { return scene.drawn().scene().paths[0].points; };
   std::vector<float> earlier;
   double moment = 0;
   for (int i = 0; i < 40; ++i) {

@@ -160,7 +160,7 @@ class Window:
         """Drops files and folders on the middle of the picture, as a file manager does."""
         found = subprocess.run(["xdotool", "search", "--class", "mercury"], env=self.environment, check=True,
                                capture_output=True, text=True).stdout.split()
-        x, y = self.place("picture")
+        x, y = self.place("view")
         subprocess.run([sys.executable, "-B", str(Path(__file__).with_name("drop_files.py")), found[-1], str(x), str(y),
                         *map(str, paths)], env=self.environment, check=True)
 

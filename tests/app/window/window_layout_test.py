@@ -55,7 +55,7 @@ class LayoutTest(WindowCase):
         later = self.after(window, 1)
         self.assertLess(later["distance"], 1.3 * before)
         x, y = later["where"][0]
-        area = window.items["picture"]
+        area = window.items["view"]
         self.assertLess(abs(x - area["x"]), area["width"] / 2)
         self.assertLess(abs(y - area["y"]), area["height"] / 2)
         window.click("explosion.dismiss")

@@ -42,7 +42,7 @@ class PanelsTest(WindowCase):
         since = window.mark()
         window.key("d")
         window.wait("view", since, lambda event: event["drag"])
-        area = window.items["picture"]
+        area = window.items["view"]
         left, right = int(area["x"] - area["width"] / 2) + 2, int(area["x"] + area["width"] / 2) - 2
         top, bottom = int(area["y"] - area["height"] / 2) + 120, int(area["y"] + area["height"] / 2) - 2
 
@@ -257,11 +257,11 @@ class PanelsTest(WindowCase):
         window = self.small("--paused")
         window.click("tab.Tune")
         window.wait("panel", 0, lambda event: event["name"] == "Tune")
-        x, y = window.place("picture")
-        edge = int(x + window.items["picture"]["width"] / 2)
+        x, y = window.place("view")
+        edge = int(x + window.items["view"]["width"] / 2)
         window.script([f"mousemove {edge} {y}", "sleep 0.2", "mousedown 1", "sleep 0.2", f"mousemove {edge - 60} {y}", "sleep 0.2", "mouseup 1"])
         width = window.until("a wider column", lambda: window.items["panel.Tune"]["width"] if
-                             abs(edge - 60 - window.items["picture"]["x"] - window.items["picture"]["width"] / 2) < 3 else 0)
+                             abs(edge - 60 - window.items["view"]["x"] - window.items["view"]["width"] / 2) < 3 else 0)
         window.key("3", "b", "t")
         window.frame(lambda frame: (frame["color"], frame["theme"], frame["camera"]) == ("strain", "light", "turntable"))
         self.finish(window)

@@ -55,7 +55,7 @@ class PlaybackTest(WindowCase):
     def test_the_camera_turns_and_zooms(self):
         window = self.small("--paused")
         before = window.frame()
-        x, y = window.place("picture")
+        x, y = window.place("view")
         window.script([f"mousemove {x} {y + 150}", "sleep 0.2", "mousedown 1", "sleep 0.1",
                        *(f"mousemove {x + 8 * i} {y + 150}\nsleep 0.03" for i in range(12)), "mouseup 1"])
         turned = window.frame(lambda frame: abs(frame["azimuth"] - before["azimuth"]) > 0.1)
@@ -103,7 +103,7 @@ class PlaybackTest(WindowCase):
         window.key("space")
         window.place("panel.Explosion")
         window.frame()  # the card has its final position
-        area, ends = window.items["picture"], ("explosion.a", "explosion.b")
+        area, ends = window.items["view"], ("explosion.a", "explosion.b")
 
         def show():
             window.click("explosion.show")

@@ -5,7 +5,7 @@ from window_case import SAMPLES, WindowCase, main
 
 class RobotsTest(WindowCase):
     def still(self, window):
-        """The places of the robots in the picture, once the camera stands."""
+        """The places of the robots in the view, once the camera stands."""
         presses = window.frame(lambda frame: frame["where"])["input"]
         window.key("f")
         before = window.frame(lambda frame: frame["input"] > presses)["where"]

@@ -53,7 +53,7 @@ class ToolsTest(WindowCase):
         window = self.small("--paused")
 
         def width():
-            return window.items["picture"]["width"]
+            return window.items["view"]["width"]
 
         both = width()
         window.key("bracketleft")
@@ -112,7 +112,7 @@ class ToolsTest(WindowCase):
     def test_the_text_size_buttons_stay_under_the_mouse(self):
         window = self.small("--paused")
         window.click("tab.View")
-        x, y = window.place("picture")
+        x, y = window.place("view")
         panel = window.items["panel.View"]
         window.do("mousemove", panel["x"], panel["y"])
         for _ in range(40):
@@ -166,7 +166,7 @@ class ToolsTest(WindowCase):
         window = self.window_in(folder, str(SAMPLES / "eel.json"), "--paused")
         for gesture in ("turn", "move", "zoom", "pull a mass"):
             window.place(f"gesture.{gesture}")
-        x, y = window.place("picture")
+        x, y = window.place("view")
         window.do("mousemove", x, y - 150, "click", 4)
         window.until("zoom known", lambda: "gesture.zoom" not in window.items)
         window.script([f"mousemove {x} {y - 150}", "mousedown 1", "sleep 0.1", f"mousemove {x + 60} {y - 150}", "sleep 0.1", "mouseup 1"])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/live/live_picture.h"
+#include "app/live/drawn_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,7 @@ render::Color ghost_color(render::Theme theme) {
   return theme == render::Theme::dark ? render::Color{215, 235, 255, 255} : render::Color{30, 60, 105, 255};
 }
 
-struct LivePicture::Parts {
+struct DrawnScene::Parts {
   std::shared_ptr<const Snapshot> snapshot;
   ViewSettings settings;  // of the last update()
   std::optional<GroupScene> scene;
@@ -100,7 +100,7 @@ struct LivePicture::Parts {
   }
 };
 
-void LivePicture::Parts::show_ghosts(const std::set<RobotId>& hidden, double now) {
+void DrawnScene::Parts::show_ghosts(const std::set<RobotId>& hidden, double now) {
   ghosts.clear();
   const std::shared_ptr<const Snapshot>& all = snapshot->ghosts;
   if (all) ghost_motion.take(all);
@@ -118,12 +118,12 @@ void LivePicture::Parts::show_ghosts(const std::set<RobotId>& hidden, double now
   scene->scene().ghosts = ghosts;
 }
 
-LivePicture::LivePicture() : parts_(std::make_unique<Parts>()) {}
-LivePicture::~LivePicture() = default;
+DrawnScene::DrawnScene() : parts_(std::make_unique<Parts>()) {}
+DrawnScene::~DrawnScene() = default;
 
-void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
-                         const std::set<RobotId>& selected, const std::set<RobotId>& hidden,
-                         std::optional<RobotId> held, double wall) {
+void DrawnScene::update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
+                        const std::set<RobotId>& selected, const std::set<RobotId>& hidden, std::optional<RobotId> held,
+                        double wall) {
   Parts& parts = *parts_;
   const std::shared_ptr<const Snapshot> before = std::exchange(parts.snapshot, snapshot);
   const ViewSettings old_settings = std::exchange(parts.settings, settings);
@@ -166,35 +166,35 @@ void LivePicture::update(std::shared_ptr<const Snapshot> snapshot, const ViewSet
   parts.show_ghosts(hidden, wall);
 }
 
-void LivePicture::lay_out(float aspect) {
+void DrawnScene::lay_out(float aspect) {
   Parts& parts = *parts_;
   if (!parts.snapshot || !parts.scene) return;
   parts.scene->set_offsets(offsets_of(*parts.snapshot, parts.settings, aspect));
 }
 
-std::uint64_t LivePicture::bodies_revision() const { return parts_->revision; }
-void LivePicture::set_bodies(render::Renderer& renderer) const { parts_->scene->set_bodies(renderer); }
-render::Scene& LivePicture::scene() { return parts_->scene->scene(); }
-std::span<const render::Bounds> LivePicture::bounds() const {
+std::uint64_t DrawnScene::bodies_revision() const { return parts_->revision; }
+void DrawnScene::set_bodies(render::Renderer& renderer) const { parts_->scene->set_bodies(renderer); }
+render::Scene& DrawnScene::scene() { return parts_->scene->scene(); }
+std::span<const render::Bounds> DrawnScene::bounds() const {
   return parts_->scene ? parts_->scene->bounds() : std::span<const render::Bounds>{};
 }
-void LivePicture::set_bridge(std::shared_ptr<PositionBridge> bridge) { parts_->bridge = std::move(bridge); }
-void LivePicture::show_positions(render::Renderer& renderer) {
+void DrawnScene::set_bridge(std::shared_ptr<PositionBridge> bridge) { parts_->bridge = std::move(bridge); }
+void DrawnScene::show_positions(render::Renderer& renderer) {
   if (parts_->shown.device) parts_->bridge->show(*parts_->shown.device, renderer, scene());
 }
-bool LivePicture::positions_on_device() const { return parts_->shown.device != nullptr; }
-std::span<const Vec3> LivePicture::positions_of(std::size_t robot) const {
+bool DrawnScene::positions_on_device() const { return parts_->shown.device != nullptr; }
+std::span<const Vec3> DrawnScene::positions_of(std::size_t robot) const {
   if (parts_->shown.device) return parts_->snapshot->positions_of(robot);
   const std::vector<std::size_t>& offsets = parts_->snapshot->robots->mass_offsets;
   return parts_->shown.positions.subspan(offsets[robot], offsets[robot + 1] - offsets[robot]);
 }
-std::span<const render::Vector3> LivePicture::offsets() const {
+std::span<const render::Vector3> DrawnScene::offsets() const {
   return parts_->scene ? parts_->scene->offsets() : std::span<const render::Vector3>{};
 }
-std::span<const render::Bounds> LivePicture::last_boxes() const {
+std::span<const render::Bounds> DrawnScene::last_boxes() const {
   return parts_->scene ? parts_->scene->last_boxes() : std::span<const render::Bounds>{};
 }
-std::span<const render::Bounds> LivePicture::camera_boxes() const {
+std::span<const render::Bounds> DrawnScene::camera_boxes() const {
   return parts_->scene ? parts_->scene->camera_boxes() : std::span<const render::Bounds>{};
 }
 

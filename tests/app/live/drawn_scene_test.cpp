@@ -13,10 +13,10 @@ using test::ids_of;
 using test::make_robots;
 using test::on_cpu;
 
-TEST(LivePicture, BodiesChangeOnlyWhenRobotsChange) {
+TEST(DrawnScene, BodiesChangeOnlyWhenRobotsChange) {
   LiveScene scene(on_cpu());
   make_robots(scene, 2);
-  const auto revision = scene.picture().bodies_revision();
+  const auto revision = scene.drawn().bodies_revision();
   scene.step(10);
   ViewSettings view = scene.view();
   view.color = &color_quantity("strain");
@@ -24,8 +24,8 @@ TEST(LivePicture, BodiesChangeOnlyWhenRobotsChange) {
   scene.set_view(view);
   scene.scale_materials(ids_of(scene), {.stiffness = 2});
   scene.wait_until_done();
-  EXPECT_EQ(scene.picture().bodies_revision(), revision);
-  const render::Scene& drawn = scene.picture().scene();
+  EXPECT_EQ(scene.drawn().bodies_revision(), revision);
+  const render::Scene& drawn = scene.drawn().scene();
   EXPECT_EQ(drawn.positions.size(), 3 * scene.snapshot().positions.size());
   EXPECT_EQ(drawn.mass_values.size(), scene.snapshot().positions.size());
   EXPECT_FALSE(drawn.arrows.empty());
@@ -34,18 +34,18 @@ TEST(LivePicture, BodiesChangeOnlyWhenRobotsChange) {
   EXPECT_EQ(drawn.labels.size(), 2u);
   scene.duplicate({ids_of(scene)[0]});
   scene.wait_until_done();
-  EXPECT_GT(scene.picture().bodies_revision(), revision);
-  EXPECT_EQ(scene.picture().bounds().size(), 3u);
+  EXPECT_GT(scene.drawn().bodies_revision(), revision);
+  EXPECT_EQ(scene.drawn().bounds().size(), 3u);
 }
 
-TEST(LivePicture, EachRobotOfALargeGroupGlowsByItsOwnMaterials) {
+TEST(DrawnScene, EachRobotOfALargeGroupGlowsByItsOwnMaterials) {
   LiveScene scene(on_cpu());
   make_robots(scene, 120);
   const auto ids = ids_of(scene);
   scene.step(300);
   scene.wait_until_done();
-  const auto revision = scene.picture().bodies_revision();
-  const render::Scene& drawn = scene.picture().scene();
+  const auto revision = scene.drawn().bodies_revision();
+  const render::Scene& drawn = scene.drawn().scene();
   // From the muscle law: +1 where the muscle is shortest.
   const auto activation = [&](std::size_t robot, MaterialId id) {
     return drawn.materials[drawn.placements[robot].first_material + id].activation;
@@ -74,10 +74,10 @@ TEST(LivePicture, EachRobotOfALargeGroupGlowsByItsOwnMaterials) {
   scene.wait_until_done();
   for (const std::size_t robot : {7u, 60u, 110u})
     EXPECT_NEAR(activation(robot, 5), expected(default_materials()[5]), 1e-5);
-  EXPECT_EQ(scene.picture().bodies_revision(), revision) << "the bodies did not change";
+  EXPECT_EQ(scene.drawn().bodies_revision(), revision) << "the bodies did not change";
 }
 
-TEST(LivePicture, EditReusesTheShapesOfRobotsThatStay) {
+TEST(DrawnScene, EditReusesTheShapesOfRobotsThatStay) {
   LiveScene scene(on_cpu());
   make_robots(scene, 3);
   const auto before = scene.hold_snapshot();

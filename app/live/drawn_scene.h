@@ -19,10 +19,10 @@ namespace mercury {
 render::Color ghost_color(render::Theme theme);
 
 // Uses no OpenGL, except through the renderer in set_bodies().
-class LivePicture {
+class DrawnScene {
  public:
-  LivePicture();
-  ~LivePicture();
+  DrawnScene();
+  ~DrawnScene();
 
   // Updates the scene from a snapshot and keeps the snapshot until the next call. In slow motion the scene shows the
   // robots between two snapshots (SlowMotion); `wall` is the current wall time [s]. `held`: the robot at which the
@@ -30,7 +30,7 @@ class LivePicture {
   void update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
               const std::set<RobotId>& selected, const std::set<RobotId>& hidden, std::optional<RobotId> held,
               double wall);
-  // Arranges the robots again in rows that suit the picture's aspect ratio and the camera angles of the settings.
+  // Arranges the robots again in rows that suit the view's aspect ratio and the camera angles of the settings.
   void lay_out(float aspect);
 
   // Changes when the bodies change. Then call set_bodies() before drawing.
@@ -52,7 +52,7 @@ class LivePicture {
   std::span<const render::Bounds> last_boxes() const;
   // The positions of a robot's masses as drawn, without its offset [m].
   std::span<const Vec3> positions_of(std::size_t robot) const;
-  // What is added to each robot's own coordinates in the picture [m].
+  // What is added to each robot's own coordinates in the view [m].
   std::span<const render::Vector3> offsets() const;
 
  private:
@@ -64,9 +64,9 @@ class LivePicture {
 //
 //   wall time  ---|--------|--------|--------|---->
 //   snapshots     A        B        C
-//   pictures               . . . . . . . . .        on the lines from A to B and from B to C
+//   frames                 . . . . . . . . .        on the lines from A to B and from B to C
 //
-// A picture shows the state one step and 35 ms ago, so that the snapshots before and after it are known.
+// A view shows the state one step and 35 ms ago, so that the snapshots before and after it are known.
 //
 // While physics pauses or makes more than `most_rate` steps per second, shows the newest snapshot as it is.
 class SlowMotion {
@@ -83,7 +83,7 @@ class SlowMotion {
     const PositionSnapshot* device = nullptr;
     std::span<const Telemetry> telemetry;  // of the newest snapshot, with interpolated centers of mass
   };
-  // The picture at a wall time [s]. The spans are valid until the next call of either member.
+  // The view at a wall time [s]. The spans are valid until the next call of either member.
   Shown at(double wall);
 
  private:
