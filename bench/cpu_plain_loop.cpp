@@ -153,7 +153,7 @@ void PlainLoop::add_contacts() {
   const auto mask = static_cast<std::uint32_t>(heads_.size() - 1);
   std::ranges::fill(heads_, end_of_list);
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    std::uint16_t& head = heads_[bucket_of(cell_of(state_.positions[i], inverse_size), mask)];
+    std::uint16_t& head = heads_[bucket_of(hash_of(cell_of(state_.positions[i], inverse_size)), mask)];
     links_[i] = head;
     head = static_cast<std::uint16_t>(i);
   }
@@ -161,8 +161,8 @@ void PlainLoop::add_contacts() {
     const auto i = static_cast<std::uint16_t>(mass);
     const Cell cell = cell_of(state_.positions[i], inverse_size);
     for (int n = 0; n < half_neighborhood; ++n) {
-      const Cell other = neighbor_cell(cell, n);
-      for (std::uint16_t j = heads_[bucket_of(other, mask)]; j != end_of_list; j = links_[j])
+      const Cell other = cell + neighbor(n);
+      for (std::uint16_t j = heads_[bucket_of(hash_of(other), mask)]; j != end_of_list; j = links_[j])
         if ((n > 0 || j > i) && cell_of(state_.positions[j], inverse_size) == other) add_contact(i, j, distance);
     }
   }

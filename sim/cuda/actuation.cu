@@ -17,6 +17,7 @@ __global__ void actuate(const DrivenMaterial* driven, std::size_t count, const f
       actuated(*to.own, {amplitude[to.setting], frequency[to.setting], phase[to.setting], drive[to.setting]});
   *to.now = now;
   *to.phase = muscle_phase(now, clock);
+  *to.swing = MuscleSwing::of(now);
 }
 
 }  // namespace

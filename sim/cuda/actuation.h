@@ -17,8 +17,8 @@
 #include <span>
 
 #include "mercury/backend.h"
+#include "sim/cuda/layout.h"
 #include "sim/cuda/memory.h"
-#include "sim/physics/muscle.h"
 
 namespace mercury::cuda {
 
@@ -26,6 +26,7 @@ struct DrivenMaterial {
   const Material* own;
   Material* now;
   MusclePhase* phase;
+  MuscleSwing* swing;
   std::uint32_t setting;  // index in the shared arrays
 };
 

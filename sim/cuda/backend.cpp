@@ -43,7 +43,8 @@ std::size_t CudaBackend::robots_at_once() const {
   double rounds = 0;
   for (const auto& robots : classes())
     if (robots->size() > 0)
-      rounds += static_cast<double>(robots->size()) / robots_in_flight(configuration_.solver, model_, robots->launch());
+      rounds += static_cast<double>(robots->size()) /
+                robots_in_flight(configuration_.solver, model_for(robots->launch()), robots->launch());
   return rounds > 0 ? static_cast<std::size_t>(std::llround(static_cast<double>(places_.size()) / rounds)) : 0;
 }
 
@@ -174,13 +175,11 @@ void CudaBackend::begin_exchange() {
 
 void CudaBackend::choose_launches() {
   views_valid_ = false;
-  model_ =
-      solver_model_of(configuration_.environment,
-                      std::ranges::any_of(classes(), [](const auto& robots) { return robots->has_real_bodies(); }));
+  real_bodies_ = std::ranges::any_of(classes(), [](const auto& robots) { return robots->has_real_bodies(); });
   for (const auto& robots : classes()) {
     if (robots->size() == 0) continue;
     robots->choose_launch(configuration_, places_.size());
-    prepare_steps(configuration_.solver, model_, robots->launch());
+    prepare_steps(configuration_.solver, model_for(robots->launch()), robots->launch());
   }
   // Reports of the classes follow one another.
   first_report_.assign(1, 0);

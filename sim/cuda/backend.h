@@ -104,8 +104,11 @@ class CudaBackend final : public Backend {
   // To be called before robots come or go: what names places or masses of the batch is no longer valid.
   void begin_exchange();
 
-  // Chooses the model for the robots and their materials, and how each class is launched.
+  // Chooses how each class is launched.
   void choose_launches();
+  AnyEnvironmentModel model_for(const LaunchConfiguration& launch) const {
+    return step_model_of(configuration_.environment, real_bodies_, launch);
+  }
   void number_masses(std::span<const Robot* const> robots);
   const RobotView* views() const;
   const float* rest_positions(std::span<const Robot* const> robots, std::span<const float> lifts);
@@ -142,7 +145,7 @@ class CudaBackend final : public Backend {
   mutable bool views_valid_ = false;
   bool rest_valid_ = false;
   Configuration configuration_;
-  AnyEnvironmentModel model_ = solver_model_of(Ocean{});
+  bool real_bodies_ = false;  // of any robot
   StepConstants constants_;
   double busy_seconds_ = 0;
   LoadTimes load_times_;

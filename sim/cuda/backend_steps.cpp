@@ -148,13 +148,14 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
     const SizeClass& robots = owned_->classes[c];
     StepArguments arguments{robots.view(),  clock, constants_, stiffness_scale_of(configuration_.environment), 0,
                             robots.launch()};
+    const AnyEnvironmentModel model = model_for(robots.launch());
     std::int64_t done = 0;
     do {
       arguments.clock.step = clock.step + done;
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, max_steps_per_launch));
       done += arguments.steps;
       arguments.report = done == steps && report ? report + first_report_[c] : nullptr;
-      launch_steps(configuration_.solver, model_, arguments,
+      launch_steps(configuration_.solver, model, arguments,
                    c == launch_order_.front() ? stream : robots.stream().get());
     } while (done < steps);
   }

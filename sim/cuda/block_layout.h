@@ -83,6 +83,14 @@ MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint
   return buckets == 0 ? 0 : (1 + contact_list_size + buckets) * 4 + tiles * lanes * 2;
 }
 
+// Pairs that the grid finds, joined or not, are written down until there are this many per slot.
+inline constexpr std::uint32_t near_pairs_per_slot = 4;
+
+// Bytes in device memory that ContactPass needs beside them.
+inline std::uint32_t contact_workspace_bytes(std::uint32_t tiles) {
+  return tiles * lanes * (3 * sizeof(float) + near_pairs_per_slot * sizeof(std::uint32_t));
+}
+
 // `tiles` = of the largest robot, `fields` = of a tile in working memory.
 MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, std::uint32_t tiles,
                                              std::uint32_t fields) {

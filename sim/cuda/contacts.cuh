@@ -9,7 +9,9 @@
 //   |--------------- touch -----------------|------- listed --------|
 //                                           |<------ margin ------->|
 //
-// 1. Searching the grid costs far more than reading the list, which is short or empty unless the robot folds up.
+// 1. Searching the grid costs far more than reading the list, which is short or empty unless the robot folds up. Most
+//    pairs that it finds may be joined by springs, as in water, where masses touch at nearly the distance of neighbors
+//    in a lattice. So it writes down all of them, and then each thread looks up the springs of one pair.
 // 2. The list can miss a pair only after one of its masses has moved half the margin. Each thread adds up the
 //    farthest that one of its masses moved per step, which costs nothing but is often too much: what swings comes back,
 //    and the whole robot travels. So when a sum reaches the limit, the true ways are computed, relative to the first
@@ -44,8 +46,9 @@ __device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets
   const float inverse_size = 1 / radius;
   const Cell cell = cell_of(x, inverse_size);
   for (int n = 0; n < half_neighborhood; ++n) {
-    const Cell other = neighbor_cell(cell, n);
-    for (std::uint32_t j = memory.heads[bucket_of(other, buckets - 1)]; j != end_of_list; j = memory.links[j]) {
+    const Cell other = cell + neighbor(n);
+    for (std::uint32_t j = memory.heads[bucket_of(hash_of(other), buckets - 1)]; j != end_of_list;
+         j = memory.links[j]) {
       if (n == 0 && j <= i) continue;
       const Vec3 xj = position(j);
       if (squared_length(xj - x) < radius * radius && cell_of(xj, inverse_size) == other) visit(j);
@@ -53,17 +56,22 @@ __device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets
   }
 }
 
-// `verifies`: whether the true ways are computed; it takes registers.
+// Pairs within this many contact distances are listed, if lists are not verified.
+inline constexpr float plain_list_radius = 1.5f;
+
+// `verifies`: whether the true ways are computed. What is rarely needed is then not inline, so that it takes no
+// registers from the steps. Bodies of the paper have registers to spare.
 template <class Robot, bool verifies>
 class ContactPass {
  public:
-  __device__ ContactPass(char* memory, float* listed) : memory_(memory), listed_(listed) {}
+  __device__ explicit ContactPass(const Robot& robot) : memory_(address(robot)) {}
 
   // Makes the list of near pairs, or makes sure that it is still complete. All threads of the block must call it, since
   // it has barriers.
   __device__ void update_list(const Robot& robot) {
     if constexpr (verifies) {
-      const float farthest = has_list_ && collides(robot) ? farthest_since_listed(robot) : 0;
+      const float farthest =
+          has_list_ && collides(robot) ? farthest_since_listed(robot.arguments(), robot.context()) : 0;
       const bool complete =
           has_list_ && (!collides(robot) || (farthest < reach(robot) / 2 && !contact_memory(robot).overflows()));
       if (!__syncthreads_or(!complete)) {
@@ -72,7 +80,11 @@ class ContactPass {
       }
       has_list_ = true;
     }
-    make_list(robot);
+    traveled_ = 0;
+    if constexpr (verifies)
+      make_list_apart(robot.arguments(), robot.context());
+    else
+      make_list(robot, contact_memory(robot));
   }
 
   // No mass of this thread moved farther than this in a step [m].
@@ -87,9 +99,10 @@ class ContactPass {
     if (!collides(robot)) return;
     const ContactMemory memory = contact_memory(robot);
     if (memory.overflows()) {
-      for_each_near_pair(robot, [&](std::uint32_t i, Vec3 x, std::uint32_t j) {
-        if (touches(robot, robot.mass_at(j).vector(field_x) - x) && !joined(robot, i, j)) add_pair(robot, i, j);
-      });
+      if constexpr (verifies)
+        add_by_search_apart(robot.arguments(), robot.context());
+      else
+        add_by_search(robot, memory);
       return;
     }
     const std::uint32_t count = *memory.count;
@@ -98,13 +111,30 @@ class ContactPass {
   }
 
  private:
+  using Context = ThreadContext<typename Robot::Memory>;
+
+  __device__ static float list_radius(const Robot& robot) {
+    if constexpr (verifies)
+      return robot.stored_header().list_radius;
+    else
+      return plain_list_radius * robot.header().contact_distance;
+  }
   // How far a mass may go before the list must be made again [m]: half the margin, less 1 % for rounding.
   __device__ static float reach(const Robot& robot) {
-    return 0.99f * (robot.stored_header().list_radius - robot.header().contact_distance) / 2;
+    if constexpr (verifies)
+      return 0.99f * (list_radius(robot) - robot.header().contact_distance) / 2;
+    else
+      return 0.99f * (plain_list_radius - 1) / 2 * robot.header().contact_distance;
   }
 
   // Of this thread's masses, relative to the first mass of the robot [m].
-  __device__ float farthest_since_listed(const Robot& robot) const {
+  __device__ __noinline__ static float farthest_since_listed(const StepArguments& arguments, Context context) {
+    const Robot robot(arguments, context);
+    const float* const listed = listed_positions(robot);
+    const auto listed_at = [&](std::uint32_t slot) {
+      const float* x = listed + 3 * slot;
+      return Vec3{x[0], x[1], x[2]};
+    };
     const Vec3 first = robot.mass_at(0).vector(field_x) - listed_at(0);
     float squared = 0;
     for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile)
@@ -113,56 +143,127 @@ class ContactPass {
                         squared_length(robot.own_mass(tile).vector(field_x) - listed_at(robot.own_slot(tile)) - first));
     return sqrtf(squared);
   }
-  __device__ Vec3 listed_at(std::uint32_t slot) const {
-    const float* x = listed_ + 3 * slot;
-    return {x[0], x[1], x[2]};
+
+  __device__ __noinline__ static void add_by_search_apart(const StepArguments& arguments, Context context) {
+    const Robot robot(arguments, context);
+    add_by_search(robot, {address(robot), buckets(robot)});
+  }
+  __device__ static void add_by_search(const Robot& robot, const ContactMemory& memory) {
+    for_each_near_pair(robot, memory, [&](std::uint32_t i, Vec3 x, std::uint32_t j) {
+      if (touches(robot, robot.mass_at(j).vector(field_x) - x) && !joined(robot, i, j)) add_pair(robot, i, j);
+    });
   }
 
-  __device__ void make_list(const Robot& robot) {
-    const ContactMemory memory = contact_memory(robot);
-    traveled_ = 0;
+  __device__ __noinline__ static void make_list_apart(const StepArguments& arguments, Context context) {
+    const Robot robot(arguments, context);
+    make_list(robot, {address(robot), buckets(robot)});
+  }
+  __device__ static void make_list(const Robot& robot, const ContactMemory& memory) {
+    fill_grid(robot, memory);
+    const auto list = [&](std::uint32_t i, std::uint32_t j) {
+      if (joined(robot, i, j)) return;
+      const std::uint32_t index = atomicAdd(memory.count, 1u);
+      if (index < contact_list_size) memory.pairs[index] = i << 16 | j;
+    };
+    const auto list_near = [&] {
+      if (collides(robot))
+        for_each_near_pair(robot, memory, [&](std::uint32_t i, Vec3, std::uint32_t j) { list(i, j); });
+    };
+    if constexpr (verifies) {
+      const std::uint32_t most = near_pairs_per_slot * robot.header().tiles * lanes;
+      const std::uint32_t found = write_near_pairs(robot, memory, most);
+      const std::uint32_t* const near = near_pairs(robot);
+      if (found > most)
+        list_near();
+      else
+        for (std::uint32_t p = robot.thread(); p < found; p += robot.threads()) list(near[p] >> 16, near[p] & 0xffff);
+    } else {
+      list_near();
+    }
+    __syncthreads();
+  }
+
+  // Between barriers.
+  __device__ static void fill_grid(const Robot& robot, const ContactMemory& memory) {
     for (std::uint32_t b = robot.thread(); b < buckets(robot); b += robot.threads()) memory.heads[b] = end_of_list;
     if (robot.thread() == 0) *memory.count = 0;
     __syncthreads();
-    const float inverse_size = 1 / robot.stored_header().list_radius;
+    const float inverse_size = 1 / list_radius(robot);
     for (std::uint32_t tile = robot.first_tile(); collides(robot) && tile < robot.last_tile(); ++tile) {
       if (!robot.has_mass(tile)) continue;
       const std::uint32_t slot = robot.own_slot(tile);
       const Vec3 x = robot.own_mass(tile).vector(field_x);
       if constexpr (verifies) {
-        listed_[3 * slot] = x.x;
-        listed_[3 * slot + 1] = x.y;
-        listed_[3 * slot + 2] = x.z;
+        float* const listed = listed_positions(robot) + 3 * slot;
+        listed[0] = x.x;
+        listed[1] = x.y;
+        listed[2] = x.z;
       }
-      const Cell cell = cell_of(x, inverse_size);
-      const std::uint32_t bucket = bucket_of(cell, buckets(robot) - 1);
+      const std::uint32_t bucket = bucket_of(hash_of(cell_of(x, inverse_size)), buckets(robot) - 1);
       memory.links[slot] = static_cast<std::uint16_t>(atomicExch(memory.heads + bucket, slot));
     }
     __syncthreads();
+  }
+
+  // Writes down all pairs within the list radius, or `most` of them. Returns their number.
+  __device__ static std::uint32_t write_near_pairs(const Robot& robot, const ContactMemory& memory,
+                                                   std::uint32_t most) {
+    std::uint32_t* const near = near_pairs(robot);
     if (collides(robot))
-      for_each_near_pair(robot, [&](std::uint32_t i, Vec3, std::uint32_t j) {
-        if (joined(robot, i, j)) return;
+      for_each_near_pair(robot, memory, [&](std::uint32_t i, Vec3, std::uint32_t j) {
         const std::uint32_t index = atomicAdd(memory.count, 1u);
-        if (index < contact_list_size) memory.pairs[index] = i << 16 | j;
+        if (index < most) near[index] = i << 16 | j;
       });
     __syncthreads();
+    const std::uint32_t found = *static_cast<volatile std::uint32_t*>(memory.count);
+    __syncthreads();
+    if (robot.thread() == 0) *memory.count = 0;
+    __syncthreads();
+    return found;
   }
 
   __device__ static std::uint32_t buckets(const Robot& robot) { return robot.arguments().launch.contact_buckets; }
   __device__ static bool collides(const Robot& robot) {
     return buckets(robot) > 0 && robot.header().contact_distance > 0;
   }
-  __device__ ContactMemory contact_memory(const Robot& robot) const { return {memory_, buckets(robot)}; }
+
+  // In device memory: contacts that do not fit on the chip, then contact_workspace_bytes().
+  __device__ static char* workspace(const Robot& robot) {
+    const BatchView& batch = robot.arguments().batch;
+    char* const begin = batch.workspace + std::size_t{robot.context().robot} * batch.workspace_stride;
+    return begin + (Robot::Memory::on_chip ? 0 : batch.tile_stride * Robot::tile_bytes);
+  }
+  __device__ static char* address(const Robot& robot) {
+    const LaunchConfiguration& launch = robot.arguments().launch;
+    if (!launch.contacts_on_chip) return workspace(robot);
+    const std::uint32_t tiles = robot.arguments().batch.tile_stride;
+    const std::uint32_t number = threadIdx.x / lanes / launch.warps_per_robot;
+    return shared_memory + block_layout(launch, tiles, Robot::fields).relaxation_times +
+           number * contact_bytes(buckets(robot), tiles);
+  }
+  // Found again where registers are scarce.
+  __device__ ContactMemory contact_memory(const Robot& robot) const {
+    return {verifies ? address(robot) : memory_, buckets(robot)};
+  }
+  // [slot][3], when the list was made [m].
+  __device__ static float* listed_positions(const Robot& robot) {
+    const bool on_chip = robot.arguments().launch.contacts_on_chip;
+    const std::uint32_t contacts = contact_bytes(buckets(robot), robot.arguments().batch.tile_stride);
+    return reinterpret_cast<float*>(workspace(robot) + (on_chip ? 0 : contacts));
+  }
+  __device__ static std::uint32_t* near_pairs(const Robot& robot) {
+    return reinterpret_cast<std::uint32_t*>(listed_positions(robot) + 3 * robot.arguments().batch.tile_stride * lanes);
+  }
 
   // Calls visit(i, x_i, j) for every pair within the list radius whose slot i is one of this thread's.
   template <class Visit>
-  __device__ void for_each_near_pair(const Robot& robot, const Visit& visit) const {
+  __device__ static void for_each_near_pair(const Robot& robot, const ContactMemory& memory, const Visit& visit) {
     const auto position = [&](std::uint32_t j) { return robot.mass_at(j).vector(field_x); };
     for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile) {
       if (!robot.has_mass(tile)) continue;
       const std::uint32_t i = robot.own_slot(tile);
       const Vec3 x = robot.own_mass(tile).vector(field_x);
-      for_each_near(contact_memory(robot), buckets(robot), robot.stored_header().list_radius, i, x, position,
+      for_each_near(memory, buckets(robot), list_radius(robot), i, x, position,
                     [&](std::uint32_t j) { visit(i, x, j); });
     }
   }
@@ -188,15 +289,26 @@ class ContactPass {
   __device__ static bool owns(const Robot& robot, std::uint32_t i, std::uint32_t j) {
     const std::uint32_t wanted = Robot::Memory::on_chip ? Robot::byte_offset(j) / 4 : j, tile = i / lanes;
     const auto* spring = robot.springs() + i % lanes;
-    for (std::uint32_t row = robot.row_start()[tile]; row < robot.row_start()[tile + 1]; ++row) {
-      const std::uint32_t key = spring[std::size_t{row} * lanes].x;
-      if (key >> 16 == wanted && (key & 0xff) != air) return true;
+    if constexpr (verifies) {
+      const std::uint32_t last = robot.row_start()[tile + 1];
+      bool found = false;
+      // Without a way out of the loop, so that loads need not wait for each other.
+#pragma unroll 8
+      for (std::uint32_t row = robot.row_start()[tile]; row < last; ++row) {
+        const std::uint32_t key = spring[std::size_t{row} * lanes].x;
+        found |= key >> 16 == wanted && (key & 0xff) != air;
+      }
+      return found;
+    } else {
+      for (std::uint32_t row = robot.row_start()[tile]; row < robot.row_start()[tile + 1]; ++row) {
+        const std::uint32_t key = spring[std::size_t{row} * lanes].x;
+        if (key >> 16 == wanted && (key & 0xff) != air) return true;
+      }
+      return false;
     }
-    return false;
   }
 
   char* const memory_;
-  float* const listed_;  // [slot][3], the positions when the list was made
   bool has_list_ = false;
   float traveled_ = 0;  // upper bound for this thread's masses since then [m]
 };

@@ -49,6 +49,7 @@ struct RobotHeader {
   float contact_units;                  // k_c [units/m]
   float list_radius;                    // within which pairs are listed that may touch [m]
   float viscous_limit;                  // of tau d|d|/dt [m]; 0 = no spring has a relaxation time
+  float relaxation_time;                // tau of all springs [s]; negative = of each material
   double mass;                          // of all masses together [kg]
 };
 
@@ -62,6 +63,14 @@ struct DevicePerturbation {
   std::uint32_t robot, slot;
   Vec3 target;
   float stiffness;
+};
+
+// What a step needs of a material beside its phase.
+struct alignas(8) MuscleSwing {
+  float amplitude, highest_sine;
+  MERCURY_HOST_DEVICE static MuscleSwing of(const Material& material) {
+    return {material.amplitude, mercury::highest_sine(material)};
+  }
 };
 
 // Pointers and strides of a size class in device memory. A stride is the length of one robot's chunk, in units of what
@@ -82,6 +91,7 @@ struct BatchView {
   const float* point_masses;      // [robot][slot] [kg]; null = 1 kg
   const Material* materials;      // [robot][max_materials]
   MusclePhase* phases;            // [robot][max_materials], for the current clock base
+  MuscleSwing* swings;            // [robot][max_materials]
   const DevicePerturbation* perturbations;
   char* workspace;  // [robot], what does not fit on the chip: contact lists, working memory
   std::uint32_t robot_count, tile_stride, row_stride, face_stride, perturbation_count;

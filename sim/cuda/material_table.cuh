@@ -22,7 +22,8 @@ class MaterialTable {
       : warp_(warp), warps_(warps), lane_(lane), chunks_(arguments.launch.table_chunks),
         copies_(1u << arguments.launch.table_copy_bits), copy_bits_(arguments.launch.table_copy_bits), table_(table),
         materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
-        phases_(arguments.batch.phases + std::size_t{robot} * max_materials) {}
+        phases_(arguments.batch.phases + std::size_t{robot} * max_materials),
+        swings_(arguments.batch.swings + std::size_t{robot} * max_materials) {}
 
   // Writes the parameters of the launch's first step.
   __device__ void fill(const StepArguments& arguments) {
@@ -48,12 +49,12 @@ class MaterialTable {
   __device__ void update(const StepArguments& arguments, std::uint32_t step) {
     for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
       const std::uint32_t id = chunk * lanes + lane_;
-      const float amplitude = materials_[id].amplitude;
-      if (step > 0 && !__any_sync(0xffffffffu, amplitude != 0)) continue;
+      const MuscleSwing swing = swings_[id];
+      if (step > 0 && !__any_sync(0xffffffffu, swing.amplitude != 0)) continue;
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
       // As muscle_factor() does it, but read in this order: XPBD's kernels then spill fewer registers.
       const float sine = sine_of_phase(phase_at(phases_[id], now));
-      spread(chunk, &Parameters::length_factor, length_factor(amplitude, sine, highest_sine(materials_[id])));
+      spread(chunk, &Parameters::length_factor, length_factor(swing.amplitude, sine, swing.highest_sine));
     }
   }
 
@@ -91,6 +92,7 @@ class MaterialTable {
   Parameters* const table_;
   const Material* const materials_;
   const MusclePhase* const phases_;
+  const MuscleSwing* const swings_;
 };
 
 }  // namespace mercury::cuda

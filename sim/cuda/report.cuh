@@ -201,10 +201,12 @@ class RobotReporter {
   const Material* const materials_;
 };
 
-// Needs a barrier before it. All threads of the block must call this, since it has barriers. `out` = null: writes
-// nothing.
+// Needs a barrier before it. All threads of the block must call this, since it has barriers. `materials` = the robot's,
+// by id. `out` = null: writes nothing. Not inline, so that it takes no registers from the steps.
 template <class Robot>
-__device__ void report(const Robot& robot, const Material* materials, DeviceTelemetry* out) {
+__device__ __noinline__ void report(const StepArguments& arguments, ThreadContext<typename Robot::Memory> context,
+                                    const Material* materials, DeviceTelemetry* out) {
+  const Robot robot(arguments, context);
   const RobotReporter<Robot> reporter(robot, materials);
   reporter.begin();
   __syncthreads();

@@ -61,6 +61,7 @@ void SizeClass::for_each_array(const Visit& visit) {
   visit(statuses_, 1);
   visit(device_materials_, max_materials);
   visit(phases_, max_materials);
+  visit(swings_, max_materials);
   visit(state_, sizes_.state());
   visit(valences_, sizes_.slots());
   visit(masses_, sizes_.slots());
@@ -129,6 +130,7 @@ void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMe
                      .contact_units = 0,
                      .list_radius = 0,
                      .viscous_limit = 0,
+                     .relaxation_time = 0,
                      .mass = mass};
   const auto to = table(place);
   const auto rest = std::ranges::copy(materials_of(robot), to.begin()).out;
@@ -221,7 +223,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
-  if (launch_.contact_buckets > 0) workspace += 3 * sizeof(float) * sizes_.slots();
+  if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
   reserve_workspace(workspace);
 }
 
@@ -264,6 +266,7 @@ BatchView SizeClass::view() const {
           .point_masses = point_masses_.data(),
           .materials = driven_materials_.size() > 0 ? driven_materials_.data() : device_materials_.data(),
           .phases = phases_.data(),
+          .swings = swings_.data(),
           .perturbations = perturbations_.data(),
           .workspace = workspace_.data(),
           .robot_count = size(),

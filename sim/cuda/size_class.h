@@ -153,6 +153,7 @@ class SizeClass {
   ChunkedArray<FacePair> face_pairs_;
   ChunkedArray<Material> device_materials_;
   ChunkedArray<MusclePhase> phases_;
+  ChunkedArray<MuscleSwing> swings_;
   DeviceArray<PointProperties> points_;     // [place][slot], or empty
   DeviceArray<float> point_masses_;         // [place][slot] [kg], or empty
   DeviceArray<Material> driven_materials_;  // [place][max_materials] while actuators drive them, else empty

@@ -14,9 +14,12 @@ namespace {
 
 constexpr unsigned threads = 256;
 
-__global__ void compute_phases(const Material* materials, MusclePhase* phases, std::size_t count, Clock clock) {
+__global__ void compute_phases(const Material* materials, MusclePhase* phases, MuscleSwing* swings, std::size_t count,
+                               Clock clock) {
   const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
-  if (i < count) phases[i] = muscle_phase(materials[i], clock);
+  if (i >= count) return;
+  phases[i] = muscle_phase(materials[i], clock);
+  swings[i] = MuscleSwing::of(materials[i]);
 }
 
 // One block per robot.
@@ -42,6 +45,7 @@ void SizeClass::describe(std::uint32_t place, const Configuration& configuration
   const float distance = contact_distance(robot, measures, environment);
   const float contact_stiffness = contact_stiffness_of(environment, configuration.solver, configuration.dt,
                                                        stiffest_spring(measures, table(place)), inertia.lightest);
+  header.relaxation_time = common_relaxation_time(measures, table(place)).value_or(-1);
   header.viscous_limit = has_viscous_springs(measures, table(place)) ? viscous_limit * measures.longest : 0;
   const FixedPointScale scale = fixed_point_scale(measures, table(place), configuration, distance, inertia);
   header.environment_scale = scale.environment;
@@ -115,7 +119,7 @@ void SizeClass::update_phases(const Clock& clock, cudaStream_t stream) {
   if (size() == 0 || (!phases_stale_ && same_base)) return;
   const std::size_t count = std::size_t{size()} * max_materials;
   compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream>>>(
-      view().materials, phases_.data(), count, clock);
+      view().materials, phases_.data(), swings_.data(), count, clock);
   check(cudaGetLastError(), "computing muscle phases");
   phase_clock_ = clock;
   phases_stale_ = false;
@@ -172,7 +176,8 @@ std::vector<Material> SizeClass::driven_table(std::uint32_t place) const {
 
 DrivenMaterial SizeClass::driven_material(std::uint32_t place, MaterialId id, std::uint32_t setting) const {
   const std::size_t first = std::size_t{place} * max_materials, driven = first + driven_ids_[first + id];
-  return {device_materials_.data() + first + id, driven_materials_.data() + driven, phases_.data() + driven, setting};
+  return {device_materials_.data() + first + id, driven_materials_.data() + driven, phases_.data() + driven,
+          swings_.data() + driven, setting};
 }
 
 }  // namespace mercury::cuda

@@ -36,6 +36,9 @@ class SpringPass {
   template <bool viscous>
   __device__ float add_all() const {
     float longest = 0;
+    Viscosity viscosity{};
+    if constexpr (viscous)
+      viscosity = {robot_.stored_header().relaxation_time, robot_.scale() * robot_.stored_header().viscous_limit};
     robot_.walk_springs(
         [&](std::uint32_t tile, const Mass<Memory>& mass, std::uint32_t rows) {
           const int bias = static_cast<int>(rows) * rounding_magic_bits;
@@ -44,21 +47,24 @@ class SpringPass {
           return owner;
         },
         [&](auto count, const SpringRecord* records, Owner& owner) {
-          add_springs<decltype(count)::value, viscous>(records, owner, longest);
+          add_springs<decltype(count)::value, viscous>(records, viscosity, owner, longest);
         },
         [](const Mass<Memory>& mass, const Owner& owner) { mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z); });
     return longest;
   }
 
-  // The longest |d|^2 of this lane's springs without padding [m2]. Slow.
-  __device__ float longest_spring() const {
+  // The longest |d|^2 of this lane's springs without padding [m2]. Slow, and not inline, so that it takes no registers
+  // from the steps.
+  __device__ __noinline__ static float longest_spring(const StepArguments& arguments,
+                                                      ThreadContext<typename Robot::Memory> context) {
+    const Robot robot(arguments, context);
     float longest = 0;
-    for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile)
-      for (std::uint32_t row = robot_.row_start()[tile]; row < robot_.row_start()[tile + 1]; ++row) {
-        const SpringRecord record = robot_.springs()[std::size_t{row} * lanes + robot_.context().lane];
-        if (robot_.material_of(record) == air) continue;
+    for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile)
+      for (std::uint32_t row = robot.row_start()[tile]; row < robot.row_start()[tile + 1]; ++row) {
+        const auto record = robot.springs()[std::size_t{row} * lanes + robot.context().lane];
+        if (robot.material_of(record) == air) continue;
         longest = fmaxf(
-            longest, squared_length(robot_.own_mass(tile).vector(field_x) - robot_.partner_of(record).vector(field_x)));
+            longest, squared_length(robot.own_mass(tile).vector(field_x) - robot.partner_of(record).vector(field_x)));
       }
     return longest;
   }
@@ -86,24 +92,36 @@ class SpringPass {
     float relaxation_time;
   };
 
+  // Of a robot, if viscous.
+  struct Viscosity {
+    float relaxation_time;  // of all springs [s]; negative = of each material
+    float scaled_limit;
+  };
+
   // `count` springs of one owner: first all loads, then the arithmetic and the additions.
   template <int count, bool viscous>
-  __device__ void add_springs(const SpringRecord* records, Owner& owner, float& longest) const {
+  __device__ void add_springs(const SpringRecord* records, const Viscosity& viscosity, Owner& owner,
+                              float& longest) const {
     LoadedSpring springs[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
       springs[i] = load(records[i], owner);
       if constexpr (viscous) {
         springs[i].rate = owner.v - springs[i].partner.vector(field_v);
-        springs[i].relaxation_time = robot_.relaxation_time_of(records[i]);
+        springs[i].relaxation_time = viscosity.relaxation_time;
       }
     }
+    if constexpr (viscous)
+      if (viscosity.relaxation_time < 0) {
+#pragma unroll
+        for (int i = 0; i < count; ++i) springs[i].relaxation_time = robot_.relaxation_time_of(records[i]);
+      }
 #pragma unroll
     for (int i = 0; i < count; ++i) {
       const LoadedSpring& spring = springs[i];
       const float squared = squared_length(spring.d);
       longest = fmaxf(longest, squared);
-      const float per_distance = units_per_distance<viscous>(spring, squared);
+      const float per_distance = units_per_distance<viscous>(spring, viscosity, squared);
       const int x = bits_of(multiply_add(per_distance, spring.d.x, rounding_magic));
       const int y = bits_of(multiply_add(per_distance, spring.d.y, rounding_magic));
       const int z = bits_of(multiply_add(per_distance, spring.d.z, rounding_magic));
@@ -126,14 +144,13 @@ class SpringPass {
 
   // Force or correction on the partner, per meter of d, in units.
   template <bool viscous>
-  __device__ float units_per_distance(const LoadedSpring& spring, float squared) const {
+  __device__ float units_per_distance(const LoadedSpring& spring, const Viscosity& viscosity, float squared) const {
     float length = spring.scaled_rest_length * spring.parameters.length_factor;
     float valence = spring.valence;
     if constexpr (viscous) {
       const Vec3 d = spring.d, rate = spring.rate;
       const float approach = multiply_add(d.z, rate.z, multiply_add(d.y, rate.y, d.x * rate.x));
-      length -= viscous_length(squared, approach, robot_.scale() * spring.relaxation_time,
-                               robot_.scale() * robot_.header().viscous_limit);
+      length -= viscous_length(squared, approach, robot_.scale() * spring.relaxation_time, viscosity.scaled_limit);
       if constexpr (solver == Solver::xpbd)
         valence *= viscous_factor(spring.relaxation_time, robot_.arguments().constants.inverse_dt);
     }

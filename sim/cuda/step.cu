@@ -64,19 +64,21 @@ __global__ void __maxnreg__(72)
   if (arguments.report) {
     materials.write_rates(arguments, arguments.steps);
     const std::uint32_t table = shared ? 0 : thread.robot;
-    report(stepper.robot(), arguments.batch.materials + std::size_t{table} * max_materials,
-           context.has_robot ? arguments.report + thread.robot : nullptr);
+    report<typename Stepper::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
+                                    context.has_robot ? arguments.report + thread.robot : nullptr);
   }
   if (active) stepper.store_state();
 }
 
+// step_model_of() has all others on the chip.
 template <Solver solver, class EnvironmentModel, int record_words>
 auto kernel_for(const LaunchConfiguration& launch) {
   if constexpr (solver == Solver::xpbd)
     if (launch.on_chip && !launch.valence_on_chip)
       return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
-  return launch.on_chip ? step_kernel<solver, EnvironmentModel, OnChip, record_words>
-                        : step_kernel<solver, EnvironmentModel, OffChip, record_words>;
+  if constexpr (std::is_same_v<EnvironmentModel, GeneralModel>)
+    if (!launch.on_chip) return step_kernel<solver, EnvironmentModel, OffChip, record_words>;
+  return step_kernel<solver, EnvironmentModel, OnChip, record_words>;
 }
 
 template <Solver solver, class EnvironmentModel>

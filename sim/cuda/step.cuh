@@ -16,8 +16,7 @@ class RobotStepper {
 
   __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model,
                           const BlockContext<solver, Memory>& context)
-      : robot_(arguments, context.thread), model_(model), contacts_(context.contacts, context.listed),
-        failure_(context.failure) {}
+      : robot_(arguments, context.thread), model_(model), contacts_(robot_), failure_(context.failure) {}
 
   __device__ const Robot& robot() const { return robot_; }
   __device__ bool alive() const { return batch().statuses[robot_.context().robot].exploded_step < 0; }
@@ -85,13 +84,14 @@ class RobotStepper {
   __device__ void accelerate(std::uint32_t step) {
     if constexpr (EnvironmentModel::real_bodies) {
       if (failure_->before(step, phase_prediction)) return;
+      const float inverse_scale = 1 / environment_scale();
       for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
         if (!robot_.has_mass(tile)) continue;
         const Mass<Memory> mass = robot_.own_mass(tile);
         const Vec3 v = mass.vector(field_v);
         // The bias of the reactions that are to come has been in the sum.
         const int bias = robot_.incoming_bias(tile);
-        const Vec3 force = sum_of(mass, bias, 1 / environment_scale());
+        const Vec3 force = sum_of(mass, bias, inverse_scale);
         mass.set_vector(field_v, accelerated(v, acceleration(force, v, point_at(tile)), constants()));
         mass.set_sum(bias);
       }
@@ -101,12 +101,13 @@ class RobotStepper {
   // XPBD: replaces the position by the prediction, and the velocity by v + dt F.
   __device__ void predict(std::uint32_t step) {
     if (failure_->before(step, phase_prediction)) return;
+    const float inverse_scale = 1 / environment_scale();
     for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
       const Vec3 v = mass.vector(field_v);
       const Vec3 predicted =
-          accelerated(v, acceleration(sum_of(mass, 0, 1 / environment_scale()), v, point_at(tile)), constants());
+          accelerated(v, acceleration(sum_of(mass, 0, inverse_scale), v, point_at(tile)), constants());
       mass.set_sum(robot_.incoming_bias(tile));
       store(step, phase_prediction, tile, multiply_add(constants().dt, predicted, mass.vector(field_x)), predicted);
     }
@@ -123,7 +124,8 @@ class RobotStepper {
     else
       longest = springs.template add_all<false>();
     // Padding counts in add_all() and may be long, so a failure is checked again without it.
-    if (longest > limit && springs.longest_spring() > limit) failure_->report(step, phase_springs, Failure::never);
+    if (longest > limit && SpringPass<Robot>::longest_spring(robot_.arguments(), robot_.context()) > limit)
+      failure_->report(step, phase_springs, Failure::never);
   }
 
   __device__ void end(std::uint32_t step) {

@@ -22,6 +22,13 @@ struct StepArguments {
   DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
 };
 
+// The model whose kernel a launch uses. Robots in device memory wait for it most of the time, so they have one kernel
+// for all environments.
+inline AnyEnvironmentModel step_model_of(const Environment& environment, bool real_bodies,
+                                         const LaunchConfiguration& launch) {
+  return launch.on_chip ? solver_model_of(environment, real_bodies) : GeneralModel(environment);
+}
+
 // Robots that the current device steps at the same time.
 std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch);
 

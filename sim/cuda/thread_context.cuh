@@ -55,8 +55,6 @@ struct BlockContext {
   float* lengths;
   float* relaxation_times;  // [table_chunks][32], if launch.viscous
   Failure* failure;
-  char* contacts;
-  float* listed;  // ContactPass
   ThreadContext<Memory> thread;
 
   // `fields` = of a tile in working memory.
@@ -73,17 +71,10 @@ struct BlockContext {
     thread.warp = block_warp % launch.warps_per_robot;
     thread.lane = threadIdx.x % lanes;
 
-    char* const workspace = batch.workspace + std::size_t{thread.robot} * batch.workspace_stride;
     if constexpr (Memory::on_chip)
       thread.masses = shared_address(shared_memory) + layout.contacts + number * working_bytes;
     else
-      thread.masses = workspace;
-    contacts = launch.contacts_on_chip ? shared_memory + layout.relaxation_times +
-                                             number * contact_bytes(launch.contact_buckets, batch.tile_stride)
-                                       : workspace + (Memory::on_chip ? 0 : working_bytes);
-    listed = reinterpret_cast<float*>(
-        workspace + (Memory::on_chip ? 0 : working_bytes) +
-        (launch.contacts_on_chip ? 0 : contact_bytes(launch.contact_buckets, batch.tile_stride)));
+      thread.masses = batch.workspace + std::size_t{thread.robot} * batch.workspace_stride;
     material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +
                      (launch.shared_table ? 0 : number * table_copies * launch.table_chunks * lanes);
     thread.material_table = shared_address(material_table + thread.lane % table_copies);

@@ -25,6 +25,7 @@ inline constexpr std::uint16_t end_of_list = 0xffff;
 struct Cell {
   std::int32_t x, y, z;
   friend MERCURY_HOST_DEVICE bool operator==(Cell a, Cell b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+  friend MERCURY_HOST_DEVICE Cell operator+(Cell a, Cell b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 };
 
 MERCURY_HOST_DEVICE std::int32_t cell_coordinate(float x, float inverse_size) {
@@ -37,19 +38,21 @@ MERCURY_HOST_DEVICE Cell cell_of(Vec3 x, float inverse_size) {
   return {cell_coordinate(x.x, inverse_size), cell_coordinate(x.y, inverse_size), cell_coordinate(x.z, inverse_size)};
 }
 
+// The hash of a sum of cells is the sum of theirs.
+MERCURY_HOST_DEVICE std::uint32_t hash_of(Cell cell) {
+  return static_cast<std::uint32_t>(cell.x) * 0x9e3779b1u + static_cast<std::uint32_t>(cell.y) * 0x85ebca77u +
+         static_cast<std::uint32_t>(cell.z) * 0xc2b2ae3du;
+}
 // There are mask + 1 buckets, a power of two.
-MERCURY_HOST_DEVICE std::uint32_t bucket_of(Cell cell, std::uint32_t mask) {
-  const std::uint32_t h = static_cast<std::uint32_t>(cell.x) * 0x9e3779b1u +
-                          static_cast<std::uint32_t>(cell.y) * 0x85ebca77u +
-                          static_cast<std::uint32_t>(cell.z) * 0xc2b2ae3du;
-  return (h ^ (h >> 15)) & mask;
+MERCURY_HOST_DEVICE std::uint32_t bucket_of(std::uint32_t hash, std::uint32_t mask) {
+  return (hash ^ (hash >> 15)) & mask;
 }
 
 // The cell itself (index 0) and the 13 neighbors after it.
 inline constexpr int half_neighborhood = 14;
-MERCURY_HOST_DEVICE Cell neighbor_cell(Cell cell, int index) {
+MERCURY_HOST_DEVICE Cell neighbor(int index) {
   const int code = 13 + index;  // (dx + 1) + 3 (dy + 1) + 9 (dz + 1); 13 is the cell itself
-  return {cell.x + code % 3 - 1, cell.y + code / 3 % 3 - 1, cell.z + code / 9 - 1};
+  return {code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
 }
 
 }  // namespace mercury

@@ -28,12 +28,12 @@ float nearest_apart(const Robot& robot, float radius) {
   const std::uint32_t mask = std::bit_ceil(points) - 1;
   std::vector<std::vector<std::uint32_t>> buckets(mask + 1);
   const auto cell = [&](std::uint32_t point) { return cell_of(robot.masses[point], 1 / radius); };
-  for (std::uint32_t i = 0; i < points; ++i) buckets[bucket_of(cell(i), mask)].push_back(i);
+  for (std::uint32_t i = 0; i < points; ++i) buckets[bucket_of(hash_of(cell(i)), mask)].push_back(i);
   float nearest = radius;
   for (std::uint32_t i = 0; i < points; ++i)
     for (int n = 0; n < half_neighborhood; ++n) {
-      const Cell other = neighbor_cell(cell(i), n);
-      for (const std::uint32_t j : buckets[bucket_of(other, mask)]) {
+      const Cell other = cell(i) + neighbor(n);
+      for (const std::uint32_t j : buckets[bucket_of(hash_of(other), mask)]) {
         if ((n == 0 && j <= i) || !(cell(j) == other)) continue;
         const float distance = length(robot.masses[j] - robot.masses[i]);
         if (distance < nearest && !std::ranges::binary_search(joined, key_of(i, j))) nearest = distance;
@@ -84,6 +84,16 @@ bool has_viscous_springs(const RobotMeasures& measures, std::span<const Material
   for (std::size_t id = 0; id < materials.size(); ++id)
     if (measures.used[id] && materials[id].relaxation_time > 0) return true;
   return false;
+}
+
+std::optional<float> common_relaxation_time(const RobotMeasures& measures, std::span<const Material> materials) {
+  std::optional<float> common;
+  for (std::size_t id = air + 1; id < materials.size(); ++id) {
+    if (!measures.used[id]) continue;
+    if (common && *common != materials[id].relaxation_time) return std::nullopt;
+    common = materials[id].relaxation_time;
+  }
+  return common;
 }
 
 float contact_distance(const Robot& robot, const RobotMeasures& measures, const Environment& environment) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,8 @@ float stiffest_spring(const RobotMeasures& measures, std::span<const Material> m
 
 // Whether a spring has a relaxation time.
 bool has_viscous_springs(const RobotMeasures& measures, std::span<const Material> materials);
+// The relaxation time of all springs [s]; none if they differ.
+std::optional<float> common_relaxation_time(const RobotMeasures& measures, std::span<const Material> materials);
 
 // The distance within which two masses that no spring joins repel [m]; 0 without springs. Beyond half the shortest rest
 // length it is at most 0.95 of the smallest distance of two such masses at rest.
