@@ -18,6 +18,7 @@ BREACHES = [
     "// Robots built alike share it.",
     "// Springs a second.",
     "// The window shows 60 pictures per second.",
+    ("app/window/a.cpp", "// The mouse in the picture."),
     "// One a robot.",
     "// Any robot, be it large or small.",
     "// The robot at the present time.",
@@ -69,7 +70,8 @@ class WordRules(unittest.TestCase):
     def test_every_rule_sees_a_breach(self):
         for (words, instead, *_), text in zip(word_rules.WORDS, BREACHES, strict=True):
             with self.subTest(words):
-                found = [what for _, what in word_rules.findings_of_text("sim/a.cpp", "\n" + text)]
+                path, text = text if isinstance(text, tuple) else ("sim/a.cpp", text)
+                found = [what for _, what in word_rules.findings_of_text(path, "\n" + text)]
                 self.assertIn(f"write {instead}", " ".join(found))
 
     def test_plain_words_are_not_reported(self):

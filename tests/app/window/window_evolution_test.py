@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of an evolution in the real window: window_evolution_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
 import csv
+import re
 import shutil
 import subprocess
 
@@ -124,7 +125,7 @@ class EvolutionTest(WindowCase):
         folder = scratch() / "swim"
         evolve(folder)
         text = (folder / "run.toml").read_text()
-        (folder / "run.toml").write_text(text.replace("version = 1", "version = 999"))
+        (folder / "run.toml").write_text(re.sub(r"(?m)^version = .*", "version = 999", text))
         self.assertNotEqual((folder / "run.toml").read_text(), text)
         refused = subprocess.run([PROGRAM, "view", str(folder)], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 2)
