@@ -87,6 +87,36 @@ TEST_P(RealBody, TwoMassesOscillateAtTheFrequencyOfTheirReducedMass) {
   }
 }
 
+// Where voxels of several materials share an edge, each of them has a spring there.
+TEST_P(RealBody, AnyNumberOfSpringsBetweenTwoMassesAddUp) {
+  std::vector<Robot> robots;
+  std::vector<double> forces;  // [N]
+  for (int count = 1; count <= 5; ++count) {
+    Robot robot = bodies::voxels({.x = 2, .y = 1, .z = 1}, {.stiffness = 0});
+    robot.materials.resize(2);
+    double force = 0;
+    for (int i = 0; i < count; ++i) {
+      const auto id = static_cast<MaterialId>(robot.materials.size());
+      robot.materials.push_back({.stiffness = 100.0f * static_cast<float>(i + 1)});
+      robot.springs.push_back({0, 1, id, 2 * rest_distance(robot, 0, 1)});
+      force += 100.0 * (i + 1) * static_cast<double>(rest_distance(robot, 0, 1));
+    }
+    robots.push_back(robot);
+    forces.push_back(force);
+  }
+  const auto expect_forces = [&](std::span<const Robot> batch, std::size_t first) {
+    Simulation simulation(configuration(space()), batch);
+    simulation.step(1);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const double dt = 1e-3;
+      const double found = static_cast<double>(length(simulation.state(i).velocities[0])) / dt;
+      EXPECT_NEAR(found, forces[first + i], 1e-3 * forces[first + i]) << first + i + 1 << " springs";
+    }
+  };
+  for (std::size_t i = 0; i < robots.size(); ++i) expect_forces({&robots[i], 1}, i);
+  expect_forces(robots, 0);
+}
+
 TEST_P(RealBody, AFixedMassStaysAndHoldsTheOther) {
   Robot robot = bodies::pair({.stiffness = 400, .relaxation_time = 0.02f});
   robot.mass = {1, 2};

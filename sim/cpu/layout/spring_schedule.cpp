@@ -52,19 +52,20 @@ class Scheduler {
       const auto [low, high] = std::minmax(slots_.of_mass[robot_.springs[s].a], slots_.of_mass[robot_.springs[s].b]);
       scheduled_.push_back({low, high, s});
     }
-    // Two springs between the same masses cannot share a run.
+    // Springs between the same masses cannot share a run: the first of each is in one, the second in another, ...
     const auto key = [&](const ScheduledSpring& s) { return std::tuple(tile_of(s.owner), s.partner - s.owner); };
     std::ranges::sort(scheduled_, {},
                       [&](const ScheduledSpring& s) { return std::tuple_cat(key(s), std::tuple(s.owner, s.spring)); });
     for (auto first = scheduled_.begin(); first != scheduled_.end();) {
       const auto last =
           std::find_if(first, scheduled_.end(), [&](const ScheduledSpring& s) { return key(s) != key(*first); });
-      const auto repeated = std::stable_partition(first, last, [&, before = ~0u](const ScheduledSpring& s) mutable {
-        return std::exchange(before, s.owner) != s.owner;
-      });
-      for (const auto& [begin, end] : {std::pair(first, repeated), std::pair(repeated, last)})
-        if (begin != end) candidates_.push_back({begin, end});
-      first = last;
+      while (first != last) {
+        std::uint32_t before = ~0u;
+        const auto repeated = std::stable_partition(
+            first, last, [&](const ScheduledSpring& s) { return std::exchange(before, s.owner) != s.owner; });
+        candidates_.push_back({first, repeated});
+        first = repeated;
+      }
     }
   }
 
