@@ -193,9 +193,16 @@ std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& wa
   return select(std::move(born));
 }
 
-std::string_view name_of(Fate fate) {
-  constexpr std::string_view names[] = {"sound", "stopped", "exploded", "overstretched", "failed", "too small"};
-  return names[static_cast<std::size_t>(fate)];
+namespace {
+constexpr std::string_view fates[] = {"sound", "stopped", "exploded", "overstretched", "failed", "too small"};
+}
+
+std::string_view name_of(Fate fate) { return fates[static_cast<std::size_t>(fate)]; }
+
+std::optional<Fate> fate_named(std::string_view name) {
+  const auto* found = std::ranges::find(fates, name);
+  if (found == std::end(fates)) return std::nullopt;
+  return static_cast<Fate>(found - std::begin(fates));
 }
 
 Fate worse(Fate a, Fate b) {

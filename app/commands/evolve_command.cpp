@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "app/base/interrupt.h"
@@ -23,6 +24,8 @@
 #include "app/options/output_options.h"
 #include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
+#include "evolution/run_folder/champion_checks.h"
+#include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/new_folder.h"
 #include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
@@ -70,8 +73,14 @@ RunFolder open_folder(const EvolveOptions& options, const Command& command) {
   return RunFolder::create(folder, settings, options.output.force());
 }
 
-// Runs generation after generation. Returns false if the user interrupted.
-bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor) {
+// How many threads check champions beside the search.
+int checking_threads(const Device& device) {
+  const int threads = device.threads > 0 ? device.threads : static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(1, device.kind == DeviceKind::cpu ? threads / 4 : threads / 2);
+}
+
+// Runs generation after generation. Returns false if the user interrupted. `checks` may be null.
+bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor, ChampionChecks* checks) {
   EvolutionProgress progress(evolution.next_generation(), evolution.settings().generations);
   const Watch watch = [&](std::size_t done, std::size_t all) {
     progress.update(done, all);
@@ -83,11 +92,48 @@ bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor) {
     if (!generation) return false;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run.append(*generation, {.seconds = seconds, .device = assessor.device_name()});
+    if (checks) checks->update();
     progress.finish_generation(generation->born.size() * static_cast<std::size_t>(evolution.settings().trials.trials),
                                evolution.living().empty() ? worst_score : evolution.living().front().score(),
                                median_score(evolution));
   }
   return true;
+}
+
+// Waits for the checks of champions. Returns false if the user interrupted.
+bool finish_checks(ChampionChecks& checks) {
+  std::optional<Progress> progress;
+  std::size_t all = 0;
+  return checks.finish([&](std::size_t left) {
+    if (!progress) progress.emplace("checking", "champions", static_cast<std::int64_t>(all = left));
+    progress->update(static_cast<std::int64_t>(all - std::min(all, left)));
+    return !interrupted();
+  });
+}
+
+// The last champion that is confirmed, and how many are not.
+void report_checks(const EvolveOptions& options, const RunHistory& run, const Checks& checks) {
+  const auto champions = champions_of(run);
+  const auto check_of = [&](std::uint64_t id) {
+    const auto found = checks.find(id);
+    return found == checks.end() ? nullptr : &found->second;
+  };
+  if (const Confirmation* best = champions.empty() ? nullptr : check_of(run.generations().back().best))
+    fmt::print("its result {}\n", best->verdict == Verdict::confirmed
+                                      ? "is confirmed"
+                                      : fmt::format("is not confirmed: {}{}{}", name_of(best->verdict),
+                                                    best->reason.empty() ? "" : ": ", best->reason));
+  std::size_t confirmed = 0, checked = 0;
+  for (const auto& [id, generation] : champions)
+    if (const Confirmation* check = check_of(id)) {
+      ++checked;
+      confirmed += check->verdict == Verdict::confirmed;
+    }
+  const std::filesystem::path folder = options.folder;
+  fmt::print("{} of {} champions are confirmed{}{}; {} lists all\n", confirmed, champions.size(),
+             checked < champions.size() ? fmt::format(", {} not yet checked", champions.size() - checked) : "",
+             confirmed > 0 ? fmt::format(", in {}", (folder / champions_name).string()) : "",
+             (folder / checks_name).string());
 }
 
 void report(const EvolveOptions& options, const RunFolder& run, const Evolution& evolution) {
@@ -101,10 +147,16 @@ void report(const EvolveOptions& options, const RunFolder& run, const Evolution&
     fmt::print("no robot is sound; the first one is {}\n", name_of(fate));
     return;
   }
-  for (std::size_t i = 0; i < objectives.size(); ++i)
-    fmt::print("best: {} = {:.6g}\n", objectives[i], best.assessment.scores.at(i));
-  fmt::print("born in generation {} as number {}; see {}\n", best.generation, best.id,
-             (std::filesystem::path(options.folder) / "best").string());
+  for (std::size_t i = 0; i < objectives.size(); ++i) {
+    fmt::print("best: {} = {:.6g}", objectives[i], best.assessment.scores.at(i));
+    if (i < best.assessment.lower_quartiles.size())
+      fmt::print(" (quartiles of {} trials: {:.6g} to {:.6g})", evolution.settings().trials.trials,
+                 best.assessment.lower_quartiles[i], best.assessment.upper_quartiles[i]);
+    fmt::print("\n");
+  }
+  fmt::print("born in generation {} as number {}", best.generation, best.id);
+  const std::filesystem::path champions = std::filesystem::path(options.folder) / champions_name;
+  fmt::print("{}\n", run.history().settings().evolution.confirm ? "" : "; see " + champions.string());
 }
 
 // The settings of the run with the device that the user gave for this process.
@@ -120,13 +172,20 @@ int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSetti
   if (evolution.is_over())
     say(fmt::format("{} has all its {} generations; --generations raises their number", options.folder,
                     settings.generations));
-  const bool done = evolve(run, evolution, assessor);
+  std::optional<ChampionChecks> checks;
+  if (run.history().settings().evolution.confirm)
+    checks.emplace(run, checking_threads(settings.configuration.device)).update();
+  const bool done = evolve(run, evolution, assessor, checks ? &*checks : nullptr);
   run.write_all();
+  const bool all_checked = !checks || finish_checks(*checks);
   report(options, run, evolution);
+  if (checks) report_checks(options, run.history(), checks->checks());
   if (!done)
     warn(fmt::format("stopped in generation {}, which is lost; mercury evolve {} --resume goes on",
                      evolution.next_generation(), options.folder));
-  return done ? 0 : 1;
+  else if (!all_checked)
+    warn(fmt::format("stopped while champions were checked; mercury evolve {} --resume goes on", options.folder));
+  return done && all_checked ? 0 : 1;
 }
 
 int evolve_here(const EvolveOptions& options, const Command& command) {
@@ -225,6 +284,12 @@ int merge(const EvolveOptions& options, const Command& command) {
   remove_shards(options.folder, evolution.next_generation());
   run.write_all();
   report(options, run, evolution);
+  if (run.history().settings().evolution.confirm) {
+    ChampionChecks checks(run, static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
+    checks.update();
+    if (!finish_checks(checks)) return 1;
+    report_checks(options, run.history(), checks.checks());
+  }
   return 0;
 }
 

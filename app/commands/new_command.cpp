@@ -15,8 +15,10 @@
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"
+#include "app/options/robot_options.h"
 #include "app/options/robot_output.h"
 #include "app/options/simulation_options.h"
+#include "mercury/lively.h"
 #include "mercury/objective.h"
 #include "mercury/real_body.h"
 
@@ -28,6 +30,7 @@ struct NewOptions {
   RobotOutput output;
   std::uint64_t best_of = 0;  // 0 = no search
   std::string csv;            // of the candidates; empty = none
+  bool lively = false;
   TrialSettings trials = search_trials();
   SimulationOptions simulation;
   Physics physics = Physics::paper;  // of the robots' bodies
@@ -35,6 +38,7 @@ struct NewOptions {
   void add_to(const Command& command) {
     output.add_to(command);
     add_number(command, "--best-of", best_of, "Simulate N robots and keep the --count that get farthest", "N");
+    command.add_flag("--lively", lively, lively_help);
     add_text(command, "--csv", csv, "With --best-of: write a line per candidate to this file, in their order", "FILE");
     add_trial_options(command, trials);
     simulation.add_to(command);
@@ -157,9 +161,29 @@ std::string environment_for(const NewOptions& options) {
   return options.simulation.chosen_environment();
 }
 
-int make_files(const NewOptions& options, const std::string& kind, const MakeRobot& make) {
+// Their number is that in the seed, not that in the folder.
+int make_lively_files(const NewOptions& options, const std::string& kind, const ParameterValues& values,
+                      const MakeRobot& make) {
+  const RobotOutput& output = options.output;
+  RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), output.count() * tried_per_lively));
+  if (output.dry_run()) return describe_work(options, kind);
+  const RandomRobots request{.kind = kind,
+                             .count = static_cast<std::size_t>(output.count()),
+                             .seed = output.seed(),
+                             .values = values,
+                             .environment = environment_for(options)};
+  const std::vector<RandomRobots> chosen =
+      chosen_lively(request, lively_configuration(request, options.simulation.chosen_environment()));
+  return write_robots(output, std::move(files),
+                      [&](std::uint64_t seed, std::uint64_t index) { return make(seed, chosen[index].first); });
+}
+
+int make_files(const NewOptions& options, const std::string& kind, const ParameterValues& values,
+               const MakeRobot& make) {
+  if (options.best_of > 0 && options.lively) throw InputError("--lively and --best-of", "give one of them");
   if (options.best_of > 0) return keep_best(options, kind, make);
   require_no_search_options(options);
+  if (options.lively) return make_lively_files(options, kind, values, make);
   const RobotOutput& output = options.output;
   RobotFiles files = output.open(output.count(), names_of(kind, output.seed(), output.count()));
   return output.dry_run() ? describe_work(options, kind) : write_robots(output, std::move(files), make);
@@ -198,7 +222,7 @@ void add_kind(const Command& family, const Choose& choose, const Generator& gene
       generator.validate(values);
       options->shared.physics = real_material_in(values) ? Physics::real : Physics::paper;
       const std::string environment = environment_for(options->shared);
-      return make_files(options->shared, generator.kind, [&](std::uint64_t seed, std::uint64_t index) {
+      return make_files(options->shared, generator.kind, values, [&](std::uint64_t seed, std::uint64_t index) {
         return generator.make(values, environment, seed, index);
       });
     });

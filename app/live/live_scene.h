@@ -142,8 +142,9 @@ class LiveScene {
   // Opens robot files, folders of them, or one recording, repro or scene, in the background. Those three take the place
   // of the current scene; of several recordings, the robots are opened at rest.
   void open(const std::vector<std::filesystem::path>& paths);
-  // Makes random robots in the background. `replace`: they replace all robots.
-  void generate(const RandomRobots& generation, bool replace = false);
+  // Makes random robots in the background. `replace`: they replace all robots. `lively`: the liveliest of ten times as
+  // many (mercury/lively.h), tried in the scene's environment.
+  void generate(const RandomRobots& generation, bool replace = false, bool lively = false);
   void remove(const std::vector<RobotId>& robots);
   void duplicate(const std::vector<RobotId>& robots);
   // Makes a child of each robot in the background, beside its parent or in its place. Only robots with a known

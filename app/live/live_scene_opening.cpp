@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <system_error>
 
 #include "app/live/live_scene_parts.h"
@@ -12,6 +13,7 @@
 #include "app/recording/trajectory_reader.h"
 #include "mercury/error.h"
 #include "mercury/import.h"
+#include "mercury/lively.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
@@ -196,6 +198,18 @@ std::vector<RandomRobot> make_random_robots(const RandomRobots& request, WorkCon
   return robots;
 }
 
+std::vector<RandomRobot> make_lively_robots(const RandomRobots& request, const Configuration& configuration,
+                                            WorkControl& control, Messages& messages) {
+  const auto watch = [&](std::size_t done, std::size_t) {
+    control.progress(static_cast<std::int64_t>(done / tried_per_lively));
+    return !control.canceled();
+  };
+  std::vector<RandomRobot> robots;
+  for (const RandomRobots& one : lively_requests(request, configuration, watch))
+    std::ranges::move(make_random_robots(one, control, messages), std::back_inserter(robots));
+  return robots;
+}
+
 struct Child {
   LiveRobot parent;
   Robot robot;
@@ -279,12 +293,15 @@ void LiveScene::Parts::replay(const std::shared_ptr<const Repro>& repro, const f
            fmt::format("the explosion was seen on {}; this device may give another result", repro->device_name));
 }
 
-void LiveScene::generate(const RandomRobots& generation, bool replace) {
+void LiveScene::generate(const RandomRobots& generation, bool replace, bool lively) {
   if (generation.count == 0) return;
   Parts& parts = *parts_;
   const auto request = std::make_shared<const RandomRobots>(generation);
-  const auto task = [&parts, request, replace](WorkControl& control) -> Background::Finish {
-    auto made = std::make_shared<std::vector<RandomRobot>>(make_random_robots(*request, control, parts.messages));
+  const std::string environment(name_of(parts.document.configuration.environment));
+  const auto task = [&parts, request, replace, lively, environment](WorkControl& control) -> Background::Finish {
+    auto made = std::make_shared<std::vector<RandomRobot>>(
+        lively ? make_lively_robots(*request, lively_configuration(*request, environment), control, parts.messages)
+               : make_random_robots(*request, control, parts.messages));
     return [&parts, request, replace, made] {
       if (made->empty()) return;
       parts.edit("make " + robot_count_text(made->size()));

@@ -92,6 +92,7 @@ void EvolutionOptions::add_to(const Command& command) {
   repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]")
       .offering(names_of_quantities());
   add_parameters(command, given_.algorithm, search_group);
+  given_.confirm = true;
   add_parameters(command, given_, search_group);
   for (const char* name : {"--population", "--generations"}) command.find_option(name)->on_first_screen();
   add_trial_options(command, given_.trials);
@@ -133,7 +134,10 @@ std::vector<Robot> EvolutionOptions::founders(const std::vector<std::string>& pa
     if (path != standard_input && !std::filesystem::exists(path))
       throw InputError("--from", fmt::format("\"{}\" is neither a file or folder nor a kind of robot ({})",
                                              path.string(), generator_kinds()));
-    files.push_back(is_run_folder(path) ? path / "best" : path);
+    const bool is_run = is_run_folder(path);
+    if (is_run && !std::filesystem::exists(path / "best"))
+      throw InputError("--from", fmt::format("{} has no champions in best/; checks.csv in it says why", path.string()));
+    files.push_back(is_run ? path / "best" : path);
   }
   std::vector<Robot> founders = robots_of(founder_files_.load(files));
   if (founders.empty() && !files.empty()) throw InputError("--from", "no robot is left: none of the files can be used");

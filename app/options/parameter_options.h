@@ -32,7 +32,13 @@ void add_parameters(const Command& command, Struct& values, const char* group, W
     if (!is_wanted(parameter.name)) return;
     const std::string help(parameter.help), note(parameter.default_note);
     if constexpr (std::is_same_v<Value, bool>) {
-      command.add_flag(option_of(parameter.name), value, help).in_group(group);
+      // If it is on by default, the option switches it off.
+      const std::string name = switch_of(parameter.name, value);
+      const bool is_on = value;
+      command
+          .add_flag(
+              name, [&value, is_on] { value = !is_on; }, is_on ? "Do not: " + help : help)
+          .in_group(group);
     } else {
       const std::string usual = note.empty() ? "default " + text_of(value) : note;
       const std::string form =

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
+#include "app/base/interrupt.h"
+#include "app/base/progress.h"
 #include "app/base/work_progress.h"
 #include "app/options/option_values.h"
 #include "app/options/simulation_options.h"
@@ -14,6 +17,7 @@
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
+#include "mercury/lively.h"
 #include "mercury/origin.h"
 #include "mercury/real_body.h"
 
@@ -23,6 +27,18 @@ namespace {
 constexpr std::size_t most_robots = 1'000'000;
 
 }  // namespace
+
+std::vector<RandomRobots> chosen_lively(const RandomRobots& request, const Configuration& configuration) {
+  if (request.count > most_robots / tried_per_lively)
+    throw InputError("--lively", fmt::format("{} robots are too many; give at most {}", request.count,
+                                             most_robots / tried_per_lively));
+  Progress progress("trying", "robots", static_cast<std::int64_t>(request.count * tried_per_lively));
+  return lively_requests(request, configuration, [&](std::size_t done, std::size_t) {
+    throw_if_interrupted();
+    progress.update(static_cast<std::int64_t>(done));
+    return true;
+  });
+}
 
 void RobotOptions::add_to(const Command& command) {
   files_.add_to(command);
@@ -39,6 +55,7 @@ void RobotOptions::add_to(const Command& command) {
   add_number(command, "--seed", seed_, "Seed of the random robots and of jitter (default 1)", "N")
       .in_group("Robots")
       .on_first_screen();
+  command.add_flag("--lively", lively_, lively_help).in_group("Robots");
   generators_.add_to(command);
 }
 
@@ -153,7 +170,14 @@ std::vector<RobotFromFile> RobotOptions::load_files() const {
 
 std::vector<RandomRobots> RobotOptions::random() const {
   std::vector<RandomRobots> requests;
-  for (const std::string& request : random_) requests.push_back(random_from(request));
+  for (const std::string& request : random_) {
+    const RandomRobots all = random_from(request);
+    if (lively_)
+      std::ranges::move(chosen_lively(all, lively_configuration(all)), std::back_inserter(requests));
+    else
+      requests.push_back(all);
+  }
+  if (lively_ && random_.empty()) throw InputError("--lively", "goes with --random KIND:N");
   return requests;
 }
 

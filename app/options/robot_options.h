@@ -13,6 +13,7 @@
 #include "app/options/generator_options.h"
 #include "app/options/robot_inputs.h"
 #include "app/options/robot_memory.h"
+#include "mercury/configuration.h"
 #include "mercury/evaluator.h"
 #include "mercury/robot.h"
 
@@ -36,6 +37,11 @@ struct LoadedRobots {
   std::vector<std::string> environments;     // as in RobotSequence
   Physics physics = Physics::paper;
 };
+
+inline constexpr const char* lively_help =
+    "Of random robots, take the N that get farthest of 10 N in a quick trial, the liveliest first";
+// Those robots, as requests of one each, tried with a progress bar. Throws InputError for too many, Interrupted.
+std::vector<RandomRobots> chosen_lively(const RandomRobots& request, const Configuration& configuration);
 
 class RobotOptions {
  public:
@@ -63,7 +69,7 @@ class RobotOptions {
   // make.
   std::vector<RobotFromFile> load_files() const;
   std::vector<std::filesystem::path> files() const { return files_.paths(); }
-  std::vector<RandomRobots> random() const;
+  std::vector<RandomRobots> random() const;  // with --lively, after their trials
 
   // What the options say that bodies are to be; robots of files may have real ones without a word.
   Physics physics() const;
@@ -87,6 +93,7 @@ class RobotOptions {
   RobotInputs files_;
   std::vector<std::string> random_;  // "voxel:12"
   std::uint64_t seed_ = 1;
+  bool lively_ = false;
   GeneratorOptions generators_;
 };
 

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "evolution/run_folder/champion_checks.h"
+#include "evolution/run_folder/csv_lines.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/progress_plot.h"
 #include "mercury/error.h"
@@ -60,10 +62,14 @@ std::optional<Robot> grown(const RunHistory& run, std::uint64_t id) {
 
 void write_champions(const RunHistory& run) {
   const std::filesystem::path folder = run.folder() / champions_name;
+  const bool only_confirmed = run.settings().evolution.confirm;
+  const Checks checks = only_confirmed ? read_checks(run.folder()) : Checks{};
   std::optional<std::uint64_t> previous;
   for (const GenerationSummary& generation : run.generations()) {
     if (generation.living == 0 || generation.best == previous) continue;
     previous = generation.best;
+    const auto check = checks.find(generation.best);
+    if (only_confirmed && (check == checks.end() || check->second.verdict != Verdict::confirmed)) continue;
     const std::filesystem::path path = folder / file_name(generation.number, generation.best);
     std::error_code error;
     if (std::filesystem::exists(path, error)) continue;
@@ -76,36 +82,6 @@ void write_champions(const RunHistory& run) {
 }
 
 namespace {
-
-class Csv {
- public:
-  Csv& cell(std::string_view text) {
-    if (!at_line_start_) text_ += ',';
-    at_line_start_ = false;
-    if (text.find_first_of(",\"\n\r") == std::string_view::npos) {
-      text_ += text;
-      return *this;
-    }
-    text_ += '"';
-    for (const char letter : text) text_.append(letter == '"' ? 2 : 1, letter);
-    text_ += '"';
-    return *this;
-  }
-  Csv& cell(double value) { return cell(shortest_text(value)); }
-  template <std::integral Whole>
-  Csv& cell(Whole value) {
-    return cell(std::to_string(value));
-  }
-  void end_line() {
-    text_ += '\n';
-    at_line_start_ = true;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-  bool at_line_start_ = true;
-};
 
 // "score", or "score_1", "score_2", ... of several objectives.
 std::string score_name(std::size_t objective, std::size_t objectives) {
@@ -133,7 +109,7 @@ std::string hexadecimal(std::uint64_t value) {
   return text;
 }
 
-void add_quantities(Csv& csv, const Assessment& assessment) {
+void add_quantities(CsvLines& csv, const Assessment& assessment) {
   for (std::size_t q = 0; q < quantities().size(); ++q) {
     const bool has_value = q < assessment.values.size() && counts(quantities()[q], assessment.fate);
     csv.cell(has_value ? shortest_text(assessment.values[q]) : std::string());
@@ -141,7 +117,7 @@ void add_quantities(Csv& csv, const Assessment& assessment) {
 }
 
 // Numbers that an individual may lack.
-void add_cells(Csv& csv, const std::vector<double>& values, std::size_t count) {
+void add_cells(CsvLines& csv, const std::vector<double>& values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) csv.cell(i < values.size() ? shortest_text(values[i]) : std::string());
 }
 
@@ -149,7 +125,7 @@ void add_cells(Csv& csv, const std::vector<double>& values, std::size_t count) {
 
 void write_lineage(const RunHistory& run) {
   const std::size_t objectives = run.settings().evolution.objectives.size();
-  Csv csv;
+  CsvLines csv;
   for (const char* name :
        {"id", "ancestor_list", "origin_time", "destruction_time", "generation", "line_began", "seed", "fate"})
     csv.cell(name);
@@ -178,7 +154,7 @@ void write_lineage(const RunHistory& run) {
 
 void write_generations(const RunHistory& run) {
   const std::size_t objectives = run.settings().evolution.objectives.size();
-  Csv csv;
+  CsvLines csv;
   for (const char* name : {"generation", "born", "living", "best_id"}) csv.cell(name);
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})

@@ -30,7 +30,8 @@ class DerivedFiles {
 };
 
 // Writes the champion of each generation that has another one than the previous generation, unless its file is there:
-// best/GENERATION-ID.json. A champion that cannot be grown has none.
+// best/GENERATION-ID.json. A champion that cannot be grown has none, and one that is not confirmed, if the run wants
+// that.
 void write_champions(const RunHistory& run);
 
 // The robot of an individual, "RUN-ID", with its ancestry in the origin. Throws InputError if it cannot be grown.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "evolution/run_folder/champion_checks.h"
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/run_file.h"
@@ -37,6 +38,7 @@ void remove_run(const fs::path& folder) {
   remove_numbered_robots(folder / founders_name);
   remove_numbered_robots(folder / champions_name);
   for (const std::string_view name : derived_file_names) remove_file(folder / name);
+  remove_file(folder / checks_name);
   remove_file(folder / journal_name);
 }
 

@@ -9,6 +9,7 @@
 #include <charconv>
 
 #include "mercury/error.h"
+#include "mercury/lively.h"
 #include "python/src/bindings.h"
 #include "python/src/gil.h"
 #include "python/src/values.h"
@@ -52,6 +53,9 @@ struct Source {
     return brackets[0] + text + brackets[1];
   }
 };
+
+constexpr std::uint64_t most_lively = 100'000;
+constexpr const char* lively_name = "lively";
 
 std::vector<nb::object> items_of(const std::string& name, const std::string& wanted, nb::handle value) {
   if (PyUnicode_Check(value.ptr()) || !nb::isinstance<nb::iterable>(value)) refuse_type(name, wanted, value);
@@ -105,9 +109,10 @@ ParameterValues values_from(const std::string& function, const Generator& genera
   ParameterValues values;
   for (const auto [key, value] : given) {
     const auto name = nb::cast<std::string>(key);
+    if (name == lively_name) continue;
     const auto parameter = std::ranges::find(generator.parameters, name, &GeneratorParameter::name);
     if (parameter == generator.parameters.end()) {
-      std::vector<std::string> names{"count", "seed", "first"};
+      std::vector<std::string> names{"count", "seed", "first", lively_name};
       for (const GeneratorParameter& known : generator.parameters) names.push_back(known.name);
       throw nb::type_error((function + "() has no parameter " + name + suggestion(name, names)).c_str());
     }
@@ -128,6 +133,27 @@ nb::list random_robots(const std::string& function, const Generator& generator, 
                        .first = seed_from("first", first_given),
                        .values = values_from(function, generator, given)};
   nb::list list;
+  if (given.contains(lively_name)) {
+    const nb::handle lively = given[lively_name];
+    if (!PyBool_Check(lively.ptr())) refuse_type(lively_name, "True or False", lively);
+    if (lively.is(nb::bool_(true))) {
+      request.count = static_cast<std::size_t>(count);
+      if (count > most_lively) throw InputError("count", "with lively, give at most " + std::to_string(most_lively));
+      std::vector<Robot> robots;
+      {
+        const ReleasedGil released;
+        for (const RandomRobots& one :
+             lively_requests(request, lively_configuration(request), [](std::size_t, std::size_t) {
+               const nb::gil_scoped_acquire acquired;
+               if (PyErr_CheckSignals() != 0) throw nb::python_error();
+               return true;
+             }))
+          for (Robot& robot : make_random_robots(one)) robots.push_back(std::move(robot));
+      }
+      for (Robot& robot : robots) list.append(SharedRobot{std::make_shared<const Robot>(std::move(robot))});
+      return list;
+    }
+  }
   for (std::uint64_t done = 0; done < count; done += request.count, request.first += request.count) {
     request.count = static_cast<std::size_t>(std::min(portion, count - done));
     std::vector<Robot> robots;
@@ -142,7 +168,7 @@ nb::list random_robots(const std::string& function, const Generator& generator, 
 }
 
 std::string signature_of(const std::string& function, const Generator& generator) {
-  std::string text = "def " + function + "(count: int = 1, seed: int = 1, first: int = 0, *";
+  std::string text = "def " + function + "(count: int = 1, seed: int = 1, first: int = 0, *, lively: bool = False";
   for (const GeneratorParameter& parameter : generator.parameters)
     text += ", " + parameter.name + ": " + std::visit(TypeHint{parameter}, parameter.initial) + " = " +
             std::visit(Source{}, parameter.initial);
@@ -152,7 +178,9 @@ std::string signature_of(const std::string& function, const Generator& generator
 std::string documentation_of(const Generator& generator) {
   std::string text = generator.help + ": `count` robots of a seed, from number `first` on, named \"" + generator.kind +
                      "-SEED-NUMBER\".\nThe same arguments give the same robots, bit for bit, on every machine." +
-                     (generator.note.empty() ? "" : "\n" + generator.note) + "\n\n";
+                     (generator.note.empty() ? "" : "\n" + generator.note) +
+                     "\n\nlively: the `count` robots that get farthest of ten times as many in a quick trial, the "
+                     "liveliest first\n";
   for (const GeneratorParameter& parameter : generator.parameters) {
     const bool is_list = std::holds_alternative<std::vector<int>>(parameter.initial);
     text += parameter.name + ": " + parameter.help + (parameter.unit.empty() ? "" : " [" + parameter.unit + "]") +

@@ -131,3 +131,15 @@ def test_threads_make_the_same_robots():
     alone = [mercurysim.random_voxel(4, seed=seed) for seed in range(16)]
     with ThreadPoolExecutor(8) as pool:
         assert list(pool.map(lambda seed: mercurysim.random_voxel(4, seed=seed), range(16))) == alone
+
+
+def test_lively_robots_are_those_that_get_farthest():
+    lively = mercurysim.random_voxel(2, seed=3, lively=True)
+    assert [robot.name for robot in lively] == [robot.name for robot in mercurysim.random_voxel(2, seed=3, lively=True)]
+    tried = mercurysim.random_voxel(20, seed=3)
+    names = [robot.name for robot in tried]
+    results = list(mercurysim.evaluate(tried, 4, trials=1, jitter=1e-3, seed=3, device="cpu"))
+    ranking = sorted(results, key=lambda result: -result.distance)
+    assert [robot.name for robot in lively] == [names[result.index] for result in ranking[:2]]
+    with pytest.raises(TypeError, match="lively"):
+        mercurysim.random_voxel(2, lively=3)

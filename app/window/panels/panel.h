@@ -34,6 +34,7 @@ class VideoRecorder;
 struct RobotCreation {
   RandomRobots generation{.count = 6};  // random robots
   bool replace = true;                  // random robots replace the robots of the scene
+  bool lively = true;                   // the liveliest of ten times as many
   MutationRequest mutation;
 };
 

@@ -49,7 +49,7 @@ void frame_robots(PanelContext& context, const std::vector<RobotId>& robots) {
 
 void generate_robots(PanelContext& context) {
   RobotCreation& creation = context.creation;
-  context.scene.generate(creation.generation, creation.replace);
+  context.scene.generate(creation.generation, creation.replace, creation.lively);
   ++creation.generation.seed;
 }
 

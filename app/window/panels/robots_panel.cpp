@@ -143,6 +143,10 @@ void RandomSection::draw(PanelContext& context) {
   context.log.item("generate.replace");
   tooltip("the new robots replace those in the scene; otherwise they are added");
   ImGui::SameLine();
+  ImGui::Checkbox("Lively", &context.creation.lively);
+  context.log.item("generate.lively");
+  tooltip("ten times as many robots are tried for four seconds, and those that get farthest are kept");
+  ImGui::SameLine();
   ImGui::Checkbox("More", &advanced_);
   context.log.item("generate.more");
   tooltip("show all settings of these robots");

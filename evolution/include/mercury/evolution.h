@@ -35,6 +35,7 @@ struct EvolutionSettings {
   std::size_t children = 0;  // per generation; 0 = as many as the population
   int generations = 100;     // after generation 0, which is random
   double mutation = 1;       // strength
+  bool confirm = false;      // only champions whose results hold are in a run's best/ (mercury/confirmation.h)
   std::uint64_t seed = 1;
 
   static constexpr std::tuple parameters{
@@ -45,6 +46,7 @@ struct EvolutionSettings {
           .with_default_note("default: --population"),
       Parameter("mutation", &EvolutionSettings::mutation, "", Accepts::above_zero, {0.1f, 10, true},
                 "Strength of mutations"),
+      Parameter("confirm", &EvolutionSettings::confirm, "Check champions; only those whose results hold are in best/"),
       Parameter("seed", &EvolutionSettings::seed, "", Accepts::at_least_zero, {0, 100}, "Seed of the run")};
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ inline constexpr double worst_score = -std::numeric_limits<double>::infinity();
 enum class Fate : std::uint8_t { sound, stopped, exploded, overstretched, failed, too_small };
 inline constexpr Fate last_fate = Fate::too_small;
 std::string_view name_of(Fate fate);  // "sound", ...
+std::optional<Fate> fate_named(std::string_view name);
 Fate worse(Fate a, Fate b);
 
 // What the trials of one individual gave.

@@ -19,7 +19,7 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parents[3]
 SHORT = {  # appended; the last value of an option counts
-    "evolve": ["--population", "4", "--generations", "10", "--seconds", "0.05", "--settle", "0"],
+    "evolve": ["--population", "4", "--generations", "10", "--seconds", "0.05", "--settle", "0", "--no-confirm"],
     "run": ["--seconds", "0.1"],
     "check": ["--seconds", "0.1"],
     "render": ["--seconds", "0.1", "--size", "160x120"],

@@ -4,7 +4,10 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <set>
+#include <sstream>
 #include <thread>
 
 #include "app/base/child_process.h"
@@ -55,12 +58,48 @@ class EvolveCommand : public FolderTest {
   }
 };
 
+// All champions are checked, beside the search; those whose results hold are in best/, and no others.
+TEST_F(EvolveCommand, OnlyConfirmedChampionsAreInBest) {
+  const Arguments settings{"--from",   "voxel:3x2x2", "--population", "8", "--generations", "6", "--seconds", "1",
+                           "--device", "cpu",         "--seed",       "5", "--quiet"};
+  const Outcome outcome = evolve("run", settings);
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.output, testing::HasSubstr(" champions are confirmed"));
+  const std::string checks = read("run/checks.csv");
+  std::vector<std::string> confirmed;
+  std::size_t checked = 0;
+  std::istringstream lines(checks);
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line); ++checked) {
+    char name[40];
+    int id = 0, generation = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,", &id, &generation), 2);
+    std::snprintf(name, sizeof name, "%05d-%07d.json", generation, id);
+    if (line.find(",confirmed,") != std::string::npos) confirmed.emplace_back(name);
+  }
+  const RunHistory history(path("run"));
+  std::set<std::uint64_t> champions;
+  for (const GenerationSummary& generation : history.generations()) champions.insert(generation.best);
+  EXPECT_EQ(checked, champions.size());
+  EXPECT_EQ(std::filesystem::exists(path("run/best")) ? listing("run/best") : std::vector<std::string>{}, confirmed);
+
+  // The search does not notice, and what is lost is made again.
+  ASSERT_EQ(evolve("unchecked", joined(settings, {"--no-confirm"})).status, 0);
+  EXPECT_EQ(lineage("unchecked"), lineage("run"));
+  EXPECT_EQ(listing("unchecked/best").size(), champions.size());
+  std::filesystem::remove(path("run/checks.csv"));
+  std::filesystem::remove_all(path("run/best"));
+  ASSERT_EQ(evolve("run", {"--resume", "--quiet"}).status, 0);
+  EXPECT_EQ(read("run/checks.csv"), checks);
+  EXPECT_EQ(std::filesystem::exists(path("run/best")) ? listing("run/best") : std::vector<std::string>{}, confirmed);
+}
+
 TEST_F(EvolveCommand, MakesARunFolder) {
   const Outcome outcome = evolve("run", small());
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(outcome.messages, "");
   EXPECT_THAT(listing("run"),
-              testing::IsSupersetOf({"best", "generations.csv", "genomes", "lineage.csv", "progress.svg", "run.toml"}));
+              testing::IsSupersetOf({"checks.csv", "generations.csv", "genomes", "lineage.csv", "progress.svg", "run.toml"}));
   const RunHistory history(path("run"));
   EXPECT_EQ(history.generations().size(), 5u);
   EXPECT_EQ(history.individuals().size(), 5u * 8);
