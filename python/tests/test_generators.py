@@ -103,7 +103,7 @@ def test_every_parameter_of_a_generator_is_documented(function):
     documented = re.findall(r"^(\w+): .*\(default .*\)$", function.__doc__, re.MULTILINE)
     text = function.__doc__.splitlines()[0] if "->" in function.__doc__.splitlines()[0] else function.__nb_signature__[0][0]
     names = re.findall(r"(\w+): ", text)
-    assert names == ["count", "seed", "first", *documented]
+    assert names == ["count", "seed", "first", "lively", *documented]
     defaults = dict(re.findall(r"^(\w+): .*\(default (.*?); .*\)$", function.__doc__, re.MULTILINE))
     values = {name: eval(default) for name, default in defaults.items()}
     try:

@@ -98,8 +98,8 @@ TEST_F(EvolveCommand, MakesARunFolder) {
   const Outcome outcome = evolve("run", small());
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(outcome.messages, "");
-  EXPECT_THAT(listing("run"),
-              testing::IsSupersetOf({"checks.csv", "generations.csv", "genomes", "lineage.csv", "progress.svg", "run.toml"}));
+  EXPECT_THAT(listing("run"), testing::IsSupersetOf({"checks.csv", "generations.csv", "genomes", "lineage.csv",
+                                                     "progress.svg", "run.toml"}));
   const RunHistory history(path("run"));
   EXPECT_EQ(history.generations().size(), 5u);
   EXPECT_EQ(history.individuals().size(), 5u * 8);
