@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <pwd.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -76,6 +77,18 @@ void write_to_nowhere(hid_t file) {
   if (nowhere >= 0) close(nowhere);
 }
 
+// Takes room for the bytes [begin, end) of a file, which stays as long as it is. Disks that cannot do that promise
+// nothing.
+void reserve(hid_t file, hsize_t begin, hsize_t end) {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur < end) throw Error("no room", EFBIG);
+  void* handle = nullptr;
+  checked(H5Fget_vfd_handle(file, H5P_DEFAULT, &handle));
+  const int result = fallocate(*static_cast<int*>(handle), FALLOC_FL_KEEP_SIZE, static_cast<off_t>(begin),
+                               static_cast<off_t>(end - begin));
+  if (result != 0 && errno != EOPNOTSUPP) throw Error("no room", errno);
+}
+
 std::string text_of(const Error& error) { return error.number() != 0 ? reason_of(error.number()) : error.what(); }
 
 RecordingFailure write_failure(const std::filesystem::path& path, const std::string& reason, const std::string& kept) {
@@ -102,15 +115,27 @@ void TrajectoryWriter::guarded(const Work& work) {
   }
 }
 
-// The file has the frames of the last flush, as after a kill.
+// The file has the frames of the last flush, as after a kill, or all blocks if there is room left to complete it.
 void TrajectoryWriter::give_up(const std::string& reason) {
   failed_ = true;
-  write_to_nowhere(file_);
-  if (flushed_ == 0 || !survives_kill()) throw write_failure(path_, reason, "nothing was kept");
+  const bool complete = reserved_ > 0 && is_completed();
+  if (!complete) write_to_nowhere(file_);
+  if (flushed_ == 0 || !(complete || survives_kill())) throw write_failure(path_, reason, "nothing was kept");
   unfinished_.keep();
   throw write_failure(
       path_, reason,
       flushed_ == 1 ? "the first frame was kept" : fmt::format("the first {} frames were kept", flushed_));
+}
+
+bool TrajectoryWriter::is_completed() {
+  try {
+    announce(written_);
+    close();
+    flushed_ = written_;
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
@@ -344,8 +369,26 @@ void TrajectoryWriter::commit() {
   guarded([&] { write_block(); });
 }
 
+// HDF5 cannot complete a file on a full disk. So that it never meets one, there must be room for the block, and for all
+// that follows if it is the last, before anything of it is written.
+void TrajectoryWriter::reserve_block() {
+  constexpr hsize_t metadata = 1 << 20, metadata_per_robot = 4 << 10;  // of which 1.8 kB with the first block
+  const hsize_t block = 2 * sizeof(Vec3) * frames_per_block_ * offsets_.back();
+  const hsize_t blocks = deflate_ > 0 ? 2 : 1;  // a compressed one that was flushed early is written again elsewhere
+  hsize_t size = 0;
+  checked(H5Fget_filesize(file_, &size));
+  const hsize_t end = size + blocks * block + metadata + metadata_per_robot * groups_.size();
+  try {
+    if (end > reserved_) reserve(file_, reserved_, end);
+    reserved_ = std::max<std::uint64_t>(reserved_, end);
+  } catch (const Error&) {
+    if (reserved_ > 0) throw;  // before the first block, all may fit all the same
+  }
+}
+
 // Appends the frames in memory, not yet their steps and times.
 void TrajectoryWriter::write_block() {
+  if (!survives_kill() && (!started_ || frames_ > written_)) reserve_block();
   if (!started_) start_frames();
   if (frames_ == written_) return;
   for (std::size_t robot = 0; robot < groups_.size(); ++robot) {
@@ -374,9 +417,7 @@ void TrajectoryWriter::flush() {
     write_block();
     begin = clock_();
     if (survives_kill()) checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
-    const auto first = static_cast<hsize_t>(flushed_);
-    append_rows(open_dataset(parameters_, "step"), H5T_NATIVE_INT64, first, steps_.size(), steps_.data());
-    append_rows(open_dataset(parameters_, "time"), H5T_NATIVE_DOUBLE, first, times_.size(), times_.data());
+    announce(frames_);
     if (survives_kill()) checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
   });
   flushed_ = frames_;
@@ -384,6 +425,23 @@ void TrajectoryWriter::flush() {
   flush_cost_ = last_flush_ - begin;
   steps_.clear();
   times_.clear();
+}
+
+// Writes the steps and times of the frames up to `count`.
+void TrajectoryWriter::announce(std::int64_t count) {
+  const auto first = static_cast<hsize_t>(flushed_), added = static_cast<hsize_t>(count - flushed_);
+  append_rows(open_dataset(parameters_, "step"), H5T_NATIVE_INT64, first, added, steps_.data());
+  append_rows(open_dataset(parameters_, "time"), H5T_NATIVE_DOUBLE, first, added, times_.data());
+}
+
+// Closes the file, as long as its content.
+void TrajectoryWriter::close() {
+  for (Handle* group : {&particles_, &connectivity_, &parameters_}) group->close();
+  checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
+  file_.close();
+  std::error_code ignored;
+  if (reserved_ > 0)  // gives back the rest
+    std::filesystem::resize_file(unfinished_.path(), std::filesystem::file_size(unfinished_.path(), ignored), ignored);
 }
 
 void TrajectoryWriter::finish(std::span<const Telemetry> telemetry) {
@@ -396,9 +454,7 @@ void TrajectoryWriter::finish(std::span<const Telemetry> telemetry) {
       if (telemetry[robot].culprit_spring != no_spring)
         write_attribute(group, "first_bad_spring", telemetry[robot].culprit_spring);
     }
-    for (Handle* group : {&particles_, &connectivity_, &parameters_}) group->close();
-    checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
-    file_.close();
+    close();
   });
   unfinished_.keep();
 }

@@ -52,7 +52,7 @@ bool flush_is_due(double since_flush, double last_frame_took, double period);
 
 // Streams: holds a few frames (at most 64 MB, or one frame if that is more) and keeps no HDF5 object open per robot.
 // The file has a temporary name until finish(); without finish() nothing is left behind, unless a write failed: then
-// the frames of the last flush are kept under the file's name.
+// the frames of the last flush are kept under the file's name. With more than 2,000 robots these are the blocks so far.
 //
 // A program that is killed leaves a file that opens with the frames of the last flush. This is HDF5's mode for a single
 // writer and multiple readers (SWMR): metadata reaches the file after what it points to. The file announces frames in
@@ -105,11 +105,15 @@ class TrajectoryWriter {
   void write_actuators(hdf5::Id particles, const Robot& robot);
   void start_frames();
   void create_frames(hdf5::Id particles, std::size_t masses);
+  void reserve_block();
   void write_block();
   void write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values);
   bool survives_kill() const;  // otherwise the file can be read only once it is complete
   template <class Work>
   void guarded(const Work& work);
+  void announce(std::int64_t count);
+  void close();
+  bool is_completed();
   [[noreturn]] void give_up(const std::string& reason);
 
   std::filesystem::path path_;
@@ -124,6 +128,7 @@ class TrajectoryWriter {
   double next_time_ = 0;        // [s]
   std::size_t frames_per_block_ = 1;
   std::int64_t frames_ = 0, written_ = 0, flushed_ = 0;  // written_: in the file; flushed_: announced by step
+  std::uint64_t reserved_ = 0;                           // bytes of the file for which the disk has room; 0 = unknown
   bool failed_ = false;
   bool started_ = false;  // the datasets of the frames exist
   int deflate_ = 0;

@@ -83,8 +83,10 @@ RunFolder RunFolder::create(const std::filesystem::path& folder, const RunSettin
 
 RunFolder RunFolder::open(const std::filesystem::path& folder, GenomeSpaceMaker make_space) {
   check_run_folder(folder);
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.is_symlink()) require_inside(folder, entry.path());
+    if (is_device_or_pipe(entry.path())) throw InputError(entry.path().string(), "not a regular file");
+  }
   auto parts = std::make_unique<Parts>(folder, JournalWriter::open(folder / journal_name), std::move(make_space));
   parts->history.space();
   parts->writer.cut(parts->history.parts_->journal.end());

@@ -69,11 +69,11 @@ bool add_springs(Body& body, const float* factors, const Finish& finish) {
     if constexpr (viscous) velocity = load_aligned(arrays.v, slot);
     Integers3 sum{zeros(), zeros(), zeros()};
     for (const Run* const end = run + runs; run != end; ++run) {
-      const auto [partner, reaction] = *run;
+      const std::uint32_t partner = run->partner;  // clang captures no structured bindings before version 16
       const Integers3 f =
           next_row(own - load(arrays.x, partner), [&]() HWY_ATTR { return velocity - load(arrays.v, partner); });
       sum = sum - f;
-      add(f, arrays.reaction, reaction);
+      add(f, arrays.reaction, run->reaction);
     }
     for (const std::uint32_t* const end = partners + (gathered_springs ? gathered_rows * lane_count : 0);
          partners != end; partners += lane_count) {

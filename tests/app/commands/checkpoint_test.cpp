@@ -2,6 +2,7 @@
 // mercury run --checkpoint and --resume: a run that was killed ends as if it had not been; mercury verify.
 #include <gmock/gmock.h>
 #include <hdf5.h>
+#include <sys/stat.h>
 
 #include <csignal>
 #include <thread>
@@ -180,6 +181,35 @@ TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
   H5Gclose(group);
   H5Fclose(file);
   EXPECT_THAT(refused(resume_).messages, HasSubstr("is a checkpoint of version 2; this program reads version 1"));
+}
+
+TEST_F(Checkpoint, LinksOutOfItAreNotFollowed) {
+  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);  // whoever opens it waits
+  std::filesystem::create_symlink(path("pipe"), path("link.h5"));
+  EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("link.h5")}).messages,
+              HasSubstr("link.h5: is not a regular file"));
+  const std::string whole = read("c.h5");
+  for (const std::string member : {"/checkpoint", "/checkpoint/robots", "/checkpoint/measures", "/parameters/step"}) {
+    write("c.h5", whole);
+    const hid_t file = H5Fopen(path("c.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    H5Ldelete(file, member.c_str(), H5P_DEFAULT);
+    H5Lcreate_external(path("pipe").c_str(), "/", file, member.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    H5Fclose(file);
+    EXPECT_THAT(refused(resume_).messages, HasSubstr("is a link, which is not followed")) << member;
+  }
+  write("c.h5", whole);
+  const hid_t file = H5Fopen(path("c.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t old = H5Dopen2(file, "/checkpoint/measures", H5P_DEFAULT), space = H5Dget_space(old);
+  H5Ldelete(file, "/checkpoint/measures", H5P_DEFAULT);
+  const hid_t elsewhere = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_external(elsewhere, path("pipe").c_str(), 0, H5F_UNLIMITED);
+  H5Dclose(H5Dcreate2(file, "/checkpoint/measures", H5T_IEEE_F64LE, space, H5P_DEFAULT, elsewhere, H5P_DEFAULT));
+  H5Pclose(elsewhere);
+  H5Sclose(space);
+  H5Dclose(old);
+  H5Fclose(file);
+  EXPECT_THAT(refused(resume_).messages, HasSubstr("has its values in other files"));
 }
 
 class Verify : public Checkpoint {

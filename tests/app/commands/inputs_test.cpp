@@ -35,10 +35,13 @@ class Inputs : public FolderTest {
     child.write(std::span(reinterpret_cast<const std::uint8_t*>(input.data()), input.size()));
     return outcome_of(child);
   }
+  // `limit`: as ulimit takes it.
+  static Outcome limited(const std::string& limit, const std::string& arguments) {
+    return run_program("/bin/sh", {"-c", "ulimit " + limit + " && exec " MERCURY_PROGRAM " " + arguments});
+  }
   // With limited address space [kB].
   static Outcome limited(long kilobytes, const std::string& arguments) {
-    return run_program("/bin/sh",
-                       {"-c", "ulimit -v " + std::to_string(kilobytes) + " && exec " MERCURY_PROGRAM " " + arguments});
+    return limited("-v " + std::to_string(kilobytes), arguments);
   }
   const std::vector<std::string> brief_{"--device", "cpu", "--seconds", "0.01"};
   std::vector<std::string> run(std::vector<std::string> arguments) const {
@@ -97,6 +100,29 @@ TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
   EXPECT_EQ(window.status, 1);
   EXPECT_EQ(window.messages,
             "mercury: drawing on the processor needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)\n");
+}
+
+TEST_F(Inputs, DrawingSaysHowMuchStackItNeeds) {
+  const std::string needed = "drawing on the processor needs 256 KiB of stack, the limit is 64 KiB (ulimit -s)\n";
+  const Outcome outcome = limited("-s 64", "render --random voxel --still 0 --gl mesa --quiet -o " + path("a.png"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.messages, "mercury: " + needed);
+  EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+  const Outcome window = limited("-s 64", "view --random voxel --quiet");
+  EXPECT_EQ(window.status, 1);
+  EXPECT_EQ(window.messages, "mercury: " + needed);
+  EXPECT_EQ(limited("-s 256", "render --random voxel --still 0 --gl mesa --quiet -o " + path("b.png")).status, 0);
+}
+
+TEST_F(Inputs, WhatDoesNotDrawNeedsLittleStack) {
+  for (const std::string limit : {"-s 64", "-s 128", "-s 256", "-s 1024"}) {
+    EXPECT_EQ(limited(limit, "run --random voxel:2 --random nn:2 --seconds 0.01 --quiet").status, 0) << limit;
+    EXPECT_EQ(limited(limit, "new nn --count 2 --force --quiet -o " + path("new")).status, 0) << limit;
+    std::filesystem::remove_all(path("run"));
+    EXPECT_EQ(limited(limit, "evolve " + path("run") + " --population 4 --generations 1 --seconds 0.01 --quiet").status,
+              0)
+        << limit;
+  }
 }
 
 // The limit does not count for the superuser, so the program becomes the user nobody.

@@ -269,6 +269,47 @@ TEST_F(KilledRecording, AFullDiskKeepsTheFramesOfTheLastFlush) {
   EXPECT_GT(kept.size(), 5u);
 }
 
+// So many cannot be flushed: HDF5 would take too long.
+TEST_F(KilledRecording, AFullDiskKeepsTheFramesOfThousandsOfRobotsToo) {
+  constexpr std::int64_t frames = 40;
+  const Source source(2001);
+  const auto record = [&] {
+    std::filesystem::remove(path("a.h5"));
+    TrajectoryWriter writer = source.writer(path("a.h5"), {.flush_period = 4});
+    source.add(writer, frames, 2);  // blocks of two frames
+    source.finish(writer);
+  };
+  record();
+  const auto whole = std::filesystem::file_size(path("a.h5"));
+  std::size_t before = frames;
+  std::set<std::size_t> kept;
+  for (std::uintmax_t limit = whole - 1; limit > whole / 4; limit -= whole / 8) {
+    SCOPED_TRACE(limit);
+    std::string message;
+    try {
+      const SizeLimit limited(limit);
+      record();
+    } catch (const RecordingFailure& failure) {
+      message = failure.what();
+    }
+    ASSERT_THAT(message,
+                testing::StartsWith(path("a.h5") + ": the file grew beyond the size allowed here (ulimit -f); "));
+    EXPECT_EQ(part(), "");
+    std::size_t found = 0;
+    if (!message.ends_with("nothing was kept")) {
+      EXPECT_LE(std::filesystem::file_size(path("a.h5")), limit);
+      TrajectoryReader reader(path("a.h5"));
+      EXPECT_FALSE(reader.unfinished());
+      found = expect_frames(reader);
+      EXPECT_THAT(message, testing::EndsWith("the first " + std::to_string(found) + " frames were kept"));
+    }
+    EXPECT_LE(found, before);
+    before = found;
+    kept.insert(found);
+  }
+  EXPECT_GE(kept.size(), 4u);
+}
+
 // A child writes frames as fast as it can, and flushes each. It is killed while it is somewhere in the next ones.
 TEST_F(KilledRecording, OpensAfterAKillAtAnyMoment) {
   constexpr int no_memory = 77;

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <csignal>
@@ -316,6 +317,23 @@ TEST_F(RunFolders, LinksOutOfThemAreNotFollowed) {
   }
   std::filesystem::rename(path("run/lineage.csv"), path("run/kept.csv"));
   std::filesystem::create_symlink("kept.csv", path("run/lineage.csv"));  // stays inside
+  open("run");
+}
+
+// Opening a pipe waits for a process at its other end.
+TEST_F(RunFolders, PipesInThemAreRefused) {
+  make_run("run", test_settings(2));
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(path("run")))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  EXPECT_GE(files.size(), 6u);
+  for (const fs::path& file : files) {
+    fs::rename(file, path("aside"));
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    EXPECT_EQ(error_of([&] { open("run"); }), file.string() + ": not a regular file");
+    fs::remove(file);
+    fs::rename(path("aside"), file);
+  }
   open("run");
 }
 
