@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <stdexcept>
 #include <system_error>
 #include <thread>
 
@@ -307,12 +308,22 @@ class Program {
   std::vector<std::string> words_of_help_;
 };
 
+// `ulimit -s` is the size of each thread's stack, too. An overflow ends the program before it can say why.
+void require_stack() {
+  constexpr rlim_t needed = rlim_t{256} << 10;  // 72 KiB were enough to simulate, 80 to draw without a GPU
+  rlimit limit{};
+  if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < needed)
+    throw std::runtime_error(fmt::format("the program needs {} KiB of stack, the limit is {} KiB (ulimit -s)",
+                                         needed >> 10, limit.rlim_cur >> 10));
+}
+
 }  // namespace
 
 int run_program(const std::vector<std::string>& arguments) {
   replace_closed_streams();
   catch_interrupts(launched_by_mpi());  // the launcher ends those that do not stop
   try {
+    require_stack();
     return Program().run(arguments);
   } catch (const std::exception& error) {
     print_error(error_text(error), status_failed, false);

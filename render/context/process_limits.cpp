@@ -24,15 +24,6 @@ void require_address_space() {
                        std::to_string(limit.rlim_cur >> 20) + " MiB (ulimit -v)");
 }
 
-// The stack of threads, too, is as large as `ulimit -s` says, and Mesa's overflow.
-void require_stack() {
-  constexpr rlim_t needed = rlim_t{256} << 10;  // drawing was right from 80 kiB on
-  rlimit limit{};
-  if (getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < needed)
-    throw ContextError("drawing on the processor needs " + std::to_string(needed >> 10) +
-                       " KiB of stack, the limit is " + std::to_string(limit.rlim_cur >> 10) + " KiB (ulimit -s)");
-}
-
 // Mesa waits for ever for threads that it could not start, where `ulimit -u` leaves too few. As many as it starts, and
 // some for the program, must start at the same time.
 void require_threads() {
@@ -58,7 +49,6 @@ void require_threads() {
 
 void require_room_to_draw() {
   require_address_space();
-  require_stack();
   require_threads();
 }
 

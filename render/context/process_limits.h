@@ -4,8 +4,7 @@
 
 namespace mercury::render {
 
-// Throws ContextError if too little address space (ulimit -v) or stack (ulimit -s), or too few threads (ulimit -u), are
-// left for Mesa.
+// Throws ContextError if too little address space (ulimit -v) or too few threads (ulimit -u) are left for Mesa.
 void require_room_to_draw();
 
 }  // namespace mercury::render

@@ -102,26 +102,21 @@ TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
             "mercury: drawing on the processor needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)\n");
 }
 
-TEST_F(Inputs, DrawingSaysHowMuchStackItNeeds) {
-  const std::string needed = "drawing on the processor needs 256 KiB of stack, the limit is 64 KiB (ulimit -s)\n";
-  const Outcome outcome = limited("-s 64", "render --random voxel --still 0 --gl mesa --quiet -o " + path("a.png"));
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages, "mercury: " + needed);
-  EXPECT_FALSE(std::filesystem::exists(path("a.png")));
-  const Outcome window = limited("-s 64", "view --random voxel --quiet");
-  EXPECT_EQ(window.status, 1);
-  EXPECT_EQ(window.messages, "mercury: " + needed);
-  EXPECT_EQ(limited("-s 256", "render --random voxel --still 0 --gl mesa --quiet -o " + path("b.png")).status, 0);
-}
-
-TEST_F(Inputs, WhatDoesNotDrawNeedsLittleStack) {
-  for (const std::string limit : {"-s 64", "-s 128", "-s 256", "-s 1024"}) {
-    EXPECT_EQ(limited(limit, "run --random voxel:2 --random nn:2 --seconds 0.01 --quiet").status, 0) << limit;
-    EXPECT_EQ(limited(limit, "new nn --count 2 --force --quiet -o " + path("new")).status, 0) << limit;
-    std::filesystem::remove_all(path("run"));
-    EXPECT_EQ(limited(limit, "evolve " + path("run") + " --population 4 --generations 1 --seconds 0.01 --quiet").status,
-              0)
-        << limit;
+TEST_F(Inputs, TheProgramSaysHowMuchStackItNeeds) {
+  const std::string png = path("a.png"), run = path("run"), robots = path("new");
+  for (const std::string& command : {"render --random voxel --still 0 --gl mesa --quiet -o " + png,
+                                     std::string("run --random voxel:2 --random nn:2 --seconds 0.01 --quiet"),
+                                     "new nn --count 2 --quiet -o " + robots,
+                                     "evolve " + run + " --population 4 --generations 1 --seconds 0.01 --quiet"}) {
+    for (const std::string kilobytes : {"64", "128"}) {
+      const Outcome refused = limited("-s " + kilobytes, command);
+      EXPECT_EQ(refused.status, 1) << command;
+      EXPECT_EQ(refused.messages,
+                "mercury: the program needs 256 KiB of stack, the limit is " + kilobytes + " KiB (ulimit -s)\n");
+    }
+    EXPECT_THAT(listing(), testing::Not(testing::Contains(testing::AnyOf("a.png", "run", "new"))));
+    EXPECT_EQ(limited("-s 256", command).status, 0) << command;
+    for (const std::string& output : {png, run, robots}) std::filesystem::remove_all(output);
   }
 }
 
