@@ -66,7 +66,7 @@ class DrawnScene {
 //   snapshots     A        B        C
 //   frames                 . . . . . . . . .        on the lines from A to B and from B to C
 //
-// A view shows the state one step and 35 ms ago, so that the snapshots before and after it are known.
+// A frame shows the state one step and 35 ms ago, so that the snapshots before and after it are known.
 //
 // While physics pauses or makes more than `most_rate` steps per second, shows the newest snapshot as it is.
 class SlowMotion {
@@ -83,7 +83,7 @@ class SlowMotion {
     const PositionSnapshot* device = nullptr;
     std::span<const Telemetry> telemetry;  // of the newest snapshot, with interpolated centers of mass
   };
-  // The view at a wall time [s]. The spans are valid until the next call of either member.
+  // The state at a wall time [s]. The spans are valid until the next call of either member.
   Shown at(double wall);
 
  private:

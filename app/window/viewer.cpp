@@ -105,7 +105,7 @@ class Viewer {
   bool camera_placed_ = false;                // the camera has been placed before the first robots
   int redraws_ = 3;                           // frames to draw even if nothing changes
 
-  // The last view.
+  // The last frame.
   std::int64_t shown_steps_ = -1;
   double shown_time_ = -1;  // simulated time [s]
   render::Camera shown_camera_;
@@ -343,7 +343,7 @@ void Viewer::draw_picture(double dt) {
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
   if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
-  if (pacing_.keeps_picture(leaves_gpu_to_steps(), viewport_.draw_seconds())) return;
+  if (pacing_.keeps_robots(leaves_gpu_to_steps(), viewport_.draw_seconds())) return;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
   times_.positions = since(begin);

@@ -16,8 +16,7 @@ class FacePass {
     if (first_pair(robot) < robot.header().face_pairs) first_ = load(robot, first_pair(robot));
   }
 
-  // After prefetch(). `units_per_newton` of the sums; `dither` is
-  // dither_of_step().
+  // After prefetch(). `units_per_newton` of the sums; `dither` is dither_of_step().
   template <class Robot, class EnvironmentModel>
   __device__ void add(const Robot& robot, const EnvironmentModel& model, float units_per_newton, std::uint32_t step,
                       std::uint32_t dither, Failure& failure) const {

@@ -18,7 +18,6 @@ class RobotStepper {
                           const BlockContext<solver, Memory>& context)
       : robot_(arguments, context.thread), model_(model), contacts_(robot_), failure_(context.failure) {}
 
-  __device__ const Robot& robot() const { return robot_; }
   __device__ bool alive() const { return batch().statuses[robot_.context().robot].exploded_step < 0; }
 
   __device__ void load_lengths(float* lengths) const {

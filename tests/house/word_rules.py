@@ -26,7 +26,7 @@ WORDS = [
     ("built alike", "same topology"),
     ("(springs|steps|pictures|frames|robots) a second", "per second"),
     ("pictures?(/s| per second)", "frames: a picture is a file that a user keeps"),
-    ("the picture", "the view, or the frame: a picture is a file that a user keeps", r"^app/(window|live)/"),
+    ("the picture", "the view, or the frame: a picture is a file that a user keeps", r"^(app/(window|live)/|docs/window\.md)"),
     (r"(one|two|three|four|a line|a task|a thread) an? (robot|mass|spring|face|step|core|thread|lane|warp|block|frame|file|line)",
      "per robot, per spring"),
     ("be it", "whether"),

@@ -53,7 +53,7 @@ void draw_frame_times(PanelContext& context) {
   figure("view", milliseconds(mean.drawn), "drawing the robots, including the wait for the GPU");
   figure("panels", milliseconds(mean.panels), "drawing the panels");
   figure("thumbnails", milliseconds(mean.thumbnails), "of the browser");
-  figure("display", milliseconds(mean.present), "bringing view and panels to the display");
+  figure("display", milliseconds(mean.present), "bringing the frame to the display");
   figure("view size",
          fmt::format("{} x {} ({:.0f} %)", viewport.renderer().width(), viewport.renderer().height(),
                      100 * viewport.share()),

@@ -2,8 +2,8 @@
 // The log of what happens in the window, for programs that watch it: `mercury view --report FILE`.
 //
 // One JSON object per line, each with the name of its event under "event":
-//   ready    the first view is on the screen: seconds since the start
-//   frame    a view was shown: number, step, time [s] and more; at most 5 per second
+//   ready    the first frame is on the screen: seconds since the start
+//   frame    a frame was shown: number, step, time [s] and more; at most 5 per second
 //   item     a button, tab or the view has a (new) position: name, x, y (its middle), width, height in pixels
 //   gone     an item is no longer shown
 //   ...      and what panels write: "saved", "robots", "panel", "message" (docs/window.md lists them)

@@ -23,7 +23,7 @@ bool Pacing::leaves_out_frame(bool backlog) const {
   return backlog && since(shown_at_) < backlog_factor * frame_seconds_;
 }
 
-bool Pacing::keeps_picture(bool gpu_for_steps, double draw_seconds) const {
+bool Pacing::keeps_robots(bool gpu_for_steps, double draw_seconds) const {
   return gpu_for_steps && since(drawn_at_) < (1 / frame_share - 1) * draw_seconds;
 }
 

@@ -16,10 +16,10 @@ class Pacing {
   // How long the next frame may wait for events [s]. `spent`: since the last one began [s]. `gpu_for_steps`: the user
   // only watches robots that step as fast as a GPU can, and what drawing takes of its time is missing there.
   double wait(double spent, bool gpu_for_steps) const;
-  // If drawing is slow, input queues up. Handling it comes first; a view now and then shows the progress.
+  // If drawing is slow, input queues up. Handling it comes first; a frame now and then shows the progress.
   bool leaves_out_frame(bool backlog) const;
   // Whether the robots of the last frame stay: then frames get a small share of the GPU's time.
-  bool keeps_picture(bool gpu_for_steps, double draw_seconds) const;
+  bool keeps_robots(bool gpu_for_steps, double draw_seconds) const;
 
   void drew_robots() { drawn_at_ = Clock::now(); }
   void showed_frame(double seconds);  // that drawing and showing it took
@@ -41,7 +41,7 @@ struct FrameTimes {
   double drawn = 0;      // drawing the robots
   double panels = 0;     // drawing the panels
   double thumbnails = 0;
-  double present = 0;  // bringing view and panels to the display
+  double present = 0;  // bringing the frame to the display
 };
 
 class FrameHistory {
