@@ -20,7 +20,7 @@
 // 4. Accurate: a unit is a power of two, chosen per robot as the finest one at which no spring can exceed its 22 bits
 //    (fixed_point_scale() in measures.h).
 //
-// 5. Unbiased, where a model asks for it: slow water pushes a face with less than half a unit, which rounding makes zero.
+// 5. Unbiased, where a model asks for it: slow water pushes a face with less than half a unit, which rounds to zero.
 //    dithered() adds an offset to each force on a face that runs through [-1/2, 1/2) evenly from step to step, so that
 //    the sum over many steps is right to a unit or two.
 //
