@@ -50,6 +50,7 @@ class Window:
             [program, "view", "--device", "cpu", "--quality", "low", "--size", size, "--report", str(self.report), *arguments],
             cwd=self.folder, env=self.environment, stderr=self.messages)
         self.items, self.events, self.offset, self.rest = {}, [], 0, ""
+        self.frames = 0  # frame events read
         try:
             self.wait("ready")
         except BaseException:
@@ -71,10 +72,11 @@ class Window:
         for line in lines:
             event = json.loads(line)
             if event["event"] == "item":
-                self.items[event["name"]] = event
+                self.items[event["name"]] = dict(event, frames=self.frames)
             elif event["event"] == "gone":
                 self.items.pop(event["name"], None)
             else:
+                self.frames += event["event"] == "frame"
                 self.events.append(event)
 
     def until(self, what, found, may_end=False):
@@ -121,7 +123,8 @@ class Window:
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def place(self, item):
-        self.until(f"item {item}", lambda: item in self.items)
+        """Where an item is, once it has stood there for a whole frame: a menu's first frame is hidden and takes no click."""
+        self.until(f"item {item}", lambda: item in self.items and self.frames >= self.items[item]["frames"] + 2)
         return round(self.items[item]["x"]), round(self.items[item]["y"])
 
     def click(self, item):
