@@ -3,6 +3,9 @@
 //
 //   build/bin/bench_physics                the table of docs/physics.md, in Markdown
 //   build/bin/bench_physics swim           rows whose name contains a word
+//   build/bin/bench_physics 60.s           64 random robots of each kind for 60 s: how many explode
+//
+// "0.2" is what version 0.2 did, which had bodies as in the paper alone.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,11 +13,16 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "mercury/evaluator.h"
+#include "mercury/generator.h"
+#include "mercury/observables.h"
 #include "mercury/random_voxel.h"
 #include "mercury/real_body.h"
 #include "mercury/robot_file.h"
@@ -182,17 +190,123 @@ double slope_that_slides(Physics physics) {
   return 1.25;
 }
 
+// Young's modulus of a bar, n voxels across and 8 times as long, over that of an endless lattice. Both ends are held 1
+// % further apart than at rest, and the middle half says how long the bar got.
+double modulus_of_bar(Physics physics, int n) {
+  constexpr double width = 0.4, stretched = 0.01;
+  Robot robot = body_in(physics, box(8 * n, n, n, static_cast<float>(width / n)));
+  const double length = 8 * width, edge = width / n;
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) {
+    const double x = static_cast<double>(robot.masses[i].x - robot.masses.front().x);
+    if (x < edge / 2 || x > length - edge / 2) robot.fixed.push_back(static_cast<std::uint16_t>(i));
+  }
+  Configuration configuration = settings(physics, "ocean");
+  configuration.environment.water = NoWater{};
+  configuration.environment.contacts.reset();
+  const double slowest = physics == Physics::real ? 9.7 / (4 * length) : 1.0 / (4 * 8 * n);  // [Hz], about
+  configuration.damping = static_cast<float>(2 * std::numbers::pi * slowest);
+  configuration.dt = physics == Physics::real ? 1e-3 / n : 0.02;
+  Simulation simulation(configuration, {&robot, 1});
+  State start{robot.masses, std::vector<Vec3>(robot.masses.size())};
+  for (Vec3& x : start.positions) x.x += static_cast<float>(stretched) * (x.x - robot.masses.front().x);
+  simulation.set_state(0, start);
+  simulation.step(std::llround(4 / slowest / configuration.dt));
+  const std::vector<Vec3> positions = simulation.positions(0);
+  const std::vector<MaterialNow> materials = materials_at(materials_of(robot), configuration.environment, 0.0);
+  const std::vector<Vec3> forces = spring_forces(robot, materials, positions);
+  double force = 0, near = 0, far = 0;
+  const double quarter = std::round(2.0 * n) * edge, far_quarter = std::round(6.0 * n) * edge;
+  int layer = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double x = static_cast<double>(robot.masses[i].x - robot.masses.front().x);
+    if (x < edge / 2) force += static_cast<double>(forces[i].x);
+    if (std::abs(x - quarter) < edge / 2) near += static_cast<double>(positions[i].x), ++layer;
+    if (std::abs(x - far_quarter) < edge / 2) far += static_cast<double>(positions[i].x);
+  }
+  const double strain = (far - near) / layer / (far_quarter - quarter) - 1;
+  // Of the lattice of equal springs: C11 = 13/3 k/h, C12 = C44 = 7/3 k/h.
+  const double lattice = (13.0 / 3 - 2 * (7.0 / 3) * (7.0 / 3) / (20.0 / 3)) *
+                         static_cast<double>(default_materials()[tissue].stiffness) / edge;
+  const double theory = physics == Physics::real ? 0.8 * 1e5 : lattice;  // tissue
+  return force / (width * width * strain) / theory;
+}
+
+// How fast a cantilever vibrates in water, over its frequency without water.
+double frequency_in_water(Physics physics) {
+  Robot robot = body_in(physics, box(12, 2, 2, 0.1f), {.relaxation_time = 1e-4f});
+  for (std::size_t i = 0; i < robot.masses.size(); ++i)
+    if (robot.masses[i].x < robot.masses.front().x + 0.05f) robot.fixed.push_back(static_cast<std::uint16_t>(i));
+  const auto tip = static_cast<std::size_t>(
+      std::ranges::max_element(robot.masses, {}, [](Vec3 x) { return x.x + x.y + x.z; }) - robot.masses.begin());
+  const auto frequency = [&](bool in_water) {
+    Configuration configuration = settings(physics);
+    configuration.damping = 0;
+    configuration.environment.gravity = {};
+    configuration.environment.contacts.reset();
+    if (!in_water) configuration.environment.water = NoWater{};
+    if (physics == Physics::real) configuration.dt = 5e-4;
+    Simulation simulation(configuration, {&robot, 1});
+    State start{robot.masses, std::vector<Vec3>(robot.masses.size())};
+    const float length = 1.2f;
+    for (std::size_t i = 0; i < start.velocities.size(); ++i) {
+      const float along = (robot.masses[i].x - robot.masses.front().x) / length;
+      start.velocities[i].z = 0.002f * along * along;
+    }
+    simulation.set_state(0, start);
+    const float rest = robot.masses[tip].z;
+    constexpr int crossings = 12;
+    double first = 0, last = 0, before = 0;
+    for (int found = 0; found <= crossings && simulation.time() < 600;) {
+      simulation.step(1);
+      const double now = static_cast<double>(simulation.positions(0)[tip].z - rest);
+      if (before > 0 && now <= 0) {
+        last = simulation.time() - configuration.dt * now / (now - before);
+        if (found++ == 0) first = last;
+      }
+      before = now;
+    }
+    return crossings / (last - first);
+  };
+  return frequency(true) / frequency(false);
+}
+
+// The largest share of a sample robot that is inside out within 20 s.
+double inside_out(Physics physics, const char* name) {
+  const Robot robot = body_in(physics, load_robot(sample_or_path(fmt::format("sample:{}", name))));
+  Simulation simulation(settings(physics), {&robot, 1});
+  simulation.measure_folding(true);
+  float most = 0;
+  for (const Telemetry& sample : simulation.step_and_sample(20000, 50)) most = std::max(most, sample.inverted);
+  return static_cast<double>(most);
+}
+
+// Of 64 random robots with the settings of their kind, how many explode within 60 s.
+std::string explosions(Physics physics, const Generator& generator) {
+  constexpr std::size_t robots = 64;
+  const ParameterValues values{{"physics", std::string(name_of(physics))}};
+  const Configuration configuration = settings(physics, physics == Physics::real ? "" : generator.environment);
+  EvaluationRequest request{.configuration = configuration, .steps = std::llround(60 / configuration.dt)};
+  Evaluator evaluator(
+      request, [&](std::size_t i) { return std::make_shared<const Robot>(generator.make(values, "", 1, i)); }, robots);
+  int exploded = 0, failed = 0;
+  while (const std::optional<Evaluation> result = evaluator.next()) {
+    exploded += result->end.exploded ? 1 : 0;
+    failed += result->failure.empty() ? 0 : 1;
+  }
+  return fmt::format("{} of {}", exploded, robots - static_cast<std::size_t>(failed));
+}
+
 struct Row {
-  std::string what, theory;
+  std::string what, theory, before;
   std::function<std::string(Physics)> value;
 };
 
 std::string percent(double ratio) { return fmt::format("{:+.1f} %", 100 * (ratio - 1)); }
 
 std::vector<Row> rows() {
-  std::vector<Row> all{{"a free cube in a flow of 0.1 m/s drifts at [m/s]", "0.1",
+  std::vector<Row> all{{"a free cube in a flow of 0.1 m/s drifts at [m/s]", "0.1", "0.042",
                         [](Physics physics) { return fmt::format("{:.4f}", speed_in_flow(physics)); }},
-                       {"density of 64 random voxel robots [kg/m3]", "as given (1070)",
+                       {"density of 64 random voxel robots [kg/m3]", "as given (1070)", "1978 to 2783",
                         [](Physics physics) {
                           double least = 1e9, most = 0;
                           for (const Robot& robot : random_voxel_robots({}, 1, 64)) {
@@ -202,15 +316,26 @@ std::vector<Row> rows() {
                           }
                           return fmt::format("{:.0f} to {:.0f}", least, most);
                         }},
-                       {"slope at which an elastic plate slides, over tan^-1 of friction 0.8", "1",
+                       {"slope at which an elastic plate slides, over that of its friction, 0.8", "1", "0.88",
                         [](Physics physics) { return fmt::format("{:.3f}", slope_that_slides(physics)); }}};
-  for (const double stiffness : {50.0, 6000.0})
-    for (const double speed : {0.002, 0.02, 0.2})
-      all.push_back({fmt::format("terminal speed of a 0.4 m cube, {} m/s, springs of {} N/m", speed, stiffness), "0 %",
+  const std::array<const char*, 4> softer{"-26 %", "-17 %", "-10 %", ""};
+  for (std::size_t i = 0; i < softer.size(); ++i)
+    all.push_back({fmt::format("Young's modulus of a bar with {} voxels across", 1 << i), "0 % (3 %)", softer[i],
+                   [=](Physics physics) { return percent(modulus_of_bar(physics, 1 << i)); }});
+  all.push_back({"frequency of a cantilever in water, over that in vacuum", "0.825 (5 %), of 1070 kg/m3", "1.00",
+                 [](Physics physics) { return fmt::format("{:.3f}", frequency_in_water(physics)); }});
+  for (const double stiffness : {10.0, 50.0, 6000.0, 1e5})
+    for (const double speed : {0.001, 0.002, 0.02, 0.2, 3.0})
+      all.push_back({fmt::format("terminal speed of a 0.4 m cube, {} m/s, springs of {} N/m", speed, stiffness),
+                     "0 % (1 %)",
+                     stiffness == 6000 && speed == 0.02  ? "+235 %"
+                     : stiffness == 50 && speed == 0.002 ? "+130 %"
+                                                         : "",
                      [=](Physics physics) { return percent(sinking(physics, speed, stiffness)); }});
   for (const char* name : {"eel", "fish"})
     all.push_back({fmt::format("swim of the sample {}: body lengths per second, Strouhal number", name),
-                   "Strouhal 0.2 to 0.4 (animals)", [=](Physics physics) {
+                   "Strouhal 0.2 to 0.4 (animals)", std::string_view(name) == "eel" ? "1.8 to 2.9" : "2.9 to 4.4",
+                   [=](Physics physics) {
                      const Robot robot = load_robot(sample_or_path(fmt::format("sample:{}", name)));
                      std::string text;
                      for (const float modulus : {1e4f, 1e5f, 1e6f}) {
@@ -228,7 +353,7 @@ std::vector<Row> rows() {
                    }});
   for (const int n : {1, 2, 3})
     all.push_back({fmt::format("swim of the sample eel, voxels divided by {}: body lengths per second", n), "converges",
-                   [=](Physics physics) {
+                   std::array{"", "0.060", "0.090", "0.0004"}[static_cast<std::size_t>(n)], [=](Physics physics) {
                      const Robot robot = refined(load_robot(sample_or_path("sample:eel")), n);
                      Configuration configuration = settings(physics);
                      configuration.dt /= n;
@@ -236,14 +361,21 @@ std::vector<Row> rows() {
                          "{:.3f}",
                          swim(body_in(physics, robot), configuration, frequency_of(robot)).lengths_per_second);
                    }});
+  for (const char* name : {"eel", "fish"})
+    all.push_back({fmt::format("largest share of the sample {} that is inside out within 20 s", name), "0 %", "",
+                   [=](Physics physics) { return fmt::format("{:.1f} %", 100 * inside_out(physics, name)); }});
+  for (const Generator& generator : generators())
+    all.push_back({fmt::format("random robots of kind {} that explode within 60 s", generator.kind), "0", "",
+                   [&](Physics physics) { return explosions(physics, generator); }});
   return all;
 }
 
 int print_table(std::string_view wanted) {
-  std::puts("| what | theory | paper | real |\n|---|---|---|---|");
+  std::puts("| what | theory | 0.2 | paper | real |\n|---|---|---|---|---|");
   for (const Row& row : rows()) {
     if (row.what.find(wanted) == std::string::npos) continue;
-    fmt::print("| {} | {} | {} | {} |\n", row.what, row.theory, row.value(Physics::paper), row.value(Physics::real));
+    fmt::print("| {} | {} | {} | {} | {} |\n", row.what, row.theory, row.before, row.value(Physics::paper),
+               row.value(Physics::real));
     std::fflush(stdout);
   }
   return 0;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
@@ -68,7 +69,14 @@ void validate(const EvolutionSettings& settings) {
 std::unique_ptr<Assessor> make_assessor(const EvolutionSettings& settings) {
   std::vector<Objective> objectives;
   for (const std::string& formula : settings.objectives) objectives.emplace_back(formula);
-  return make_local_assessor(settings.configuration, settings.trials, std::move(objectives), settings.seed);
+  TrialSettings trials = settings.trials;
+  const auto asks = [](std::size_t quantity) { return quantities()[quantity].of_folding; };
+  trials.folding = trials.folding || std::ranges::any_of(objectives, [&](const Objective& objective) {
+                     return std::ranges::any_of(objective.uses(), asks);
+                   });
+  for (const MapAxis& axis : settings.algorithm.axes)
+    if (const auto quantity = find_quantity(axis.quantity)) trials.folding = trials.folding || asks(*quantity);
+  return make_local_assessor(settings.configuration, trials, std::move(objectives), settings.seed);
 }
 
 }  // namespace mercury

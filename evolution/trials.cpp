@@ -82,6 +82,8 @@ bool has_real_body(const Robot& robot) { return real_material_of(robot).has_valu
 constexpr Limit table[] = {
     {.quantity = "strain", .value = &TrialSettings::strain_limit},
     {.quantity = "strained_share", .value = &TrialSettings::strained_limit, .applies = has_real_body},
+    {.quantity = "inverted", .value = &TrialSettings::inverted_limit},
+    {.quantity = "overlap", .value = &TrialSettings::overlap_limit},
     {.quantity = "masses",
      .value = &TrialSettings::least_masses,
      .is_least = true,
@@ -96,6 +98,7 @@ void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest
   const Trial trial{.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request.configuration};
   for (const Limit& limit : table) {
     const double accepted = settings.*limit.value;
+    if (!limit.is_least && accepted == 1 && quantities()[find_quantity(limit.quantity).value()].of_folding) continue;
     const double value = quantities()[find_quantity(limit.quantity).value()].value(trial);
     if (limit.is_least ? value >= accepted : value <= accepted) continue;
     if (limit.applies && !limit.applies(trial.robot)) continue;
@@ -113,6 +116,7 @@ EvaluationRequest trial_request(const TrialSettings& settings, const Configurati
                             .settling = settling,
                             .steps = steps_in(settings.seconds) - settling,
                             .sample_every = std::max<std::int64_t>(1, steps_in(trial_sample_period)),
+                            .folding = measures_folding(settings),
                             .hashes = true};
   if (settings.jitter > 0)
     request.start = [settings, seed](std::size_t index, const Robot& robot, std::span<Vec3> positions) {

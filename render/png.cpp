@@ -2,6 +2,7 @@
 #include "render/png.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -31,6 +32,20 @@ png_image description_of(const Image& image) {
   return png;
 }
 
+void append(std::vector<std::uint8_t>& bytes, std::uint32_t number) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(number >> shift));
+}
+
+// A chunk "tEXt" goes before the last one, the 12 bytes of IEND: length, name, text, checksum of the latter two.
+void add_text(std::vector<std::uint8_t>& png, std::string_view keyword, std::string_view text) {
+  std::vector<std::uint8_t> chunk;
+  append(chunk, static_cast<std::uint32_t>(keyword.size() + 1 + text.size()));
+  for (const std::string_view part : {std::string_view("tEXt"), keyword, std::string_view("\0", 1), text})
+    chunk.insert(chunk.end(), part.begin(), part.end());
+  append(chunk, static_cast<std::uint32_t>(crc32(0, chunk.data() + 4, static_cast<unsigned>(chunk.size() - 4))));
+  png.insert(png.end() - 12, chunk.begin(), chunk.end());
+}
+
 [[noreturn]] void fail(const std::string& path, const std::string& why) { throw std::runtime_error(path + ": " + why); }
 
 }  // namespace
@@ -50,13 +65,14 @@ void write_png(const std::string& path, const Image& image) {
   fail(path, why);
 }
 
-std::vector<std::uint8_t> png_bytes(const Image& image) {
+std::vector<std::uint8_t> png_bytes(const Image& image, std::string_view comment) {
   png_image png = description_of(image);
   std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(png));
   png_alloc_size_t size = bytes.size();
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.bytes.data(), 0, nullptr))
     throw std::runtime_error(png.message);
   bytes.resize(size);
+  if (!comment.empty()) add_text(bytes, "Comment", comment);
   return bytes;
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "mercury/error.h"
+#include "mercury/voxels.h"
 #include "robots/number_text.h"
 #include "robots/origin_member.h"
 
@@ -38,89 +39,6 @@ double muscle_stiffness(std::span<const Material> table, const std::vector<Mater
   std::ranges::nth_element(moving, middle);
   return static_cast<double>(*middle);
 }
-
-std::uint32_t pair_of(std::uint32_t a, std::uint32_t b) { return std::min(a, b) << 16 | std::max(a, b); }
-
-// Cubes whose 8 corners are masses, joined by all 28 springs.
-class Voxels {
- public:
-  struct Voxel {
-    std::array<std::uint16_t, 8> corners;  // x fastest
-    MaterialId material;
-  };
-
-  explicit Voxels(const Robot& robot) : robot_(robot) {
-    if (robot.springs.empty()) return;
-    edge_ = robot.springs.front().rest_length;
-    for (const Spring& spring : robot.springs) edge_ = std::min(edge_, spring.rest_length);
-    for (const Spring& spring : robot.springs) material_.emplace(pair_of(spring.a, spring.b), spring.material);
-    if (material_.size() != robot.springs.size() || !number_points()) return;
-    find_voxels();
-    std::set<std::uint32_t> covered;
-    for (const Voxel& voxel : voxels_)
-      for_each_pair([&](std::size_t i, std::size_t j) { covered.insert(pair_of(voxel.corners[i], voxel.corners[j])); });
-    if (covered.size() != robot.springs.size()) voxels_.clear();
-  }
-
-  // Empty if the robot has springs of another kind.
-  const std::vector<Voxel>& all() const { return voxels_; }
-  float edge() const { return edge_; }
-
-  // Calls visit(i, j) for the 28 pairs of corners.
-  template <class Visit>
-  static void for_each_pair(const Visit& visit) {
-    for (std::size_t i = 0; i < 8; ++i)
-      for (std::size_t j = i + 1; j < 8; ++j) visit(i, j);
-  }
-
- private:
-  using Place = std::array<int, 3>;  // in edges
-
-  // Whether all masses stand on a lattice, one per place.
-  bool number_points() {
-    const Vec3 first = robot_.masses.front();
-    for (std::size_t i = 0; i < robot_.masses.size(); ++i) {
-      const Vec3 d = robot_.masses[i] - first;
-      Place place;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float along = (axis == 0 ? d.x : axis == 1 ? d.y : d.z) / edge_;
-        if (!(std::abs(along) < 1e6f) || std::abs(along - std::round(along)) > 0.01f) return false;
-        place[axis] = static_cast<int>(std::lround(along));
-      }
-      if (!point_.emplace(place, static_cast<std::uint16_t>(i)).second) return false;
-      places_.push_back(place);
-    }
-    return true;
-  }
-
-  void find_voxels() {
-    for (const Place& low : places_) {
-      Voxel voxel{};
-      bool complete = true;
-      for (std::size_t corner = 0; corner < 8 && complete; ++corner) {
-        const auto found =
-            point_.find({low[0] + (corner & 1 ? 1 : 0), low[1] + (corner & 2 ? 1 : 0), low[2] + (corner & 4 ? 1 : 0)});
-        complete = found != point_.end();
-        if (complete) voxel.corners[corner] = found->second;
-      }
-      if (!complete) continue;
-      for_each_pair([&](std::size_t i, std::size_t j) {
-        complete = complete && material_.contains(pair_of(voxel.corners[i], voxel.corners[j]));
-      });
-      if (!complete) continue;
-      // No other voxel shares the springs through the middle.
-      voxel.material = material_.at(pair_of(voxel.corners[0], voxel.corners[7]));
-      voxels_.push_back(voxel);
-    }
-  }
-
-  const Robot& robot_;
-  float edge_ = 0;
-  std::unordered_map<std::uint32_t, MaterialId> material_;  // by pair of masses
-  std::map<Place, std::uint16_t> point_;
-  std::vector<Place> places_;
-  std::vector<Voxel> voxels_;
-};
 
 // Faces of a sealed cavity show into it: their shell, joined edge by edge, has a negative volume.
 void drop_cavities(Robot& robot) {
@@ -174,21 +92,21 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
   std::map<Spot, Shared> spots;
   real.mass.assign(robot.masses.size(), 0);
   std::vector<int> voxels_at(robot.masses.size());
-  for (const auto& [corners, id] : voxels.all()) {
+  for (const auto& [corners, id] : voxels.all) {
     for (const std::uint16_t corner : corners) ++voxels_at[corner];
-    Voxels::for_each_pair([&, &corners = corners, id = id](std::size_t i, std::size_t j) {
+    for_each_pair_of_corners([&, &corners = corners, id = id](std::size_t i, std::size_t j) {
       Shared& shared = spots[{pair_of(corners[i], corners[j]), id}];
       shared.axes = static_cast<unsigned>(std::popcount(i ^ j));
       ++shared.voxels;
     });
   }
-  const double edge = static_cast<double>(voxels.edge());
+  const double edge = static_cast<double>(voxels.edge);
   for (std::size_t point = 0; point < real.mass.size(); ++point)
     real.mass[point] =
         static_cast<float>(static_cast<double>(material.density) * edge * edge * edge * voxels_at[point] / 8);
   const std::span<const Material> table = materials_of(robot);
   std::vector<MaterialId> of_voxels;
-  for (const Voxels::Voxel& voxel : voxels.all()) of_voxels.push_back(voxel.material);
+  for (const Voxel& voxel : voxels.all) of_voxels.push_back(voxel.material);
   const double modulus_per_stiffness = static_cast<double>(material.modulus) / muscle_stiffness(table, of_voxels);
   real.materials.assign(1, Material{});
   real.material_names.assign(1, "air");
@@ -276,8 +194,9 @@ Robot with_real_body(const Robot& robot, const RealMaterial& material) {
   if (real_material_of(robot)) throw InputError("/origin/real", "the robot has a real body already");
   Robot real = robot;
   drop_cavities(real);
-  const Voxels voxels(robot);
-  if (voxels.all().empty())
+  Voxels voxels = voxels_of(robot);
+  if (voxels.shares_pairs) voxels.all.clear();
+  if (voxels.all.empty())
     set_network_springs(robot, material, real);
   else
     set_voxel_springs(robot, voxels, material, real);
@@ -288,7 +207,7 @@ Robot with_real_body(const Robot& robot, const RealMaterial& material) {
   if (!robot.material_names.empty()) record.append(",\"material_names\":").append(Json(robot.material_names).dump());
   real.origin = with_origin_member(robot.origin, member, record + "}");
   // Groups of muscles name materials that are others now; those that move alike still form one.
-  if (!voxels.all().empty()) real.actuators.clear();
+  if (!voxels.all.empty()) real.actuators.clear();
   return real;
 }
 
@@ -307,6 +226,11 @@ std::optional<RealMaterial> real_material_of(const Robot& robot) {
     refuse("", error.what());
   }
   return material;
+}
+
+Physics physics_of(const Robot& robot) {
+  // An origin may be long, and every real body has masses.
+  return !robot.mass.empty() && real_material_of(robot) ? Physics::real : Physics::paper;
 }
 
 Robot without_real_body(const Robot& robot) {

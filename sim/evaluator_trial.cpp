@@ -55,6 +55,7 @@ PortionTrial::PortionTrial(Simulation& simulation, const EvaluationRequest& requ
 
 bool PortionTrial::run() {
   if (simulation_.size() == 0) return true;
+  simulation_.measure_folding(request_.folding);
   if (request_.start) place();
   if (!settle()) return false;
   settled_ = simulation_.steps();

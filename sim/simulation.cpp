@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -87,6 +88,7 @@ void Simulation::Parts::append(std::span<const std::shared_ptr<const Robot>> add
   }
   changed_tables.resize(size());
   explosions.resize(size());
+  cells.resize(size());
 }
 
 void Simulation::Parts::truncate(std::size_t size) {
@@ -95,6 +97,7 @@ void Simulation::Parts::truncate(std::size_t size) {
   offsets.resize(size + 1);
   changed_tables.resize(size);
   explosions.resize(size);
+  cells.resize(size);
   lifts.resize(std::min(lifts.size(), size));
 }
 
@@ -177,10 +180,12 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   std::vector<std::shared_ptr<const Robot>> remaining;
   std::vector<const Robot*> pointers;
   std::vector<KnownExplosion> explosions;
+  std::vector<std::shared_ptr<const BodyCells>> cells;
   for (const std::size_t i : robots) {
     remaining.push_back(parts_->robots[i]);
     pointers.push_back(parts_->pointers[i]);
     explosions.push_back(parts_->explosions[i]);
+    cells.push_back(parts_->cells[i]);
   }
   parts_->backend->keep(pointers, robots);  // refers to the robots that go until it returns
   std::vector<std::size_t> offsets{0};
@@ -192,6 +197,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   parts_->robots = std::move(remaining);
   parts_->pointers = std::move(pointers);
   parts_->explosions = std::move(explosions);
+  parts_->cells = std::move(cells);
   parts_->offsets = std::move(offsets);
   parts_->changed_tables = std::move(tables);
   parts_->lifts.clear();
@@ -209,7 +215,8 @@ std::span<const std::size_t> Simulation::mass_offsets() const { return parts_->o
 std::string Simulation::device_name() const { return parts_->backend->device_name(); }
 std::vector<std::string> Simulation::notes() const {
   std::vector<std::string> notes = parts_->backend->notes();
-  if (const std::string note = parts_->softening_note(); !note.empty()) notes.push_back(note);
+  for (std::string note : {parts_->softening_note(), parts_->stability_note()})
+    if (!note.empty()) notes.push_back(std::move(note));
   return notes;
 }
 
@@ -230,6 +237,22 @@ std::string Simulation::Parts::softening_note() const {
       "XPBD makes the stiffest spring %.2g times as stiff at this time step as it is; %.1g s or --substeps %d "
       "would be within 5 %%",
       1 / (1 + most), dt, static_cast<int>(std::min(1e6, std::ceil(configuration.dt / dt))));
+  return text;
+}
+std::string Simulation::Parts::stability_note() const {
+  std::vector<double> allowed(size(), std::numeric_limits<double>::infinity());
+  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+    if (i == 0 || robots[i] != robots[i - 1]) allowed[i] = exceeded_dt(*robots[i], configuration);
+  });
+  const auto least = std::ranges::min_element(allowed);
+  if (least == allowed.end() || std::isinf(*least)) return {};
+  const std::string& name = robots[static_cast<std::size_t>(least - allowed.begin())]->name;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%.60s vibrates too fast for this time step, %.3g s: the force solver is stable up to %.2g s; give a "
+                "shorter one, or --substeps %d",
+                name.empty() ? "a robot" : name.c_str(), configuration.dt, *least,
+                static_cast<int>(std::min(1e6, std::floor(configuration.dt / *least) + 1)));
   return text;
 }
 std::size_t Simulation::robots_at_once() const { return parts_->backend->robots_at_once(); }
@@ -271,6 +294,14 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
   if (every <= 0 || steps < 0 || steps % every != 0)
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
+  if (parts_->measures_folding) {  // which takes the positions of every sample
+    for (std::size_t first = 0; first < samples.size(); first += size()) {
+      step(every);
+      std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));
+    }
+    if (samples.empty()) parts_->clock.step += steps;
+    return samples;
+  }
   std::vector<RobotStatus> statuses(samples.size());
   if (!samples.empty()) {
     parts_->before_step();

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "mercury/folding.h"
 #include "mercury/simulation.h"
 #include "sim/shared_arrays.h"
 
@@ -32,7 +33,9 @@ struct Simulation::Parts {
   std::vector<std::unique_ptr<MaterialTable>> changed_tables;  // as they are now; null = the robot's own
   mutable std::vector<KnownExplosion> explosions;              // one per robot
   mutable std::vector<RobotStatus> reported;                   // one per robot, used by telemetry()
-  double check_seconds = 0;                                    // LoadTimes::check
+  bool measures_folding = false;
+  mutable std::vector<std::shared_ptr<const BodyCells>> cells;  // one per robot; null = not known
+  double check_seconds = 0;                                     // LoadTimes::check
   std::vector<float> lifts;  // by which robots at rest stand higher; empty = not known
   SharedState shared_state;
   SharedActuation shared_actuation;
@@ -58,6 +61,8 @@ struct Simulation::Parts {
   // Puts robots from this index on at rest, on the floor if there is one.
   void put_at_rest(std::size_t first);
 
+  // To telemetry of all robots, explosions included, if it is asked for.
+  void add_folding(std::span<Telemetry> telemetry) const;
   // Without the explosion.
   State state(std::size_t robot) const;
   // All materials of a robot as they are now. Ids that the robot does not have are air.
@@ -78,6 +83,7 @@ struct Simulation::Parts {
   void before_step() { shared_actuation.apply(*backend, robots, changed_tables); }
   // Says that XPBD softens springs by more than a twentieth; empty if it does not.
   std::string softening_note() const;
+  std::string stability_note() const;
   void after_change() const { shared_state.publish(*backend, pointers); }
   // To be called when robots have come or gone. `kept` = the old indices of the first ones.
   void after_exchange(std::span<const std::size_t> kept);

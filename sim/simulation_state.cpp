@@ -137,7 +137,26 @@ std::vector<Telemetry> Simulation::telemetry() const {
   statuses.resize(all.size());
   parts_->backend->report(parts_->clock, all, statuses);
   for (std::size_t i = 0; i < all.size(); ++i) parts_->add_explosion(all[i], i, statuses[i]);
+  parts_->add_folding(all);
   return all;
+}
+
+void Simulation::measure_folding(bool on) { parts_->measures_folding = on; }
+bool Simulation::measures_folding() const { return parts_->measures_folding; }
+
+void Simulation::Parts::add_folding(std::span<Telemetry> telemetry) const {
+  if (!measures_folding || telemetry.empty()) return;
+  std::vector<Vec3> positions(offsets.back());
+  backend->read_positions(positions);
+  for (std::size_t i = 1; i < size(); ++i)
+    if (!cells[i] && robots[i] == robots[i - 1]) cells[i] = cells[i - 1];
+  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+    if (telemetry[i].exploded) return;
+    if (!cells[i]) cells[i] = std::make_shared<const BodyCells>(*robots[i]);
+    const Folding folding = cells[i]->folding(std::span(positions).subspan(offsets[i], masses(i)));
+    telemetry[i].inverted = folding.inverted;
+    telemetry[i].overlap = folding.overlap;
+  });
 }
 Telemetry Simulation::telemetry(std::size_t robot) const {
   parts_->require(robot);

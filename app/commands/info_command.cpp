@@ -25,6 +25,7 @@
 #include "mercury/generator.h"
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
+#include "mercury/real_body.h"
 #include "mercury/run_folder.h"
 #include "mercury/simulation.h"
 
@@ -115,6 +116,7 @@ void describe_mechanics(const Robot& robot) {
   const BodyProperties body = body_properties(robot, scale);
   const std::string scaled = scale == 1 ? "" : fmt::format(", with a stiffness scale of {:.6g}", scale);
   const std::size_t fixed = robot.fixed.size();
+  print_line("physics", std::string(name_of(physics_of(robot))));
   print_line("mass", fmt::format("{:.4g} kg{}", body.mass,
                                  fixed == 0 ? "" : fmt::format(", {} point{} fixed", fixed, fixed == 1 ? "" : "s")));
   print_line("density", body.density ? fmt::format("{:.4g} kg/m3", *body.density) : "-");

@@ -2,6 +2,7 @@
 #include "app/commands/info_json.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
+#include "mercury/real_body.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -161,6 +163,7 @@ Json info_of(const Robot& robot, const std::filesystem::path& file) {
           {"euler_characteristic", found.euler_characteristic},
           {"area", found.area},
           {"volume", found.volume},
+          {"physics", name_of(physics_of(robot))},
           {"mass", body.mass},
           {"density", value_or_null(body.density)},
           {"stiffness_scale", shortest(stiffness_scale)},
@@ -175,6 +178,7 @@ Json info_of(const TrajectoryReader& recording) {
   for (const auto& [robot, group, exploded_at, culprit_spring] : recording.robots())
     robots.push_back({{"name", robot.name},
                       {"group", group},
+                      {"physics", name_of(physics_of(robot))},
                       {"masses", robot.masses.size()},
                       {"springs", robot.springs.size()},
                       {"faces", robot.faces.size()},
@@ -226,6 +230,7 @@ Json info_of(const RunHistory& run) {
   }
   return {{"folder", run.folder().string()},
           {"program", settings.program},
+          {"physics", name_of(physics_of(settings.space))},
           {"genomes", json_of(settings.space)},
           {"objectives", settings.evolution.objectives},
           {"algorithm", json_of(settings.evolution)},
@@ -243,17 +248,20 @@ Json info_of(const RunHistory& run) {
 }
 
 Configuration configuration_of(const SceneFile& scene) {
-  std::vector<std::string> environments, notes;
+  std::vector<Robot> robots;
   for (const std::string& file : scene.robots()) {
-    const ImportFormat* format = import_format_of(file);
-    if (!format) {
-      environments.push_back(environment_of(load_robot(file)));
-      continue;
-    }
-    for (const Robot& robot : import_file(file, *format).robots) environments.push_back(environment_of(robot));
+    if (const ImportFormat* format = import_format_of(file))
+      std::ranges::move(import_file(file, *format).robots, std::back_inserter(robots));
+    else
+      robots.push_back(load_robot(file));
   }
-  for (const RandomRobots& random : scene.random()) environments.push_back(generator_named(random.kind).environment);
-  return scene.configuration(environments, notes);
+  std::vector<const Robot*> pointers;
+  for (Robot& robot : robots) {
+    scene.give_body(robot, robot.name);
+    pointers.push_back(&robot);
+  }
+  std::vector<std::string> notes;
+  return scene.configuration(pointers, notes);
 }
 
 Json info_of(const SceneFile& scene) {

@@ -52,7 +52,9 @@ class Filming {
   bool make(const Output& output) {
     VideoOptions::Plan whole = task_.plan;
     whole.timing.frames *= static_cast<std::int64_t>(output.clips.size());
-    const std::unique_ptr<FrameWriter> writer = options_.video.open(whole, output.name, may_replace_);
+    const std::unique_ptr<FrameWriter> writer =
+        options_.video.open(whole, output.name, may_replace_,
+                            comment_of(*output.clips.front().robots.front(), task_.subject.configuration));
     VideoResult result;
     for (const Clip& clip : output.clips) {
       const VideoResult of_clip = film(clip, *writer);

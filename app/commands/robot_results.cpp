@@ -15,6 +15,7 @@
 #include "mercury/distance.h"
 #include "mercury/fnv.h"
 #include "mercury/quantity.h"
+#include "mercury/real_body.h"
 #include "mercury/spread.h"
 
 namespace mercury {
@@ -57,6 +58,8 @@ constexpr Column table[] = {
     {{"failure", "", "why it could not be made"}, [](const RobotResult& robot) { return text(robot.failure); }},
     {{"masses", "", "number of masses"}, [](const RobotResult& robot) { return count(robot, robot.masses); }},
     {{"springs", "", "number of springs"}, [](const RobotResult& robot) { return count(robot, robot.springs); }},
+    {{"physics", "", "that the robot was made for: `paper` or `real` ([physics.md](physics.md#real-bodies))"},
+     [](const RobotResult& robot) { return robot.was_stepped() ? text(std::string(name_of(robot.physics))) : Cell(); }},
     {{"distance", "m", "of the center of mass from start to end; on land along the ground"},
      figure_of<&RobotResult::distance>},
     {{"trials", "", "of the robot; figures of several are medians"},
@@ -82,6 +85,10 @@ constexpr Column table[] = {
     {{"largest_strain", "1", "largest strain of any spring"}, figure_of<&RobotResult::largest_strain>},
     {{"strained_share", "1", "share of the springs above 50 % strain, in the sample that has most of them"},
      figure_of<&RobotResult::strained_share>},
+    {{"inverted", "1", "largest share of the body that was inside out; measured with `--folding`"},
+     figure_of<&RobotResult::inverted>},
+    {{"overlap", "1", "largest share of the masses that were within other parts of the body; the same"},
+     figure_of<&RobotResult::overlap>},
     {{"exploded", "", "`true` or `false`"},
      [](const RobotResult& robot) { return robot.was_stepped() ? robot.exploded() : Cell(); }},
     {{"exploded_at", "s", "time of the explosion, settling included"}, figure_of<&RobotResult::exploded_at>},
@@ -142,6 +149,7 @@ RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationReques
   result.identity.name = evaluation.robot->name;
   result.masses = evaluation.robot->masses.size();
   result.springs = evaluation.robot->springs.size();
+  result.physics = physics_of(*evaluation.robot);
   result.hash = evaluation.hash;
   if (!start.exploded) result.start = start.center_of_mass;
   if (end.exploded) {
@@ -160,6 +168,8 @@ RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationReques
   result.highest = evaluation.highest;
   result.largest_strain = evaluation.largest_strain;
   result.strained_share = evaluation.strained_share;
+  result.inverted = evaluation.inverted;
+  result.overlap = evaluation.overlap;
   return result;
 }
 
@@ -171,7 +181,8 @@ void take_medians(RobotResult& result, std::span<const RobotResult> trials) {
   };
   for (double RobotResult::*figure :
        {&RobotResult::distance, &RobotResult::mean_speed, &RobotResult::cruise_speed, &RobotResult::cruise_lengths,
-        &RobotResult::work, &RobotResult::highest, &RobotResult::largest_strain, &RobotResult::strained_share})
+        &RobotResult::work, &RobotResult::highest, &RobotResult::largest_strain, &RobotResult::strained_share,
+        &RobotResult::inverted, &RobotResult::overlap})
     result.*figure = median([&](const RobotResult& trial) { return trial.*figure; });
   for (Vec3 RobotResult::*place : {&RobotResult::start, &RobotResult::end})
     for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z})

@@ -41,6 +41,7 @@ struct RobotResult {
   Fate fate = Fate::failed;
   std::string failure;                  // why it could not be made or stepped
   std::size_t masses = 0, springs = 0;  // 0 if it failed
+  Physics physics = Physics::paper;     // that the robot was made for
   int trials = 1;
   double distance = none;                               // distance_between() start and end [m]
   double lower_quartile = none, upper_quartile = none;  // of the trials' distances, if there are several [m]
@@ -52,6 +53,7 @@ struct RobotResult {
   double highest = none;                                // largest z of the center of mass [m]
   double largest_strain = none;                         // over all samples [1]
   double strained_share = none;                         // largest Telemetry::strained_share of all samples [1]
+  double inverted = none, overlap = none;               // largest of Telemetry of all samples, if measured [1]
   double exploded_at = none;                            // [s], if it exploded
   std::uint32_t culprit_spring = no_spring;             // if it exploded
   std::uint64_t hash = 0;                               // of the final positions and velocities, of all trials

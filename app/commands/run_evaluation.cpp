@@ -119,6 +119,7 @@ void report_failures(const RobotSequence& robots, std::span<const RobotResult> r
 RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
                   const StepObservers& observers, std::int64_t first, TrialProgress trial) {
   const EvaluationRequest request = trial_request(trials, simulation.configuration());
+  simulation.measure_folding(request.folding);
   const std::int64_t start = first + request.settling, end = start + request.steps;
   Advance advance(simulation, observers, trial, end, request.sample_every);
   RunReport report{.settle = trials.settle,

@@ -43,19 +43,23 @@ std::string state_of(const RobotResult& robot) {
   return text;
 }
 
-std::string row_of(const RobotResult& robot, const std::string& label, std::size_t width, bool has_quartiles) {
+std::string row_of(const RobotResult& robot, const std::string& label, std::size_t width, bool has_quartiles,
+                   bool has_folding) {
   const auto count = [&](std::size_t number) { return robot.was_stepped() ? fmt::to_string(number) : "-"; };
   const std::string quartiles =
       !has_quartiles ? ""
       : std::isfinite(robot.lower_quartile)
           ? fmt::format("{:>19}", fmt::format("{:.4f} to {:.4f}", robot.lower_quartile, robot.upper_quartile)) + "  "
           : fmt::format("{:>19}  ", "-");
-  return fmt::format("{:>5}  {:<{}}  {:>6}  {:>7}  {}  {}{}  {}{}  {}  {}  {}  {}  {:<16}  {}\n", robot.identity.index,
-                     label, width, count(robot.masses), count(robot.springs), figure(robot.distance, 12, 4), quartiles,
-                     figure(robot.mean_speed, 11, 4), figure(robot.cruise_speed, 12, 4), robot.steady == 0 ? "~" : " ",
-                     figure(robot.work, 9, 3), figure(robot.highest, 11, 3), figure(100 * robot.largest_strain, 10, 2),
-                     figure(100 * robot.strained_share, 8, 2),
-                     robot.was_stepped() ? fmt::format("{:016x}", robot.hash) : "-", state_of(robot));
+  return fmt::format(
+      "{:>5}  {:<{}}  {:>6}  {:>7}  {}  {}{}  {}{}  {}  {}  {}  {}  {}{:<16}  {}\n", robot.identity.index, label, width,
+      count(robot.masses), count(robot.springs), figure(robot.distance, 12, 4), quartiles,
+      figure(robot.mean_speed, 11, 4), figure(robot.cruise_speed, 12, 4), robot.steady == 0 ? "~" : " ",
+      figure(robot.work, 9, 3), figure(robot.highest, 11, 3), figure(100 * robot.largest_strain, 10, 2),
+      figure(100 * robot.strained_share, 8, 2),
+      has_folding ? fmt::format("{}  {}  ", figure(100 * robot.inverted, 12, 2), figure(100 * robot.overlap, 11, 2))
+                  : "",
+      robot.was_stepped() ? fmt::format("{:016x}", robot.hash) : "-", state_of(robot));
 }
 
 }  // namespace
@@ -78,20 +82,27 @@ std::string table_of(const RunReport& report) {
   const Configuration& configuration = report.configuration;
   const std::vector<std::string> labels = labels_of(report.robots);
   const bool has_quartiles = report.trials > 1;
+  const bool has_folding =
+      std::ranges::any_of(report.robots, [](const RobotResult& robot) { return std::isfinite(robot.inverted); });
   std::size_t width = 5;
   for (const std::string& label : labels) width = std::max(width, label.size());
-  std::string text =
-      fmt::format("{}, {}, {} solver, dt {} s, {} steps = {:.6g} s", report.device, name_of(configuration.environment),
-                  name_of(configuration.solver), configuration.dt, report.steps, report.seconds);
+  const auto stepped_robot = std::ranges::find_if(report.robots, &RobotResult::was_stepped);
+  const std::string physics = stepped_robot == report.robots.end()
+                                  ? ""
+                                  : fmt::format(", {} physics", name_of(stepped_robot->physics));  // all have the same
+  std::string text = fmt::format("{}, {}{}, {} solver, dt {} s, {} steps = {:.6g} s", report.device,
+                                 name_of(configuration.environment), physics, name_of(configuration.solver),
+                                 configuration.dt, report.steps, report.seconds);
   if (report.settle > 0) text += fmt::format(", measured after {:.6g} s", report.settle);
   if (has_quartiles) text += fmt::format(", medians of {} trials", report.trials);
   if (report.jitter > 0) text += fmt::format(", jitter {:g} of the shortest rest length", report.jitter);
   text += fmt::format(
-      "\n\n{:>5}  {:<{}}  {:>6}  {:>7}  {:>12}  {}{:>11}  {:>12}   {:>9}  {:>11}  {:>10}  {:>8}  {:<16}  {}\n", "index",
-      "robot", width, "masses", "springs", "distance [m]",
+      "\n\n{:>5}  {:<{}}  {:>6}  {:>7}  {:>12}  {}{:>11}  {:>12}   {:>9}  {:>11}  {:>10}  {:>8}  {}{:<16}  {}\n",
+      "index", "robot", width, "masses", "springs", "distance [m]",
       has_quartiles ? fmt::format("{:>19}  ", "quartiles [m]") : "", "speed [m/s]", "cruise [m/s]", "work [J]",
-      "highest [m]", "strain [%]", "> 50 [%]", "hash", "state");
-  for (std::size_t i = 0; i < labels.size(); ++i) text += row_of(report.robots[i], labels[i], width, has_quartiles);
+      "highest [m]", "strain [%]", "> 50 [%]", has_folding ? "inverted [%]  overlap [%]  " : "", "hash", "state");
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    text += row_of(report.robots[i], labels[i], width, has_quartiles, has_folding);
   const std::size_t stepped = report.robots.size() - report.count(Fate::failed);
   text +=
       fmt::format("\n{} robot{}, {} springs, {:.3g} s of wall time, {} springs/s\n", stepped, stepped == 1 ? "" : "s",

@@ -71,9 +71,11 @@ struct GroupVideo::Parts {
       status.total = timing.frames;
     }
     if (robots.empty()) throw InputError("there is no robot to show");
-    const auto writer = open_frame_writer(
-        options.output,
-        {.size = size, .frames_per_second = options.frames_per_second, .expected_frames = timing.frames});
+    const auto writer =
+        open_frame_writer(options.output, {.size = size,
+                                           .frames_per_second = options.frames_per_second,
+                                           .expected_frames = timing.frames,
+                                           .comment = comment_of(*robots.front().robot, configuration)});
     view.speed = options.speed;
     Simulation simulation = simulation_of(robots, configuration);
     OffscreenRenderer offscreen = make_offscreen_renderer(options.context, size, options.quality);

@@ -16,6 +16,7 @@
 #include "mercury/lively.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
+#include "mercury/real_body.h"
 #include "mercury/robot_file.h"
 #include "mercury/samples.h"
 
@@ -102,12 +103,10 @@ void read_import(const fs::path& file, const ImportFormat& format, Opened& opene
                   import.settings.dt));
 }
 
-// That the robots of a scene are made for.
-std::vector<std::string> environments_of(const SceneFile& scene, const std::vector<OpenedRobot>& robots) {
-  std::vector<std::string> environments;
-  for (const OpenedRobot& robot : robots) environments.push_back(environment_of(robot.robot));
-  for (const RandomRobots& random : scene.random()) environments.push_back(generator_named(random.kind).environment);
-  return environments;
+std::vector<const Robot*> pointers_to(const std::vector<OpenedRobot>& robots) {
+  std::vector<const Robot*> pointers;
+  for (const OpenedRobot& robot : robots) pointers.push_back(&robot.robot);
+  return pointers;
 }
 
 void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messages) {
@@ -133,8 +132,13 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
       }
       for (Robot& imported : import_file(robot, *format).robots) robots.push_back({"", std::move(imported)});
     }
+    for (OpenedRobot& robot : robots) {
+      const Physics physics = physics_of(robot.robot);
+      scene->give_body(robot.robot, robot.file.empty() ? robot.robot.name : robot.file);
+      if (physics_of(robot.robot) != physics) robot.file.clear();  // it is another robot than that of the file
+    }
     std::vector<std::string> notes;
-    (void)scene->configuration(environments_of(*scene, robots), notes);  // throws while nothing has changed yet
+    (void)scene->configuration(pointers_to(robots), notes);  // throws while nothing has changed yet
     opened.robots = std::move(robots);
     opened.scene = std::move(scene);
     return;
@@ -246,7 +250,7 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
       if (opened->repro) parts.replay(opened->repro, opened->file);
       if (opened->recording) parts.play_recording(opened->recording, opened->file);
       if (opened->scene) {
-        parts.open_scene(*opened->scene, environments_of(*opened->scene, opened->robots));
+        parts.open_scene(*opened->scene, pointers_to(opened->robots));
         for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
         parts.pulls.attach_later(opened->scene->attached());
         parts.apply_document();
@@ -261,12 +265,12 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
   });
 }
 
-void LiveScene::Parts::open_scene(const SceneFile& scene, const std::vector<std::string>& environments) {
+void LiveScene::Parts::open_scene(const SceneFile& scene, std::span<const Robot* const> robots) {
   edit("open " + scene.path().filename().string());
   document.robots.clear();
   std::vector<std::string> notes;
   const Device device = document.configuration.device;
-  document.configuration = scene.configuration(environments, notes);
+  document.configuration = scene.configuration(robots, notes);
   document.configuration.device = device;
   view = scene.view(Layout::cells);
   camera = view.camera;

@@ -184,7 +184,7 @@ struct LiveScene::Parts {
   void remove_invalid(std::vector<Robot>& robots);
   std::vector<RobotId> append_valid(std::vector<Robot> robots, bool unsaved);
   // Clears the scene and sets what else the file says. `environments`: those that its robots are made for.
-  void open_scene(const SceneFile& scene, const std::vector<std::string>& environments);
+  void open_scene(const SceneFile& scene, std::span<const Robot* const> robots);
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);
   void place_child(const LiveRobot& parent, Robot child, bool replace);
   std::string free_name(const std::string& wanted) const;

@@ -18,6 +18,7 @@
 #include "mercury/quantity.h"
 #include "mercury/real_body.h"
 #include "mercury/samples.h"
+#include "mercury/simulation.h"
 
 namespace mercury {
 namespace {
@@ -183,7 +184,14 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
       throw InputError("--objective",
                        fmt::format("\"{}\": {}; give another --environment or --objective", formula, why));
   settings.space.environment = name_of(evolution.configuration.environment);
-  make_genome_space(settings.space);  // throws for a request that cannot be used
+  const std::unique_ptr<GenomeSpace> space = make_genome_space(settings.space);  // throws if it cannot be used
+  try {
+    Configuration one = evolution.configuration;
+    one.device = {.kind = DeviceKind::cpu, .threads = 1};
+    const Robot first = space->random(evolution.seed, 0)->grow("the first robot");
+    for (std::string& note : Simulation(one, {&first, 1}).notes()) notes.push_back(std::move(note));
+  } catch (const InputError&) {  // there is no such robot: it will be told when it is tried
+  }
   return settings;
 }
 

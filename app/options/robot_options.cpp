@@ -125,12 +125,9 @@ RobotSequence RobotOptions::sequence() const {
     sequence.environments.push_back(generator_named(request.kind).environment);
   }
   sequence.count = first.back();
-  const bool real = physics() == Physics::real;
-  sequence.physics = files.empty() ? (real ? Physics::real : Physics::paper) : physics_of(files);
-  if (!files.empty() && !sequence.random.empty() && (sequence.physics == Physics::real) != real)
-    throw InputError("--random",
-                     "these robots have bodies of the paper, those of the files have real ones; --physics "
-                     "real gives all a real one");
+  std::vector<const Robot*> pointers;
+  for (const auto& file : files) pointers.push_back(file.get());
+  sequence.physics = physics_with(pointers);
   sequence.source = [files = std::move(files), requests = sequence.random,
                      first = std::move(first)](std::size_t index) -> std::shared_ptr<const Robot> {
     if (index < files.size()) return files[index];
@@ -158,14 +155,28 @@ void RobotOptions::require_robot_files() const {
 std::vector<RobotFromFile> RobotOptions::load_files() const {
   require_robot_files();
   std::vector<RobotFromFile> loaded = files_.load();
-  if (const auto material = real_material_in(generators_.values()))
-    for (RobotFromFile& file : loaded)
-      if (!real_material_of(file.robot)) try {
-          file.robot = with_real_body(file.robot, *material);
-        } catch (const InputError& error) {
-          throw InputError(file.file.string(), error.what());
-        }
+  for (RobotFromFile& file : loaded) give_body(file.robot, file.file.string());
   return loaded;
+}
+
+void RobotOptions::give_body(Robot& robot, const std::string& file) const {
+  const auto material = real_material_in(generators_.values());
+  if (!material || mercury::physics_of(robot) == Physics::real) return;
+  try {
+    robot = with_real_body(robot, *material);
+  } catch (const InputError& error) {
+    throw InputError(file, error.what());
+  }
+}
+
+Physics RobotOptions::physics_with(std::span<const Robot* const> files) const {
+  if (files.empty()) return physics();
+  const Physics of_files = physics_of(files);
+  if (!random_.empty() && of_files != physics())
+    throw InputError("--random",
+                     "these robots have bodies of the paper, those of the files have real ones; --physics "
+                     "real gives all a real one");
+  return of_files;
 }
 
 std::vector<RandomRobots> RobotOptions::random() const {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,10 @@ class RobotOptions {
 
   // What the options say that bodies are to be; robots of files may have real ones without a word.
   Physics physics() const;
+  // What the robots of these files and the random ones are made for. Throws InputError for a mixture.
+  Physics physics_with(std::span<const Robot* const> files) const;
+  // Gives a robot of a file a real body if the options say so, and it has none. Throws InputError that names the file.
+  void give_body(Robot& robot, const std::string& file) const;
 
   bool empty() const { return files_.empty() && random_.empty(); }
 

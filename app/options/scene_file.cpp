@@ -13,6 +13,7 @@
 #include "app/options/simulation_options.h"
 #include "app/options/view_options.h"
 #include "mercury/error.h"
+#include "mercury/origin.h"
 
 namespace mercury {
 
@@ -103,10 +104,18 @@ std::vector<RandomRobots> SceneFile::random() const { return parts_->robots.rand
 std::vector<AttachedMass> SceneFile::attached() const { return parts_->attachments.attached(); }
 ViewSettings SceneFile::view(Layout usual) const { return parts_->view.settings(usual); }
 
-Configuration SceneFile::configuration(std::span<const std::string> environments,
-                                       std::vector<std::string>& notes) const {
-  return located_in(*this,
-                    [&] { return parts_->simulation.configuration(environments, notes, parts_->robots.physics()); });
+void SceneFile::give_body(Robot& robot, const std::string& file) const {
+  located_in(*this, [&] { parts_->robots.give_body(robot, file); });
+}
+
+Configuration SceneFile::configuration(std::span<const Robot* const> files, std::vector<std::string>& notes) const {
+  return located_in(*this, [&] {
+    std::vector<std::string> environments;
+    for (const Robot* robot : files) environments.push_back(environment_of(*robot));
+    for (const RandomRobots& random : parts_->robots.random())
+      environments.push_back(generator_named(random.kind).environment);
+    return parts_->simulation.configuration(environments, notes, parts_->robots.physics_with(files));
+  });
 }
 
 std::vector<std::string> SceneFile::arguments(const Command& command, const std::vector<std::string>& given) const {

@@ -13,6 +13,7 @@
 #include "app/scene/view_settings.h"
 #include "mercury/configuration.h"
 #include "mercury/generator.h"
+#include "mercury/robot.h"
 
 namespace mercury {
 
@@ -34,9 +35,12 @@ class SceneFile {
   std::vector<RandomRobots> random() const;
   // Masses that are pinned or held by a spring; robots are counted as in the file, random ones last.
   std::vector<AttachedMass> attached() const;
-  // Without `environment` in the file, the robots choose: `environments` are those that they are made for. Appends to
-  // `notes` what the user should know about that. The device is the default one.
-  Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes) const;
+  // Gives a robot of one of its files a real body if the scene says so. Throws InputError.
+  void give_body(Robot& robot, const std::string& file) const;
+  // `files` = the robots of its files. Without `environment` in the scene, they and the random ones choose. Appends to
+  // `notes` what the user should know about that. The device is the default one. Throws InputError if some have real
+  // bodies and others those of the paper.
+  Configuration configuration(std::span<const Robot* const> files, std::vector<std::string>& notes) const;
   // `usual`: the layout if the file names none.
   ViewSettings view(Layout usual = Layout::grid) const;
 

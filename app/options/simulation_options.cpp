@@ -75,7 +75,7 @@ namespace {
 class PhysicsOfAll {
  public:
   void add(const Robot& robot) {
-    (real_material_of(robot) ? real_ : paper_) = &robot;
+    (mercury::physics_of(robot) == Physics::real ? real_ : paper_) = &robot;
     if (real_ && paper_)
       throw InputError(real_->name + " and " + paper_->name,
                        "one has a real body, the other that of the paper; --physics real gives all a real one");
@@ -91,6 +91,11 @@ class PhysicsOfAll {
 Physics physics_of(std::span<const Robot> robots) {
   PhysicsOfAll all;
   for (const Robot& robot : robots) all.add(robot);
+  return all.physics();
+}
+Physics physics_of(std::span<const Robot* const> robots) {
+  PhysicsOfAll all;
+  for (const Robot* robot : robots) all.add(*robot);
   return all.physics();
 }
 Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots) {

@@ -21,6 +21,7 @@ namespace mercury {
 
 // What the bodies of these robots are. Throws InputError if some are real and others are not.
 Physics physics_of(std::span<const Robot> robots);
+Physics physics_of(std::span<const Robot* const> robots);
 Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots);
 
 class SimulationOptions {

@@ -127,14 +127,16 @@ void VideoOptions::add_output_to(OutputFiles& outputs, const std::string& name) 
     outputs.add_file("-o", output, inside);
 }
 
-std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::string& name, bool may_replace) const {
+std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::string& name, bool may_replace,
+                                                const std::string& comment) const {
   const std::string output = output_of(name);
   if (single_picture())
-    return std::make_unique<ContactSheet>(output, contact_sheet_.value_or(Grid{}), plan.size, sheet_gap);
+    return std::make_unique<ContactSheet>(output, contact_sheet_.value_or(Grid{}), plan.size, sheet_gap, comment);
   return open_frame_writer(output, {.size = plan.size,
                                     .frames_per_second = 1 / plan.timing.pace,
                                     .expected_frames = plan.timing.frames,
                                     .crf = crf_,
+                                    .comment = comment,
                                     .ffmpeg = ffmpeg_,
                                     .force = may_replace});
 }

@@ -31,7 +31,8 @@ class VideoOptions {
   Plan plan(double seconds) const;
   // The writer of the frames. `name`: the robot that is filmed alone; empty = all robots. `may_replace`: see
   // VideoSettings::force.
-  std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name, bool may_replace) const;
+  std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name, bool may_replace,
+                                    const std::string& comment) const;
   // The file or folder that open() writes.
   std::string output_of(const std::string& name) const;
   void add_output_to(OutputFiles& outputs, const std::string& name) const;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -127,6 +128,25 @@ void read_ways(hid_t parent, std::span<TrialMeasures::Sums> measures) {
   }
 }
 
+// Of the robots of a run that measures folding. The telemetry at the start and at the last sample has none: nothing
+// that derives from the samples uses it.
+void write_foldings(hid_t parent, std::span<const TrialMeasures::Sums> measures) {
+  if (std::ranges::all_of(measures, [](const auto& sums) { return std::isnan(sums.inverted); })) return;
+  std::vector<double> numbers;
+  for (const TrialMeasures::Sums& sums : measures) numbers.insert(numbers.end(), {sums.inverted, sums.overlap});
+  write_dataset(parent, "foldings", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {measures.size(), 2}, numbers.data());
+}
+
+void read_foldings(hid_t parent, std::span<TrialMeasures::Sums> measures) {
+  if (!has_member(parent, "foldings")) return;
+  const auto rows = read_rows<std::array<double, 2>>(parent, "foldings", H5T_NATIVE_DOUBLE, {2});
+  if (rows.size() != measures.size()) throw Error("/checkpoint/foldings: it has another length than measures");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    measures[i].inverted = rows[i][0];
+    measures[i].overlap = rows[i][1];
+  }
+}
+
 void write_robots(hid_t parent, const std::string& name, std::span<const CheckpointRobot> robots) {
   const Handle group = create_group(parent, name);
   std::vector<std::uint64_t> indices;
@@ -174,6 +194,7 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   for (const TrialMeasures::Sums& sums : notes.measures) rows.push_back(row_of(sums));
   write_dataset(group, "measures", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {rows.size(), row_numbers}, rows.data());
   write_ways(group, notes.measures);
+  write_foldings(group, notes.measures);
   if (!notes.recording) return;
   const Handle recording = create_group(group, "recording");
   write_text(recording, "path", notes.recording->path);
@@ -197,6 +218,7 @@ CheckpointNotes read_notes(hid_t group) {
   for (const Row& row : read_rows<Row>(group, "measures", H5T_NATIVE_DOUBLE, {row_numbers}))
     notes.measures.push_back(sums_from(row));
   read_ways(group, notes.measures);
+  read_foldings(group, notes.measures);
   if (!has_member(group, "recording")) return notes;
   const Handle recording = open_group(group, "recording");
   notes.recording = {.path = read_text(recording, "path"),

@@ -19,6 +19,7 @@
 #include "app/recording/trajectory_hdf5_writing.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
+#include "mercury/real_body.h"
 
 namespace mercury {
 namespace {
@@ -240,6 +241,7 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
   const Handle group = create_group(particles_, name);
   write_text(group, "name", robot.name);
   write_attribute(group, "index", static_cast<std::uint64_t>(index));
+  write_text(group, "physics", name_of(physics_of(robot)));
   const Handle box = create_group(group, "box");
   write_attribute(box, "dimension", std::int32_t{3});
   write_texts(box, "boundary", {"none", "none", "none"});

@@ -24,8 +24,8 @@ void require_picture_name(const std::string& output) {
     throw ParameterError("output", output + ": a picture is written as .png; give such a name");
 }
 
-ContactSheet::ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap)
-    : output_(output), grid_(grid), frame_(frame), gap_(gap) {
+ContactSheet::ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap, std::string comment)
+    : output_(output), comment_(std::move(comment)), grid_(grid), frame_(frame), gap_(gap) {
   require_picture_name(output);
   const auto [width, height] = size_of_sheet(grid, frame, gap);
   make_parent_folder(output);
@@ -45,7 +45,7 @@ void ContactSheet::write(const render::Image& frame) {
   ++count_;
 }
 
-void ContactSheet::finish() { write_picture(output_, sheet_); }
+void ContactSheet::finish() { write_picture(output_, sheet_, comment_); }
 
 std::string ContactSheet::description() const {
   return grid_.columns * grid_.rows == 1 ? "a PNG picture"

@@ -19,13 +19,13 @@ void require_picture_name(const std::string& output);
 class ContactSheet final : public FrameWriter {
  public:
   // Throws as require_picture_name() and size_of_sheet().
-  ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap);
+  ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap, std::string comment = {});
   void write(const render::Image& frame) override;
   void finish() override;
   std::string description() const override;
 
  private:
-  std::string output_;
+  std::string output_, comment_;
   Grid grid_;
   PictureSize frame_;
   int gap_;

@@ -85,6 +85,7 @@ std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& s
   arguments.insert(arguments.end(), {"-i", "pipe:0", "-an"});
   const std::vector<std::string> codec = codec_arguments(kind, settings);
   arguments.insert(arguments.end(), codec.begin(), codec.end());
+  if (!settings.comment.empty()) arguments.insert(arguments.end(), {"-metadata", "comment=" + settings.comment});
   // "file:" keeps ffmpeg from interpreting a colon or a leading dash in the name.
   arguments.push_back("file:" + file);
   return arguments;

@@ -64,12 +64,13 @@ void leave_to_the_driver(render::Readback readback) {
   left.push_back(std::move(readback));
 }
 
-VideoSettings video_settings(const std::string& output, const FilmOptions& options) {
+VideoSettings video_settings(const std::string& output, const FilmOptions& options, const Simulation& simulation) {
   const VideoKind kind = video_kind_of(output);
   require_drawable(options.size);
   return {.size = encoded_size(kind, options.size),
           .frames_per_second = options.frames_per_second == 0 ? usual_frame_rate(kind) : options.frames_per_second,
           .crf = options.crf,
+          .comment = simulation.size() == 0 ? "" : comment_of(simulation.robot(0), simulation.configuration()),
           .ffmpeg = options.ffmpeg};
 }
 
@@ -94,7 +95,7 @@ render::Image picture_of(DrawingThread& thread, const Simulation& simulation, co
 
 struct Film::Parts {
   Parts(DrawingThread& drawing_thread, const Simulation& filmed, const std::string& output, const FilmOptions& given)
-      : thread(drawing_thread), simulation(filmed), options(given), settings(video_settings(output, given)),
+      : thread(drawing_thread), simulation(filmed), options(given), settings(video_settings(output, given, filmed)),
         pixels(pixel_format_of(video_kind_of(output))), writer(open_frame_writer(output, settings)),
         encoder(std::make_unique<FrameEncoder>(*writer)) {}
 
@@ -230,7 +231,7 @@ PictureSize Film::size() const { return parts_->settings.size; }
 VideoResult film_of(DrawingThread& thread, Simulation simulation, const std::string& output, const FilmOptions& options,
                     double seconds, const std::function<bool()>& go_on) {
   constexpr std::chrono::milliseconds between_questions(50);
-  VideoSettings settings = video_settings(output, options);
+  VideoSettings settings = video_settings(output, options, simulation);
   const VideoTiming timing = video_timing(seconds, options.speed, settings.frames_per_second);
   settings.expected_frames = timing.frames;
   const std::unique_ptr<FrameWriter> writer = open_frame_writer(output, settings);

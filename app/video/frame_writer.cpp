@@ -6,9 +6,11 @@
 #include <cstdlib>
 
 #include "app/base/output_files.h"
+#include "app/base/version.h"
 #include "app/video/ffmpeg_writer.h"
 #include "app/video/png_folder.h"
 #include "mercury/error.h"
+#include "mercury/real_body.h"
 
 namespace mercury {
 namespace {
@@ -86,6 +88,11 @@ VideoKind video_kind_of(const std::string& output) {
                            "\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures");
 }
 
+std::string comment_of(const Robot& robot, const Configuration& configuration) {
+  return fmt::format("{}, {} physics, {}, {} solver, dt {} s", program_version, name_of(physics_of(robot)),
+                     name_of(configuration.environment), name_of(configuration.solver), configuration.dt);
+}
+
 double usual_frame_rate(VideoKind kind) { return kind == VideoKind::gif ? 25 : 30; }
 
 PictureSize encoded_size(VideoKind kind, PictureSize size) {
@@ -110,7 +117,7 @@ std::unique_ptr<FrameWriter> open_frame_writer(const std::string& output, const 
     const fs::path path(output);
     const fs::path folder = path.filename().empty() && path.has_parent_path() ? path.parent_path() : path;
     make_parent_folder(folder);
-    return std::make_unique<PngFolder>(folder, settings.force);
+    return std::make_unique<PngFolder>(folder, settings.force, settings.comment);
   }
   make_parent_folder(output);
   return std::make_unique<FfmpegWriter>(output, kind, settings);

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
 #include "render/readback.h"
 
 namespace mercury {
@@ -23,9 +25,13 @@ struct VideoSettings {
   double frames_per_second = 30;
   std::int64_t expected_frames = 0;  // 0 = unknown
   std::optional<int> crf;            // constant rate factor of H.264 and VP9: lower is better; none = the usual one
-  std::string ffmpeg;                // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
-  bool force = false;                // a folder for PNG pictures may hold files, see PngFolder
+  std::string comment;  // a line of metadata about what is shown; PNG pictures have it as the text "Comment"
+  std::string ffmpeg;   // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
+  bool force = false;   // a folder for PNG pictures may hold files, see PngFolder
 };
+
+// VideoSettings::comment of pictures that show such a robot: version, physics, environment, solver and time step.
+std::string comment_of(const Robot& robot, const Configuration& configuration);
 
 enum class VideoKind { mp4, webm, gif, png_folder };
 

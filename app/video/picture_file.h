@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "render/readback.h"
 
@@ -10,7 +11,7 @@ namespace mercury {
 
 // Writes an rgb or rgba image as a PNG, whole or not at all: under a temporary name that is then renamed, which
 // replaces an existing file. Writes directly into a device or a pipe. Throws VideoError, as in "a.png: the disk is
-// full".
-void write_picture(const std::filesystem::path& file, const render::Image& image);
+// full". `comment`: see render::png_bytes().
+void write_picture(const std::filesystem::path& file, const render::Image& image, std::string_view comment = {});
 
 }  // namespace mercury

@@ -41,7 +41,8 @@ std::optional<std::int64_t> frame_number(const std::string& name) {
 
 }  // namespace
 
-PngFolder::PngFolder(const fs::path& folder, bool force) : folder_(folder), queue_(worker_count()) {
+PngFolder::PngFolder(const fs::path& folder, bool force, std::string comment)
+    : folder_(folder), comment_(std::move(comment)), queue_(worker_count()) {
   std::error_code error;
   made_folder_ = fs::create_directory(folder_, error);
   if (error) refuse("cannot make the folder " + folder.string() + ": " + error.message());
@@ -101,7 +102,7 @@ void PngFolder::finish() {
 void PngFolder::work() {
   while (const auto frame = queue_.pop()) {
     try {
-      write_picture(path_of(frame->number), frame->picture);
+      write_picture(path_of(frame->number), frame->picture, comment_);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!error_) error_ = std::current_exception();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -22,7 +23,7 @@ namespace mercury {
 class PngFolder final : public FrameWriter {
  public:
   // Throws InputError if the folder cannot be made or written into, is not empty, or is being filled.
-  PngFolder(const std::filesystem::path& folder, bool force);
+  PngFolder(const std::filesystem::path& folder, bool force, std::string comment = {});
   ~PngFolder() override;
   void write(const render::Image& frame) override;
   void finish() override;
@@ -41,7 +42,8 @@ class PngFolder final : public FrameWriter {
   void remove_frames_from(std::int64_t first) const;
 
   std::filesystem::path folder_;
-  int lock_ = -1;  // the open folder
+  const std::string comment_;  // of each picture
+  int lock_ = -1;              // the open folder
   bool made_folder_ = false;
   bool finished_ = false;
   std::int64_t written_ = 0;

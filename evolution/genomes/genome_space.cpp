@@ -171,6 +171,11 @@ void read_head(ByteReader& reader, std::uint8_t tag) {
     throw InputError("genome", "has version " + std::to_string(version) + "; this program reads version 1");
 }
 
+Physics physics_of(const GenomeSpaceRequest& request) {
+  if (real_material_in(request.values)) return Physics::real;
+  return request.founders.empty() ? Physics::paper : physics_of(request.founders.front());
+}
+
 std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request) {
   if (!request.environment.empty()) environment_named(request.environment);  // or it throws
   if (!request.founders.empty() && request.genes == Genes::muscles) return make_given_body_space(request);

@@ -2,6 +2,7 @@
 #include "evolution/run_folder/derived_files.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -111,7 +112,8 @@ std::string hexadecimal(std::uint64_t value) {
 
 void add_quantities(CsvLines& csv, const Assessment& assessment) {
   for (std::size_t q = 0; q < quantities().size(); ++q) {
-    const bool has_value = q < assessment.values.size() && counts(quantities()[q], assessment.fate);
+    const bool has_value =
+        q < assessment.values.size() && counts(quantities()[q], assessment.fate) && !std::isnan(assessment.values[q]);
     csv.cell(has_value ? shortest_text(assessment.values[q]) : std::string());
   }
 }
@@ -132,9 +134,10 @@ void write_lineage(const RunHistory& run) {
   for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"lower_quartile_", "upper_quartile_"}) csv.cell(name + score_name(i, objectives));
-  csv.cell("hash");
+  csv.cell("hash").cell("physics");
   for (const Quantity& quantity : quantities()) csv.cell(column_of(quantity));
   csv.end_line();
+  const std::string_view physics = name_of(physics_of(run.settings().space));
   for (const Individual& individual : run.individuals()) {
     const Assessment& assessment = individual.assessment;
     const std::optional<int> died = run.died(individual.id);
@@ -145,7 +148,7 @@ void write_lineage(const RunHistory& run) {
     for (std::size_t i = 0; i < objectives; ++i)
       for (const std::vector<double>* quartiles : {&assessment.lower_quartiles, &assessment.upper_quartiles})
         csv.cell(i < quartiles->size() ? shortest_text((*quartiles)[i]) : std::string());
-    csv.cell(hexadecimal(assessment.hash));
+    csv.cell(hexadecimal(assessment.hash)).cell(physics);
     add_quantities(csv, assessment);
     csv.end_line();
   }
@@ -159,7 +162,7 @@ void write_generations(const RunHistory& run) {
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})
       csv.cell(name + score_name(i, objectives));
-  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "failed", "seconds",
+  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "failed", "physics", "seconds",
                            "robots_per_second", "device"})
     csv.cell(name);
   csv.end_line();
@@ -173,7 +176,8 @@ void write_generations(const RunHistory& run) {
         .cell(generation.exploded)
         .cell(generation.overstretched)
         .cell(generation.too_small)
-        .cell(generation.failed);
+        .cell(generation.failed)
+        .cell(name_of(physics_of(run.settings().space)));
     const double seconds = generation.times.seconds;
     csv.cell(fixed_text(seconds, 3))
         .cell(seconds > 0 ? fixed_text(static_cast<double>(generation.born) / seconds, 1) : std::string())

@@ -81,7 +81,8 @@ double is_steady(const Trial& trial) {
   return std::abs(second - last) <= most_apart * std::max(second, last) ? 1 : 0;
 }
 
-// name, unit, help, of the body alone, usual range, value, whether it grows with how far the robot gets
+// name, unit, help, of the body alone, usual range, value, whether it grows with how far the robot gets, whether
+// it needs EvaluationRequest::folding
 constexpr Quantity table[] = {
     {"distance", "m", "how far the center of mass went from start to end; on land along the ground", false, 0, 5,
      distance, true},
@@ -108,6 +109,10 @@ constexpr Quantity table[] = {
      [](const Trial& trial) { return trial.evaluation.largest_strain; }},
     {"strained_share", "", "largest share of the springs that were strained by more than half at the same time", false,
      0, 1, [](const Trial& trial) { return trial.evaluation.strained_share; }},
+    {"inverted", "", "largest share of the body that was inside out; unknown unless the trial measures folding", false,
+     0, 1, [](const Trial& trial) { return trial.evaluation.inverted; }, false, true},
+    {"overlap", "", "largest share of the masses that were within other parts of the body; unknown as inverted", false,
+     0, 1, [](const Trial& trial) { return trial.evaluation.overlap; }, false, true},
     {"seconds", "s", "time of the trial", false, 0, 10, seconds},
     {"body_lengths", "", "distance per length", false, 0, 5,
      [](const Trial& trial) { return ratio(distance(trial), length_at_rest(trial)); }, true},

@@ -71,6 +71,8 @@ elastic_energy       of the springs [J]
 muscle_power         that the muscles deliver now [W]
 largest_strain       of a spring [1]
 strained_share       of the springs: those that are strained by more than half [1]
+inverted             share of the body that is inside out [1], NaN unless measure_folding is True
+overlap              share of the masses that are within other parts of the body [1], the same
 exploded             whether the robot has left the finite and is frozen
 exploded_at          when [s], 0 unless exploded
 culprit_spring       index of the spring that is the cause, -1 if none is known)";
@@ -228,6 +230,14 @@ void bind_reports(nb::class_<Batch>& batch) {
             return telemetry_array(self.use([](const Simulation& simulation) { return simulation.telemetry(); }));
           },
           telemetry_description)
+      .def_prop_rw(
+          "measure_folding",
+          [](const Batch& self) {
+            return self.use([](const Simulation& simulation) { return simulation.measures_folding(); });
+          },
+          [](Batch& self, bool on) { self.change([&](Simulation& simulation) { simulation.measure_folding(on); }); },
+          "Whether telemetry() measures how bodies are folded, inverted and overlap; it takes all positions from the "
+          "device.")
       .def(
           "hash",
           [](const Batch& self, std::int64_t robot) {

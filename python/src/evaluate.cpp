@@ -49,6 +49,7 @@ environment, solver, dt, damping, device, threads: as in Batch; with "cuda:all",
 trials, jitter: how often each robot is tried, with masses that begin displaced by a normal deviate of this standard
 deviation per coordinate, per shortest rest length; numbers are medians. None = 0.001 with several trials, else 0.
 seed: of the jitter, which is the same for all robots.
+folding: whether results have `inverted` and `overlap`, which take all positions from the device.
 hashes, states: whether results have the hash and the masses of the final state.
 memory_limit: of the host, for robots that are made and not yet returned [bytes]; None = a quarter of what is free.
 portion: how many robots are loaded together, at most; None = chosen. Results do not depend on it.
@@ -239,8 +240,8 @@ std::int64_t steps_in(double seconds, double dt, const char* name) {
 
 nb::object evaluate(nb::object source, double seconds, nb::handle environment, const std::string& solver, double dt,
                     double damping, nb::handle device, int threads, double settle, std::optional<double> sample_every,
-                    int trials, std::optional<double> jitter, std::uint64_t seed, bool hashes, bool states,
-                    std::optional<std::size_t> memory_limit, std::optional<std::size_t> portion) {
+                    int trials, std::optional<double> jitter, std::uint64_t seed, bool folding, bool hashes,
+                    bool states, std::optional<std::size_t> memory_limit, std::optional<std::size_t> portion) {
   const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
   validate(configuration);
   const std::int64_t steps = steps_in(seconds, dt, "seconds"), settling = steps_in(settle, dt, "settle");
@@ -256,6 +257,7 @@ nb::object evaluate(nb::object source, double seconds, nb::handle environment, c
   request.settling = settling;
   request.steps = steps - settling;
   request.sample_every = std::max<std::int64_t>(1, period);
+  request.folding = folding;
   request.hashes = hashes;
   request.states = states;
   request.memory_limit = memory_limit.value_or(0);
@@ -288,7 +290,7 @@ void bind_evaluate(nb::module_& module) {
              nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
              nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,
              nb::arg("sample_every") = nb::none(), nb::arg("trials") = 1, nb::arg("jitter") = nb::none(),
-             nb::arg("seed") = 1, nb::arg("hashes") = false, nb::arg("states") = false,
+             nb::arg("seed") = 1, nb::arg("folding") = false, nb::arg("hashes") = false, nb::arg("states") = false,
              nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(), evaluate_description);
   // What is open when the interpreter exits is closed while threads can still run.
   const nb::object open = nb::module_::import_("weakref").attr("WeakSet")();

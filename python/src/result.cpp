@@ -136,6 +136,11 @@ void bind_result(nb::module_& module) {
                    "Largest strain of a spring of all samples [1].")
       .def_prop_ro("strained_share", median_value(&Evaluation::strained_share),
                    "Largest share of the springs that were strained by more than half at the same time [1].")
+      .def_prop_ro("inverted", median_value(&Evaluation::inverted),
+                   "Largest share of the body that was inside out [1]; NaN unless evaluate(folding=True).")
+      .def_prop_ro("overlap", median_value(&Evaluation::overlap),
+                   "Largest share of the masses that were within other parts of the body [1]; NaN unless "
+                   "evaluate(folding=True).")
       .def_prop_ro("exploded", &has_exploded, "Whether the robot left the finite in a trial and was frozen.")
       .def_prop_ro(
           "quantities", &all_quantities, nb::sig("def quantities(self) -> dict[str, float]"),

@@ -12,7 +12,7 @@ namespace {
 struct Row {
   float center_of_mass[3], velocity[3];
   double kinetic_energy, elastic_energy, muscle_power;
-  float largest_strain, strained_share;
+  float largest_strain, strained_share, inverted, overlap;
   double exploded_at;
   std::int64_t culprit_spring;
   bool exploded;
@@ -32,6 +32,8 @@ constexpr Field fields[] = {
     {"muscle_power", "f8", offsetof(Row, muscle_power)},
     {"largest_strain", "f4", offsetof(Row, largest_strain)},
     {"strained_share", "f4", offsetof(Row, strained_share)},
+    {"inverted", "f4", offsetof(Row, inverted)},
+    {"overlap", "f4", offsetof(Row, overlap)},
     {"exploded", "?", offsetof(Row, exploded)},
     {"exploded_at", "f8", offsetof(Row, exploded_at)},
     {"culprit_spring", "i8", offsetof(Row, culprit_spring)},
@@ -47,6 +49,8 @@ Row row_of(const Telemetry& from) {
   row.muscle_power = from.muscle_power;
   row.largest_strain = from.largest_strain;
   row.strained_share = from.strained_share;
+  row.inverted = from.inverted;
+  row.overlap = from.overlap;
   row.exploded = from.exploded;
   row.exploded_at = from.exploded ? from.exploded_at : 0;
   row.culprit_spring = from.culprit_spring == no_spring ? -1 : static_cast<std::int64_t>(from.culprit_spring);

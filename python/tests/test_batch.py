@@ -69,6 +69,18 @@ def test_telemetry_agrees_with_the_arrays(batch):
     assert (telemetry["exploded_at"] == 0).all()
 
 
+def test_folding_is_measured_where_it_is_asked_for():
+    batch = mercurysim.Batch(mercurysim.random_voxel(2), device="cpu")
+    assert not batch.measure_folding
+    assert np.isnan(batch.telemetry()["inverted"]).all()
+    batch.measure_folding = True
+    assert (batch.telemetry()["inverted"] == 0).all()
+    assert (batch.telemetry()["overlap"] == 0).all()
+    result = next(mercurysim.evaluate(mercurysim.random_voxel(1), 0.1, device="cpu", folding=True))
+    assert result.inverted == result.quantities["inverted"] == 0
+
+
+
 def test_docstring_of_telemetry_names_every_field(batch):
     for name in batch.telemetry().dtype.names:
         assert name in inspect.getdoc(mercurysim.Batch.telemetry)

@@ -10,6 +10,7 @@
 #include "sim/physics/contact.h"
 #include "sim/physics/environments.h"
 #include "sim/physics/integration.h"
+#include "sim/physics/points.h"
 
 namespace mercury {
 namespace {
@@ -145,6 +146,72 @@ double xpbd_softening(const Robot& robot, const Configuration& configuration) {
     most = std::max(most, (at(spring.a) + at(spring.b)) * static_cast<double>(materials[spring.material].stiffness));
   return most * static_cast<double>(stiffness_scale_of(configuration.environment)) * configuration.dt *
          configuration.dt;
+}
+
+double exceeded_dt(const Robot& robot, const Configuration& configuration) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  if (configuration.solver != Solver::force) return none;
+  const std::vector<PointProperties> points = point_properties(robot, configuration.environment);
+  const std::span<const Material> materials = materials_of(robot);
+  const double scale = static_cast<double>(stiffness_scale_of(configuration.environment)), dt = configuration.dt;
+  const auto inverse = [&](std::size_t mass) { return static_cast<double>(points[mass].inverse_inertia); };
+  const auto stiffness = [&](const Spring& spring) {
+    return scale * static_cast<double>(materials[spring.material].stiffness);
+  };
+  const auto with_damping = [&](const Spring& spring) {
+    return stiffness(spring) * (dt * dt + 2 * dt * static_cast<double>(materials[spring.material].relaxation_time));
+  };
+  // No eigenvalue is larger than this sum at the two ends of some spring. That is enough for most robots.
+  std::vector<double> sums(robot.masses.size());
+  for (const Spring& spring : robot.springs)
+    for (const std::uint16_t mass : {spring.a, spring.b}) sums[mass] += with_damping(spring) * inverse(mass);
+  const auto bound = [&](const Spring& spring) { return sums[spring.a] + sums[spring.b]; };
+  if (std::ranges::all_of(robot.springs, [&](const Spring& spring) { return bound(spring) < 4; })) return none;
+
+  struct Vector {
+    double x = 0, y = 0, z = 0;
+  };
+  // Powers of the matrix, in coordinates scaled by the roots of the inertias, turn any start to the stiffest vibration.
+  std::vector<Vector> u(robot.masses.size()), next(u.size());
+  std::uint64_t number = 1;
+  const auto random = [&] {
+    number = number * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<double>(number >> 33) / 2147483648.0 - 0.5;
+  };
+  for (Vector& own : u) own = {random(), random(), random()};
+  constexpr int turns = 60;
+  double a = 0, b = 0;
+  for (int turn = 0; turn <= turns; ++turn) {
+    double squared = 0;
+    for (std::size_t i = 0; i < u.size(); ++i)
+      if (inverse(i) > 0) squared += u[i].x * u[i].x + u[i].y * u[i].y + u[i].z * u[i].z;
+    if (!(squared > 0)) return none;
+    const double norm = 1 / std::sqrt(squared);
+    for (Vector& own : u) own = {norm * own.x, norm * own.y, norm * own.z};
+    std::ranges::fill(next, Vector{});
+    a = b = 0;
+    for (const Spring& spring : robot.springs) {
+      const Vec3 along = robot.masses[spring.b] - robot.masses[spring.a];
+      const double squared_length = static_cast<double>(dot(along, along));
+      if (!(squared_length > 0)) continue;
+      const double share = 1 / std::sqrt(squared_length);
+      const Vector n{share * static_cast<double>(along.x), share * static_cast<double>(along.y),
+                     share * static_cast<double>(along.z)};
+      const double at_a = std::sqrt(inverse(spring.a)), at_b = std::sqrt(inverse(spring.b));
+      const auto part = [&](const Vector& own) { return own.x * n.x + own.y * n.y + own.z * n.z; };
+      const double longer = at_b * part(u[spring.b]) - at_a * part(u[spring.a]);
+      const double k = stiffness(spring);
+      a += k * longer * longer;
+      b += k * static_cast<double>(materials[spring.material].relaxation_time) * longer * longer;
+      const double pull = with_damping(spring) * longer;
+      Vector &on_a = next[spring.a], &on_b = next[spring.b];
+      on_a = {on_a.x - at_a * pull * n.x, on_a.y - at_a * pull * n.y, on_a.z - at_a * pull * n.z};
+      on_b = {on_b.x + at_b * pull * n.x, on_b.y + at_b * pull * n.y, on_b.z + at_b * pull * n.z};
+    }
+    std::swap(u, next);
+  }
+  const double allowed = 4 / (b + std::sqrt(b * b + 4 * a));  // a dt^2 + 2 b dt = 4
+  return allowed < dt ? allowed : none;
 }
 
 std::uint32_t culprit_mass(const Robot& robot, const State& state, std::uint32_t noted) {

@@ -63,6 +63,13 @@ inline constexpr float viscous_limit = 2;
 // (1 + softening), another one at each dt (docs/physics.md).
 double xpbd_softening(const Robot& robot, const Configuration& configuration);
 
+// The time step up to which the force solver is stable for small motions around the body at rest, if it is below the
+// configuration's; infinite otherwise, and with XPBD. A vibration with w^2 = u.Au and damping u.Bu, A and B being the
+// stiffnesses and tau times the stiffnesses over the masses, is stable while dt^2 u.Au + 2 dt u.Bu < 4
+// (robots/body_properties.cpp). This looks at one vibration near the stiffest one, so it never names a dt that is too
+// small.
+double exceeded_dt(const Robot& robot, const Configuration& configuration);
+
 // The spring that caused an explosion, as far as can be known: the first spring of `bad_mass`, if there is one; else,
 // of the springs beyond the stretch limit, the one with the largest strain; else the one with the largest strain of
 // all. no_spring if the robot has no springs.

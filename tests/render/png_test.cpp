@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 
 namespace mercury::render {
 namespace {
@@ -24,6 +27,18 @@ TEST_F(Png, ReadsWhatItWrote) {
   EXPECT_EQ(back.width, 3);
   EXPECT_EQ(back.height, 2);
   EXPECT_EQ(back.bytes, image.bytes);
+}
+
+TEST_F(Png, ACommentIsATextThatReadersSkip) {
+  const Image image{2, 1, PixelFormat::rgb, {1, 2, 3, 4, 5, 6}};
+  const std::vector<std::uint8_t> plain = png_bytes(image), with_comment = png_bytes(image, "paper physics");
+  constexpr std::string_view chunk("\0\0\0\x15tEXtComment\0paper physics", 29);
+  EXPECT_EQ(with_comment.size(), plain.size() + chunk.size() + 4);
+  EXPECT_FALSE(std::ranges::search(with_comment, chunk).empty());
+  const std::string path = folder_ / "a.png";
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(with_comment.data()), static_cast<std::streamsize>(with_comment.size()));
+  EXPECT_EQ(read_png(path).bytes, image.bytes);  // libpng checks the checksum
 }
 
 TEST_F(Png, LeavesNothingBehindWhenItCannotWrite) {

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mercury/configuration.h"
 #include "mercury/generator.h"
 #include "mercury/robot.h"
 
@@ -63,6 +64,9 @@ struct GenomeSpaceRequest {
   Genes genes = Genes::body;
   std::vector<Robot> founders;  // robots to start from, all of one kind; for Genes::muscles robots of any kind
 };
+
+// What the robots of this space are made for.
+Physics physics_of(const GenomeSpaceRequest& request);
 
 // Throws InputError or ParameterError for a request that cannot be used: an unknown kind, values out of range, founders
 // of several kinds, founders of a kind that no generator knows and whose body should change.

@@ -31,7 +31,8 @@ struct Quantity {
   bool of_body = false;   // known from the robot alone, so it may be a descriptor of an unborn robot as well
   double usual_lowest = 0, usual_highest = 1;  // ends of an axis, unless the user gives others
   double (*value)(const Trial& trial) = nullptr;
-  bool of_travel = false;  // it grows with how far the robot gets, so it means nothing where no robot can move itself
+  bool of_travel = false;   // it grows with how far the robot gets, so it means nothing where no robot can move itself
+  bool of_folding = false;  // NaN unless EvaluationRequest::folding
 };
 
 // All quantities. Their order is that of Assessment::values.

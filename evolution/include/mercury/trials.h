@@ -37,8 +37,11 @@ struct TrialSettings {
   double damage = 0;          // share of the voxels that a trial's robot lacks [1]
   double strain_limit = 2;    // of a spring; limits() lists what robots must keep
   double strained_limit = 1;  // share of the springs of a real body that may be strained by more than half at a time
+  double inverted_limit = 1;  // share of the body that may be inside out at a time
+  double overlap_limit = 1;   // share of the masses that may be within other parts of the body at a time
   double least_masses = 0;    // of a network robot
   bool median = false;        // of the trials counts, not their mean
+  bool folding = false;       // measure `inverted` and `overlap`, also where no limit asks for them
   bool racing = false;        // stop robots that are clearly behind
   friend bool operator==(const TrialSettings&, const TrialSettings&) = default;
 
@@ -68,10 +71,18 @@ struct TrialSettings {
       Parameter("strained_limit", &TrialSettings::strained_limit, "", Accepts::between(0, 1), {0, 1},
                 "Robots with real bodies are overstretched if more of their springs are strained by more than half")
           .with_form("0..1"),
+      Parameter("inverted_limit", &TrialSettings::inverted_limit, "", Accepts::between(0, 1), {0, 1},
+                "Robots are overstretched if more of their body is inside out")
+          .with_form("0..1"),
+      Parameter("overlap_limit", &TrialSettings::overlap_limit, "", Accepts::between(0, 1), {0, 1},
+                "Robots are overstretched if more of their masses are within other parts of the body")
+          .with_form("0..1"),
       Parameter("least_masses", &TrialSettings::least_masses, "", Accepts::at_least_zero, {0, 100},
                 "Network robots of fewer masses are too small: they rank after all sound ones")
           .with_form("N"),
       Parameter("median", &TrialSettings::median, "Take the median of the trials, not their mean"),
+      Parameter("folding", &TrialSettings::folding,
+                "Measure how the body is folded, inverted and overlap, as these two limits do"),
       Parameter("racing", &TrialSettings::racing, "Stop robots early that are clearly behind")};
 };
 
@@ -93,6 +104,11 @@ constexpr TrialSettings search_trials() {
 
 // Between two samples of a trial. Paths, work and strains depend on it [s].
 inline constexpr double trial_sample_period = 0.05;
+
+// Whether trials measure `inverted` and `overlap`.
+inline bool measures_folding(const TrialSettings& settings) {
+  return settings.folding || settings.inverted_limit < 1 || settings.overlap_limit < 1;
+}
 
 // What an Evaluator does for the trials of robots. Robots come from trial_source(), or each is one trial of the
 // settings: the first.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 
+#include "mercury/configuration.h"
 #include "mercury/generator.h"
 #include "mercury/parameters.h"
 #include "mercury/robot.h"
@@ -60,6 +61,9 @@ std::optional<RealMaterial> real_material_in(const ParameterValues& values);
 
 // What the robot's origin says of a real body; none for a robot as in the paper. Throws InputError("/origin/real/...").
 std::optional<RealMaterial> real_material_of(const Robot& robot);
+
+// What a robot was made for: what its origin says.
+Physics physics_of(const Robot& robot);
 
 // A robot of the paper again, for its generator to grow, mutate and cross: the materials that it had, no masses, and
 // an origin without "real". Its springs are still those of the real body.

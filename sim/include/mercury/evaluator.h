@@ -54,8 +54,9 @@ struct EvaluationRequest {
   // checked and scheduled once, so this is the cheap way to try a robot several times. Optional. Several threads call
   // it at the same time.
   std::function<void(std::size_t index, const Robot& robot, std::span<Vec3> positions)> start;
-  bool hashes = false;  // of the final states
-  bool states = false;  // the final states themselves
+  bool folding = false;  // whether the telemetry has `inverted` and `overlap` (Simulation::measure_folding())
+  bool hashes = false;   // of the final states
+  bool states = false;   // the final states themselves
 
   // Racing: robots that do badly are stopped early. At each of these numbers of steps of the trial (ascending, above 0
   // and below `steps`), goes_on() is asked about every robot that is still stepped. Robots for which it returns false
@@ -91,7 +92,10 @@ struct Evaluation {
   double highest = 0;                  // largest z of the center of mass of all samples [m]
   double largest_strain = 0;           // of all samples [1]
   double strained_share = 0;           // largest Telemetry::strained_share of all samples [1]
-  double third = 0;                    // of the time of the trial [s]
+  double inverted =
+      std::numeric_limits<double>::quiet_NaN();  // largest Telemetry::inverted of all samples [1]; NaN = not measured
+  double overlap = std::numeric_limits<double>::quiet_NaN();  // the same of Telemetry::overlap
+  double third = 0;                                           // of the time of the trial [s]
   // Center of mass after a third and after two thirds of that time, between samples; NaN if it is unknown [m].
   Vec3 at_third, at_two_thirds;
   std::uint64_t hash = 0;  // Simulation::hash() of the final state, if requested

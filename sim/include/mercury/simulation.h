@@ -161,6 +161,10 @@ class Simulation {
   // One element per robot, computed on the device.
   std::vector<Telemetry> telemetry() const;
   Telemetry telemetry(std::size_t robot) const;
+  // Whether telemetry, samples included, has Telemetry::inverted and overlap. They take all positions from the device
+  // and some work on the host's cores, so this is off at first.
+  void measure_folding(bool on);
+  bool measures_folding() const;
   // FNV-1a over the bytes of all positions, then all velocities. Equal hashes mean equal states, bit for bit.
   std::uint64_t hash(std::size_t robot) const;
   // Of all robots, on all cores.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -18,6 +19,7 @@ class TrialMeasures {
   struct Sums {
     Telemetry start, last;
     double path = 0, work = 0, highest = 0, largest_strain = 0, strained_share = 0;
+    double inverted = std::numeric_limits<double>::quiet_NaN(), overlap = inverted;  // NaN = not measured
     double elapsed = 0;  // from the start to the last sample [s]
     // The way of the center of mass: its places at every stride-th sample, from the start; samples are `period` [s]
     // apart. Without places the way is unknown.
@@ -36,6 +38,8 @@ class TrialMeasures {
               .highest = start.center_of_mass.z,
               .largest_strain = start.largest_strain,
               .strained_share = start.strained_share,
+              .inverted = start.inverted,
+              .overlap = start.overlap,
               .way = {start.center_of_mass}} {}
 
   // `now` = the telemetry `seconds` after the last sample; all samples but the last are equally far apart. A robot that
@@ -46,6 +50,9 @@ class TrialMeasures {
     sums_.highest = std::max(sums_.highest, static_cast<double>(now.center_of_mass.z));
     sums_.largest_strain = std::max(sums_.largest_strain, static_cast<double>(now.largest_strain));
     sums_.strained_share = std::max(sums_.strained_share, static_cast<double>(now.strained_share));
+    // Where one of both is not measured, the other one.
+    sums_.inverted = std::fmax(sums_.inverted, static_cast<double>(now.inverted));
+    sums_.overlap = std::fmax(sums_.overlap, static_cast<double>(now.overlap));
     sums_.last = now;
     sums_.elapsed += seconds;
     note(now.center_of_mass, seconds);
@@ -60,6 +67,8 @@ class TrialMeasures {
     result.highest = sums_.highest;
     result.largest_strain = sums_.largest_strain;
     result.strained_share = sums_.strained_share;
+    result.inverted = sums_.inverted;
+    result.overlap = sums_.overlap;
     result.third = sums_.elapsed / 3;
     result.at_third = place_at(sums_.elapsed / 3);
     result.at_two_thirds = place_at(2 * sums_.elapsed / 3);

@@ -69,6 +69,42 @@ TEST_F(RunCommand, ShareOfStrainedSpringsGoesWithTheLargestStrain) {
   }
 }
 
+TEST_F(RunCommand, FoldingIsMeasuredWhereItIsAskedFor) {
+  const std::vector<std::string> plain{"--random", "voxel:2", "--seconds", "0.2"};
+  const json without = run_json(plain);
+  for (const std::vector<std::string>& asks :
+       {std::vector<std::string>{"--folding"}, {"--inverted-limit", "0.5"}, {"--overlap-limit", "0.5"}}) {
+    std::vector<std::string> arguments = plain;
+    arguments.insert(arguments.end(), asks.begin(), asks.end());
+    const json with = run_json(arguments);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_TRUE(without["robots"][i]["inverted"].is_null());
+      EXPECT_EQ(with["robots"][i]["inverted"], 0.0);
+      EXPECT_EQ(with["robots"][i]["overlap"], 0.0);
+      EXPECT_EQ(with["robots"][i]["hash"], without["robots"][i]["hash"]);
+    }
+  }
+}
+
+TEST_F(RunCommand, ResultsNameThePhysics) {
+  for (const std::string physics : {"paper", "real"}) {
+    const json report = run_json({"--random", "voxel:1", "--seconds", "0.01", "--physics", physics});
+    EXPECT_EQ(report["robots"][0]["physics"], physics);
+    EXPECT_THAT(mercury({"run", "--random", "voxel:1", "--seconds", "0.01", "--physics", physics}).output,
+                HasSubstr(", " + physics + " physics, "));
+  }
+}
+
+TEST_F(RunCommand, ATimeStepThatIsTooLongIsNamed) {
+  const std::vector<std::string> run{"run", "--random", "voxel:1", "--physics", "real", "--seconds", "0.1"};
+  EXPECT_THAT(mercury(run).messages, testing::Not(HasSubstr("too fast")));
+  std::vector<std::string> coarse = run;
+  coarse.insert(coarse.end(), {"--dt", "0.02"});
+  EXPECT_THAT(mercury(coarse).messages,
+              testing::ContainsRegex("vibrates too fast for this time step, 0.02 s: the force solver is stable up to "
+                                     "0.00[0-9]+ s; give a shorter one, or --substeps [0-9]+"));
+}
+
 TEST_F(RunCommand, HashesAreReproducibleWithAnyNumberOfThreads) {
   const std::vector<std::string> arguments{"--random",  "voxel:16", "--seed",   "1",
                                            "--seconds", "0.3",      "--device", "cpu"};

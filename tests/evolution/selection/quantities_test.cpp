@@ -33,7 +33,9 @@ class OneTrial : public testing::Test {
                         .work = 52,
                         .highest = 1.5,
                         .largest_strain = 0.25,
-                        .strained_share = 0.125};
+                        .strained_share = 0.125,
+                        .inverted = 0.0625,
+                        .overlap = 0.5};
 };
 
 TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
@@ -47,6 +49,8 @@ TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
   EXPECT_DOUBLE_EQ(value("straightness"), 0.5);
   EXPECT_DOUBLE_EQ(value("strain"), 0.25);
   EXPECT_DOUBLE_EQ(value("strained_share"), 0.125);
+  EXPECT_DOUBLE_EQ(value("inverted"), 0.0625);
+  EXPECT_DOUBLE_EQ(value("overlap"), 0.5);
   EXPECT_DOUBLE_EQ(value("work"), 52);
   EXPECT_DOUBLE_EQ(value("efficiency"), 13.0 / 52);
   EXPECT_DOUBLE_EQ(value("height"), 0.5);

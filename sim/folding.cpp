@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mercury/folding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mercury/voxels.h"
+
+namespace mercury {
+namespace {
+
+// A body of n masses that all springs join has n^4 / 24 tetrahedra: of such, not all are needed.
+constexpr int most_per_spring = 64;
+// Flatter ones, by volume per cube of the longest rest length, are no space between masses.
+constexpr double flat = 1e-4;
+
+struct Point {
+  double x, y, z;
+};
+
+Point at(Vec3 a) { return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)}; }
+Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+double determinant(Point a, Point b, Point c) {
+  return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+}
+
+// Six times the volume; positive = right-handed.
+double sixfold_volume(Point a, Point b, Point c, Point d) { return determinant(b - a, c - a, d - a); }
+
+bool is_within(Point p, Point a, Point b, Point c, Point d) {
+  const double sign = sixfold_volume(a, b, c, d) < 0 ? -1 : 1;
+  return sign * sixfold_volume(p, b, c, d) > 0 && sign * sixfold_volume(a, p, c, d) > 0 &&
+         sign * sixfold_volume(a, b, p, d) > 0 && sign * sixfold_volume(a, b, c, p) > 0;
+}
+
+std::uint64_t key(std::uint32_t cell, std::uint16_t mass) { return std::uint64_t{cell} << 16 | mass; }
+
+// Masses by the cubes of space that they are in.
+class Grid {
+ public:
+  Grid(std::span<const Vec3> positions, double edge) : positions_(positions), edge_(edge) {
+    std::size_t buckets = 1;
+    while (buckets < positions.size()) buckets *= 2;
+    mask_ = buckets - 1;
+    first_.assign(buckets + 1, 0);
+    for (const Vec3& x : positions) ++first_[bucket(place(at(x))) + 1];
+    for (std::size_t i = 0; i < buckets; ++i) first_[i + 1] += first_[i];
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    masses_.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      masses_[next[bucket(place(at(positions[i])))]++] = static_cast<std::uint16_t>(i);
+  }
+
+  // Calls visit(mass) for all masses between two corners of a box, and perhaps more.
+  template <class Visit>
+  void for_each_between(Point low, Point high, const Visit& visit) const {
+    const Place from = place(low), to = place(high);
+    const double cubes = (static_cast<double>(to.x - from.x) + 1) * (static_cast<double>(to.y - from.y) + 1) *
+                         (static_cast<double>(to.z - from.z) + 1);
+    if (cubes > static_cast<double>(masses_.size())) {
+      for (const std::uint16_t mass : masses_) visit(mass);
+      return;
+    }
+    for (std::int64_t z = from.z; z <= to.z; ++z)
+      for (std::int64_t y = from.y; y <= to.y; ++y)
+        for (std::int64_t x = from.x; x <= to.x; ++x) {
+          const std::size_t b = bucket({x, y, z});
+          for (std::uint32_t i = first_[b]; i < first_[b + 1]; ++i) visit(masses_[i]);
+        }
+  }
+
+ private:
+  struct Place {
+    std::int64_t x, y, z;
+  };
+  Place place(Point p) const {
+    return {std::llround(p.x / edge_), std::llround(p.y / edge_), std::llround(p.z / edge_)};
+  }
+  std::size_t bucket(Place p) const {
+    const auto mix = [](std::int64_t value, std::uint64_t factor) {
+      return static_cast<std::uint64_t>(value) * factor;
+    };
+    std::uint64_t hash = mix(p.x, 0x9e3779b97f4a7c15u) ^ mix(p.y, 0xc2b2ae3d27d4eb4fu) ^ mix(p.z, 0x165667b19e3779f9u);
+    hash ^= hash >> 29;
+    return static_cast<std::size_t>(hash) & mask_;
+  }
+
+  std::span<const Vec3> positions_;
+  double edge_;  // [m]
+  std::size_t mask_ = 0;
+  std::vector<std::uint32_t> first_;  // per bucket, and the end
+  std::vector<std::uint16_t> masses_;
+};
+
+}  // namespace
+
+BodyCells::BodyCells(const Robot& robot) {
+  std::vector<std::uint32_t> pairs;  // in both directions
+  for (const auto& [a, b, material, rest_length] : robot.springs) {
+    pairs.push_back(std::uint32_t{a} << 16 | b);
+    pairs.push_back(std::uint32_t{b} << 16 | a);
+    longest_ = std::max(longest_, rest_length);
+  }
+  std::ranges::sort(pairs);
+  const auto repeated = std::ranges::unique(pairs);
+  pairs.erase(repeated.begin(), repeated.end());
+  first_neighbor_.assign(robot.masses.size() + 1, 0);
+  for (const std::uint32_t pair : pairs) {
+    ++first_neighbor_[(pair >> 16) + 1];
+    neighbors_.push_back(static_cast<std::uint16_t>(pair & 0xffff));
+  }
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) first_neighbor_[i + 1] += first_neighbor_[i];
+
+  const Voxels voxels = voxels_of(robot);
+  for (const Voxel& voxel : voxels.all) {
+    const auto cell = static_cast<std::uint32_t>(voxels_.size());
+    voxels_.push_back(voxel.corners);
+    volumes_.push_back(voxels.edge * voxels.edge * voxels.edge);
+    // Around the diagonal from corner 0 to corner 7, one for each order of the axes.
+    for (const auto& [first, second] : {std::array{1, 2}, {2, 4}, {4, 1}, {2, 1}, {4, 2}, {1, 4}}) {
+      const auto& c = voxel.corners;
+      const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(first + second);
+      tetrahedra_.push_back({{c[0], c[a], c[b], c[7]}, cell});
+    }
+  }
+  if (voxels_.empty()) find_tetrahedra(robot);
+  for (const float volume : volumes_) volume_ += static_cast<double>(volume);
+  for_each_intruder(robot.masses, [&](std::uint16_t mass, std::uint32_t cell) { at_rest_.push_back(key(cell, mass)); });
+  std::ranges::sort(at_rest_);
+}
+
+void BodyCells::find_tetrahedra(const Robot& robot) {
+  const auto above = [&](std::uint32_t mass) {
+    const auto begin = neighbors_.begin() + first_neighbor_[mass], end = neighbors_.begin() + first_neighbor_[mass + 1];
+    return std::span<const std::uint16_t>(std::upper_bound(begin, end, mass), end);
+  };
+  const double least = 6 * flat * std::pow(static_cast<double>(longest_), 3);
+  std::vector<std::uint16_t> common, third;
+  for (std::uint32_t a = 0; a < robot.masses.size(); ++a)
+    for (const std::uint16_t b : above(a)) {
+      common.clear();
+      std::ranges::set_intersection(above(a), above(b), std::back_inserter(common));
+      int found = 0;
+      for (std::size_t i = 0; i < common.size() && found < most_per_spring; ++i) {
+        const std::uint16_t c = common[i];
+        third.clear();
+        std::ranges::set_intersection(std::span(common).subspan(i + 1), above(c), std::back_inserter(third));
+        for (const std::uint16_t d : third) {
+          if (found == most_per_spring) break;
+          const auto corner = [&](std::size_t mass) { return at(robot.masses[mass]); };
+          const double volume = sixfold_volume(corner(a), corner(b), corner(c), corner(d));
+          if (std::abs(volume) < least) continue;
+          ++found;
+          const auto cell = static_cast<std::uint32_t>(volumes_.size());
+          const auto first = static_cast<std::uint16_t>(a);
+          if (volume > 0)
+            tetrahedra_.push_back({{first, b, c, d}, cell});
+          else
+            tetrahedra_.push_back({{first, b, d, c}, cell});
+          volumes_.push_back(static_cast<float>(std::abs(volume) / 6));
+        }
+      }
+    }
+}
+
+bool BodyCells::is_inverted(std::size_t cell, std::span<const Vec3> positions) const {
+  if (voxels_.empty()) {
+    const auto& [a, b, c, d] = tetrahedra_[cell].corners;
+    return sixfold_volume(at(positions[a]), at(positions[b]), at(positions[c]), at(positions[d])) < 0;
+  }
+  const auto& corners = voxels_[cell];
+  // Four times the vector between the centers of two opposite sides.
+  const auto across = [&](std::size_t axis) {
+    Point sum{0, 0, 0};
+    for (std::size_t corner = 0; corner < 8; ++corner)
+      sum = (corner & axis) != 0 ? sum + at(positions[corners[corner]]) : sum - at(positions[corners[corner]]);
+    return sum;
+  };
+  return determinant(across(1), across(2), across(4)) < 0;
+}
+
+bool BodyCells::touches(std::uint16_t mass, std::uint32_t cell) const {
+  const auto is_corner_or_joined = [&](std::uint16_t corner) {
+    return corner == mass || std::binary_search(neighbors_.begin() + first_neighbor_[mass],
+                                                neighbors_.begin() + first_neighbor_[mass + 1u], corner);
+  };
+  return voxels_.empty() ? std::ranges::any_of(tetrahedra_[cell].corners, is_corner_or_joined)
+                         : std::ranges::any_of(voxels_[cell], is_corner_or_joined);
+}
+
+template <class Visit>
+void BodyCells::for_each_intruder(std::span<const Vec3> positions, const Visit& visit) const {
+  if (tetrahedra_.empty()) return;
+  const Grid grid(positions, static_cast<double>(longest_));
+  for (const auto& [corners, cell] : tetrahedra_) {
+    std::array<Point, 4> x;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Point low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+    for (std::size_t i = 0; i < 4; ++i) {
+      x[i] = at(positions[corners[i]]);
+      low = {std::min(low.x, x[i].x), std::min(low.y, x[i].y), std::min(low.z, x[i].z)};
+      high = {std::max(high.x, x[i].x), std::max(high.y, x[i].y), std::max(high.z, x[i].z)};
+    }
+    grid.for_each_between(low, high, [&, cell = cell](std::uint16_t mass) {
+      const Point p = at(positions[mass]);
+      if (p.x <= low.x || p.x >= high.x || p.y <= low.y || p.y >= high.y || p.z <= low.z || p.z >= high.z) return;
+      if (is_within(p, x[0], x[1], x[2], x[3]) && !touches(mass, cell)) visit(mass, cell);
+    });
+  }
+}
+
+Folding BodyCells::folding(std::span<const Vec3> positions) const {
+  Folding folding;
+  if (volumes_.empty()) return folding;
+  double inverted = 0;
+  for (std::size_t cell = 0; cell < volumes_.size(); ++cell)
+    if (is_inverted(cell, positions)) inverted += static_cast<double>(volumes_[cell]);
+  folding.inverted = static_cast<float>(inverted / volume_);
+  std::vector<bool> is_intruder(positions.size());
+  for_each_intruder(positions, [&](std::uint16_t mass, std::uint32_t cell) {
+    if (!is_intruder[mass]) is_intruder[mass] = !std::ranges::binary_search(at_rest_, key(cell, mass));
+  });
+  folding.overlap = static_cast<float>(static_cast<double>(std::ranges::count(is_intruder, true)) /
+                                       static_cast<double>(positions.size()));
+  return folding;
+}
+
+}  // namespace mercury
