@@ -10,8 +10,6 @@
 
 namespace mercury {
 
-std::string_view name_of(Physics physics) { return physics == Physics::real ? "real" : "paper"; }
-
 Configuration default_configuration(Physics physics, std::string_view environment) {
   Configuration configuration;
   const std::string_view own = physics == Physics::real ? Water::name : Ocean::name;

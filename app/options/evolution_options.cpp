@@ -190,7 +190,7 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
     one.device = {.kind = DeviceKind::cpu, .threads = 1};
     const Robot first = space->random(evolution.seed, 0)->grow("the first robot");
     for (std::string& note : Simulation(one, {&first, 1}).notes()) notes.push_back(std::move(note));
-  } catch (const InputError&) {  // there is no such robot: it will be told when it is tried
+  } catch (const InputError&) {  // there is no such robot: the evaluation says so
   }
   return settings;
 }

@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mercury/configuration.h"
 #include "mercury/generator.h"
+#include "mercury/physics.h"
 #include "mercury/robot.h"
 
 namespace mercury {

@@ -8,9 +8,9 @@
 #include <optional>
 #include <tuple>
 
-#include "mercury/configuration.h"
 #include "mercury/generator.h"
 #include "mercury/parameters.h"
+#include "mercury/physics.h"
 #include "mercury/robot.h"
 
 namespace mercury {

@@ -8,6 +8,7 @@
 
 #include "mercury/environment.h"
 #include "mercury/parameters.h"
+#include "mercury/physics.h"
 
 namespace mercury {
 
@@ -25,10 +26,6 @@ struct Device {
   static constexpr std::tuple parameters{
       Parameter("threads", &Device::threads, "", Accepts::at_least_zero, {0, 256}, "CPU threads; 0 = all cores")};
 };
-
-// What bodies are made of: masses of 1 kg and springs of 50 N/m, as in the paper, or a real material's modulus, density
-// and damping.
-enum class Physics { paper, real };
 
 struct Configuration {
   double dt = 1e-3;      // time step [s]
@@ -50,8 +47,6 @@ struct Configuration {
 // follow it. Throws as environment_named().
 Configuration default_configuration(Physics physics, std::string_view environment = "");
 
-// "paper", "real".
-std::string_view name_of(Physics physics);
 // "force", "xpbd"; "auto", "cpu", "cuda", "cuda:1", "cuda:all".
 std::string_view name_of(Solver solver);
 std::string name_of(const Device& device);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a body is folded: whether parts of it are inside out, or inside other parts. Strains do not tell: a voxel that is
-// turned inside out has springs of their lengths at rest.
+// How a body is folded: whether parts of it are inside out, or inside other parts. Strains do not show it: a voxel that
+// is turned inside out has springs of their lengths at rest.
 //
 //     3-----2          3-----2           c cells of the body   a voxel of a robot of voxels; else a tetrahedron of
 //     |     |    ->     \   /                                  four masses that six springs join
