@@ -112,7 +112,8 @@ std::optional<std::vector<Confirmation>> check_robots(
   for (std::size_t k = 0; k < checked_steps; ++k) {
     Configuration finer = configuration;
     finer.dt = configuration.dt / static_cast<double>(1 << k);
-    const EvaluationRequest request = trial_request(trials, finer, seed);
+    EvaluationRequest request = trial_request(trials, finer, seed);
+    request.folding = request.folding || uses_folding(objective);
     Evaluator evaluator(request, trial_source(robots, trials, seed), count * per_step);
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<Evaluation> of_robot;

@@ -70,12 +70,9 @@ std::unique_ptr<Assessor> make_assessor(const EvolutionSettings& settings) {
   std::vector<Objective> objectives;
   for (const std::string& formula : settings.objectives) objectives.emplace_back(formula);
   TrialSettings trials = settings.trials;
-  const auto asks = [](std::size_t quantity) { return quantities()[quantity].of_folding; };
-  trials.folding = trials.folding || std::ranges::any_of(objectives, [&](const Objective& objective) {
-                     return std::ranges::any_of(objective.uses(), asks);
-                   });
   for (const MapAxis& axis : settings.algorithm.axes)
-    if (const auto quantity = find_quantity(axis.quantity)) trials.folding = trials.folding || asks(*quantity);
+    if (const auto quantity = find_quantity(axis.quantity))
+      trials.folding = trials.folding || quantities()[*quantity].of_folding;
   return make_local_assessor(settings.configuration, trials, std::move(objectives), settings.seed);
 }
 

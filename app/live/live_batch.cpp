@@ -135,6 +135,7 @@ void LiveBatch::watch(const ViewSettings& view) {
 
 // Observes the details of the view that exist in this environment.
 void LiveBatch::observe_details() {
+  simulation_.measure_folding(view_ && view_->folding);
   details_.reset();
   if (view_) details_.emplace(simulation_, known_in(*view_, configuration().environment));
 }

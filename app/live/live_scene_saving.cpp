@@ -186,7 +186,10 @@ std::string LiveScene::csv(const std::vector<RobotId>& robots) const {
       const std::size_t row = rows.at(series.times[i]);
       filled[row] = true;
       for (const MeasureName& measure : measures())
-        lines[row] += fmt::format(",{}", series.samples[i].of(measure.measure));
+        if (const float value = series.samples[i].of(measure.measure); std::isnan(value))
+          lines[row] += ',';
+        else
+          lines[row] += fmt::format(",{}", value);
     }
     for (std::size_t row = 0; row < lines.size(); ++row)
       if (!filled[row]) lines[row].append(measures().size(), ',');

@@ -13,12 +13,14 @@ namespace {
 
 constexpr double sample_period = 0.02;  // the first interval [s]
 
-constexpr std::array<MeasureName, 5> names{{
+constexpr std::array<MeasureName, 7> names{{
     {Measure::speed, "speed", "m/s"},
     {Measure::distance, "distance", "m"},
     {Measure::kinetic_energy, "kinetic energy", "J"},
     {Measure::elastic_energy, "elastic energy", "J"},
     {Measure::strain, "largest strain", "1"},
+    {Measure::inverted, "inverted", "1", true},
+    {Measure::overlap, "overlap", "1", true},
 }};
 
 Sample sample_of(const RankingRow& row, const Telemetry& telemetry) {
@@ -26,7 +28,9 @@ Sample sample_of(const RankingRow& row, const Telemetry& telemetry) {
           .distance = static_cast<float>(row.distance),
           .kinetic_energy = static_cast<float>(row.kinetic_energy),
           .elastic_energy = static_cast<float>(row.elastic_energy),
-          .strain = telemetry.largest_strain};
+          .strain = telemetry.largest_strain,
+          .inverted = telemetry.inverted,
+          .overlap = telemetry.overlap};
 }
 
 template <class T>
@@ -55,6 +59,10 @@ float Sample::of(Measure measure) const {
       return kinetic_energy;
     case Measure::elastic_energy:
       return elastic_energy;
+    case Measure::inverted:
+      return inverted;
+    case Measure::overlap:
+      return overlap;
     case Measure::strain:
       break;
   }

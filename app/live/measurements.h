@@ -15,12 +15,13 @@
 namespace mercury {
 
 // What the measure panel plots.
-enum class Measure { speed, distance, kinetic_energy, elastic_energy, strain };
+enum class Measure { speed, distance, kinetic_energy, elastic_energy, strain, inverted, overlap };
 
 struct MeasureName {
   Measure measure;
-  const char* name;  // "distance"
-  const char* unit;  // "m"
+  const char* name;         // "distance"
+  const char* unit;         // "m"
+  bool of_folding = false;  // NaN unless ViewSettings::folding
 };
 std::span<const MeasureName> measures();
 
@@ -30,6 +31,8 @@ struct Sample {
   float kinetic_energy = 0;  // [J]
   float elastic_energy = 0;  // [J]
   float strain = 0;          // largest of any spring [1]
+  float inverted = 0;        // share of the body [1]; NaN unless it is measured (folding.h)
+  float overlap = 0;         // share of the masses; the same
   float of(Measure measure) const;
 };
 

@@ -43,6 +43,7 @@ struct ViewSettings {
   CameraPlan camera;
   CameraBookmarks bookmarks;              // of the window
   std::optional<SideDifference> compare;  // a second side, and what it simulates differently
+  bool folding = false;                   // measure how robots are folded, for the plots of the window
   std::string caption;                    // text in the upper left corner; further lines are smaller
   std::shared_ptr<const Board> board;     // the robots are drawn in its cells; nullptr = no board
   bool interop = true;                    // let CUDA write into OpenGL's memory if possible

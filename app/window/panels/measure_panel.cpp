@@ -64,6 +64,12 @@ void MeasurePanel::draw(PanelContext& context) {
     if (toggle_button(name.name, shown_[i])) shown_[i] = !shown_[i];
     context.log.item(std::string("measure.") + name.name);
   }
+  bool folding = false;
+  for (std::size_t i = 0; i < shown_.size(); ++i) folding = folding || (shown_[i] && measures()[i].of_folding);
+  if (ViewSettings view = context.scene.view(); view.folding != folding) {
+    view.folding = folding;
+    context.scene.set_view(view);
+  }
   view_.cursor = context.cursor.time;
   view_.next_cursor.reset();
   view_.went_to.reset();

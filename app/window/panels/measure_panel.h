@@ -22,7 +22,7 @@ class MeasurePanel : public Panel {
   void scrub(PanelContext& context);
   void log_view(PanelContext& context);
 
-  std::array<bool, 5> shown_{true, true, false, false, false};  // one per measure of measures()
+  std::array<bool, 7> shown_{true, true};  // one per measure of measures()
   PlotView view_;
   bool large_ = false;   // in a window of their own
   bool scrubs_ = false;  // a drag goes through time

@@ -31,6 +31,9 @@ class Objective {
   std::shared_ptr<const Parsed> parsed_;
 };
 
+// Whether it names a quantity that only EvaluationRequest::folding measures.
+bool uses_folding(const Objective& objective);
+
 // Why an objective means nothing in an environment: it grows with how far a robot gets, and none can move itself there.
 // Empty if it means something. Runs of earlier versions may have such objectives.
 std::string why_meaningless(const Objective& objective, const Environment& environment);

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <set>
@@ -13,6 +14,7 @@
 #include "app/base/child_process.h"
 #include "evolution/distribution/ranks.h"
 #include "mercury/cuda_devices.h"
+#include "mercury/quantity.h"
 #include "mercury/robot_file.h"
 #include "mercury/run_folder.h"
 #include "tests/app/program.h"
@@ -104,6 +106,21 @@ TEST_F(EvolveCommand, MakesARunFolder) {
   EXPECT_EQ(history.generations().size(), 5u);
   EXPECT_EQ(history.individuals().size(), 5u * 8);
   EXPECT_THAT(outcome.output, testing::HasSubstr("best: distance = "));
+}
+
+TEST_F(EvolveCommand, FoldingIsMeasuredWhereAnObjectiveOrAxisNamesIt) {
+  for (const Arguments& asks : {Arguments{"--objective", "distance - inverted"},
+                                Arguments{"--algorithm", "map-elites", "--axis", "overlap:0:1:4"}}) {
+    ASSERT_EQ(evolve("folds", joined(small("1"), joined(asks, {"--force"}))).status, 0);
+    const RunHistory run(path("folds"));
+    for (const Individual& one : run.individuals()) {
+      EXPECT_TRUE(std::isfinite(one.assessment.values[find_quantity("inverted").value()]));
+      EXPECT_TRUE(std::isfinite(one.score()));
+    }
+  }
+  ASSERT_EQ(evolve("plain", small("1")).status, 0);
+  for (const Individual& one : RunHistory(path("plain")).individuals())
+    EXPECT_TRUE(std::isnan(one.assessment.values[find_quantity("inverted").value()]));
 }
 
 TEST_F(EvolveCommand, LineageDoesNotDependOnThreads) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mercury/random_voxel.h"
+#include "mercury/real_body.h"
 #include "mercury/robot_file.h"
 #include "tests/app/program.h"
 
@@ -37,6 +38,11 @@ azimuth = -2.0
 target = [0.0, 0.0, 0.1]
 distance = 3.0
 )");
+  }
+  // A scene of these robot files, with more lines.
+  std::string scene_of(const std::string& robots, const std::string& lines = "") const {
+    write("bodies.toml", head + ("robots = [" + robots + "]\n") + lines);
+    return path("bodies.toml");
   }
   // Without what depends on time.
   static nlohmann::json results(std::vector<std::string> arguments) {
@@ -170,6 +176,26 @@ TEST_F(SceneCommand, ThatBreaksARuleIsRefusedInOneLineWithItsPlace) {
   EXPECT_THAT(two.messages, HasSubstr("is a second scene; give one"));
   EXPECT_EQ(mercury({"run", path("missing.toml")}).status, 2);
   EXPECT_EQ(mercury({"info", path("bad.toml")}).status, 2);
+}
+
+// The scene does not name the physics; its robots do.
+TEST_F(SceneCommand, RealBodiesRunInTheirWater) {
+  save_robot(path("robots/real.json"), with_real_body(random_voxel_robot({}, 3, 0), {}));
+  const std::string scene = scene_of("\"robots/real.json\"");
+  EXPECT_EQ(results({"run", scene})["configuration"]["environment"], "water");
+  EXPECT_EQ(results({"run", scene})["robots"][0]["physics"], "real");
+  EXPECT_THAT(mercury({"info", scene}).output, HasSubstr("water"));
+}
+
+TEST_F(SceneCommand, BodiesOfBothPhysicsAreRefused) {
+  save_robot(path("robots/real.json"), with_real_body(random_voxel_robot({}, 3, 0), {}));
+  const std::string robots = "\"robots/real.json\", \"robots/0.json\"";
+  for (const char* command : {"run", "info"}) {
+    const Outcome outcome = mercury({command, scene_of(robots)});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.messages, HasSubstr("one has a real body, the other that of the paper"));
+  }
+  EXPECT_EQ(results({"run", scene_of(robots, "physics = \"real\"\n")})["robots"][1]["physics"], "real");
 }
 
 }  // namespace
