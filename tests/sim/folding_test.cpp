@@ -117,7 +117,7 @@ TEST_P(FoldingOn, TelemetryHasItWhereItIsAskedFor) {
                                      bodies::random_voxels({.x = 3, .y = 3, .z = 3}, 2)};
   Simulation simulation({.device = device()}, robots);
   EXPECT_TRUE(std::isnan(simulation.telemetry(0).inverted));
-  const State start = bodies::shaken(robots[0], 0.09f, 1, 3);
+  const State start = bodies::shaken(robots[0], 0.2f, 1, 3);
   simulation.set_state(0, start.positions, start.velocities);
   simulation.measure_folding(true);
   const auto expect_measured = [&](std::span<const Telemetry> telemetry) {
@@ -153,7 +153,7 @@ TEST_P(FoldingOn, MeasuringItChangesNoTrajectory) {
 
 TEST_P(FoldingOn, AnEvaluationHasTheLargestOfItsSamples) {
   const auto robot = std::make_shared<const Robot>(bodies::random_voxels({.x = 6, .y = 2, .z = 2}, 1));
-  const State start = bodies::shaken(*robot, 0.09f, 0, 3);
+  const State start = bodies::shaken(*robot, 0.2f, 0, 3);
   EvaluationRequest request{.configuration = {.device = device()}, .steps = 40, .sample_every = 10, .folding = true};
   request.start = [&](std::size_t, const Robot&, std::span<Vec3> positions) {
     std::ranges::copy(start.positions, positions.begin());
