@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "mercury/voxels.h"
+#include "sim/physics/double3.h"
 
 namespace mercury {
 namespace {
@@ -15,22 +16,10 @@ constexpr int most_per_spring = 64;
 // Flatter ones, by volume per cube of the longest rest length, are no space between masses.
 constexpr double flat = 1e-4;
 
-struct Point {
-  double x, y, z;
-};
-
-Point at(Vec3 a) { return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)}; }
-Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Point operator+(Point a, Point b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-
-double determinant(Point a, Point b, Point c) {
-  return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
-}
-
 // Six times the volume; positive = right-handed.
-double sixfold_volume(Point a, Point b, Point c, Point d) { return determinant(b - a, c - a, d - a); }
+double sixfold_volume(Double3 a, Double3 b, Double3 c, Double3 d) { return dot(b - a, cross(c - a, d - a)); }
 
-bool is_within(Point p, Point a, Point b, Point c, Point d) {
+bool is_within(Double3 p, Double3 a, Double3 b, Double3 c, Double3 d) {
   const double sign = sixfold_volume(a, b, c, d) < 0 ? -1 : 1;
   return sign * sixfold_volume(p, b, c, d) > 0 && sign * sixfold_volume(a, p, c, d) > 0 &&
          sign * sixfold_volume(a, b, p, d) > 0 && sign * sixfold_volume(a, b, c, p) > 0;
@@ -46,17 +35,17 @@ class Grid {
     while (buckets < positions.size()) buckets *= 2;
     mask_ = buckets - 1;
     first_.assign(buckets + 1, 0);
-    for (const Vec3& x : positions) ++first_[bucket(place(at(x))) + 1];
+    for (const Vec3& x : positions) ++first_[bucket(place(Double3(x))) + 1];
     for (std::size_t i = 0; i < buckets; ++i) first_[i + 1] += first_[i];
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     masses_.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i)
-      masses_[next[bucket(place(at(positions[i])))]++] = static_cast<std::uint16_t>(i);
+      masses_[next[bucket(place(Double3(positions[i])))]++] = static_cast<std::uint16_t>(i);
   }
 
   // Calls visit(mass) for all masses between two corners of a box, and perhaps more.
   template <class Visit>
-  void for_each_between(Point low, Point high, const Visit& visit) const {
+  void for_each_between(Double3 low, Double3 high, const Visit& visit) const {
     const Place from = place(low), to = place(high);
     const double cubes = (static_cast<double>(to.x - from.x) + 1) * (static_cast<double>(to.y - from.y) + 1) *
                          (static_cast<double>(to.z - from.z) + 1);
@@ -76,7 +65,7 @@ class Grid {
   struct Place {
     std::int64_t x, y, z;
   };
-  Place place(Point p) const {
+  Place place(Double3 p) const {
     return {std::llround(p.x / edge_), std::llround(p.y / edge_), std::llround(p.z / edge_)};
   }
   std::size_t bucket(Place p) const {
@@ -150,7 +139,7 @@ void BodyCells::find_tetrahedra(const Robot& robot) {
         std::ranges::set_intersection(std::span(common).subspan(i + 1), above(c), std::back_inserter(third));
         for (const std::uint16_t d : third) {
           if (found == most_per_spring) break;
-          const auto corner = [&](std::size_t mass) { return at(robot.masses[mass]); };
+          const auto corner = [&](std::size_t mass) { return Double3(robot.masses[mass]); };
           const double volume = sixfold_volume(corner(a), corner(b), corner(c), corner(d));
           if (std::abs(volume) < least) continue;
           ++found;
@@ -169,17 +158,19 @@ void BodyCells::find_tetrahedra(const Robot& robot) {
 bool BodyCells::is_inverted(std::size_t cell, std::span<const Vec3> positions) const {
   if (voxels_.empty()) {
     const auto& [a, b, c, d] = tetrahedra_[cell].corners;
-    return sixfold_volume(at(positions[a]), at(positions[b]), at(positions[c]), at(positions[d])) < 0;
+    return sixfold_volume(Double3(positions[a]), Double3(positions[b]), Double3(positions[c]), Double3(positions[d])) <
+           0;
   }
   const auto& corners = voxels_[cell];
   // Four times the vector between the centers of two opposite sides.
   const auto across = [&](std::size_t axis) {
-    Point sum{0, 0, 0};
+    Double3 sum{0, 0, 0};
     for (std::size_t corner = 0; corner < 8; ++corner)
-      sum = (corner & axis) != 0 ? sum + at(positions[corners[corner]]) : sum - at(positions[corners[corner]]);
+      sum =
+          (corner & axis) != 0 ? sum + Double3(positions[corners[corner]]) : sum - Double3(positions[corners[corner]]);
     return sum;
   };
-  return determinant(across(1), across(2), across(4)) < 0;
+  return dot(across(1), cross(across(2), across(4))) < 0;
 }
 
 bool BodyCells::touches(std::uint16_t mass, std::uint32_t cell) const {
@@ -196,16 +187,16 @@ void BodyCells::for_each_intruder(std::span<const Vec3> positions, const Visit& 
   if (tetrahedra_.empty()) return;
   const Grid grid(positions, static_cast<double>(longest_));
   for (const auto& [corners, cell] : tetrahedra_) {
-    std::array<Point, 4> x;
+    std::array<Double3, 4> x;
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    Point low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
+    Double3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
     for (std::size_t i = 0; i < 4; ++i) {
-      x[i] = at(positions[corners[i]]);
+      x[i] = Double3(positions[corners[i]]);
       low = {std::min(low.x, x[i].x), std::min(low.y, x[i].y), std::min(low.z, x[i].z)};
       high = {std::max(high.x, x[i].x), std::max(high.y, x[i].y), std::max(high.z, x[i].z)};
     }
     grid.for_each_between(low, high, [&, cell = cell](std::uint16_t mass) {
-      const Point p = at(positions[mass]);
+      const Double3 p = Double3(positions[mass]);
       if (p.x <= low.x || p.x >= high.x || p.y <= low.y || p.y >= high.y || p.z <= low.z || p.z >= high.z) return;
       if (is_within(p, x[0], x[1], x[2], x[3]) && !touches(mass, cell)) visit(mass, cell);
     });

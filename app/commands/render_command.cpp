@@ -53,8 +53,7 @@ class Filming {
     VideoOptions::Plan whole = task_.plan;
     whole.timing.frames *= static_cast<std::int64_t>(output.clips.size());
     const std::unique_ptr<FrameWriter> writer =
-        options_.video.open(whole, output.name, may_replace_,
-                            comment_of(*output.clips.front().robots.front(), task_.subject.configuration));
+        options_.video.open(whole, output.name, may_replace_, task_.subject.comment(output.clips.front()));
     VideoResult result;
     for (const Clip& clip : output.clips) {
       const VideoResult of_clip = film(clip, *writer);

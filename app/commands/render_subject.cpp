@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/base/work_progress.h"
+#include "app/video/frame_writer.h"
 #include "app/video/side_by_side.h"
 #include "mercury/error.h"
 
@@ -111,6 +112,10 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
 
 Simulation Subject::simulation_of(const Clip& clip) const {
   return recording ? playback(recording) : Simulation(configuration, clip.robots, shown_work());
+}
+
+std::string Subject::comment(const Clip& clip) const {
+  return comment_of(recording ? recording->robots().at(0).robot : *clip.robots.at(0), configuration);
 }
 
 std::optional<Simulation> Subject::second_of(const Clip& clip, const ViewSettings& view) const {

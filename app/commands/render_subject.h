@@ -34,6 +34,8 @@ struct Subject {
   std::vector<std::string> notes;
 
   Simulation simulation_of(const Clip& clip) const;
+  // What pictures of a clip say of it: VideoSettings::comment.
+  std::string comment(const Clip& clip) const;
   // The second side of a comparison.
   std::optional<Simulation> second_of(const Clip& clip, const ViewSettings& view) const;
 };

@@ -13,6 +13,8 @@
 #include "mercury/generator.h"
 #include "mercury/import.h"
 #include "mercury/inspect.h"
+#include "mercury/physics.h"
+#include "mercury/real_body.h"
 #include "mercury/robot_file.h"
 #include "python/src/bindings.h"
 #include "python/src/gil.h"
@@ -152,6 +154,7 @@ nb::dict info(const SharedRobot& self) {
   const BodyProperties body = body_properties(*self.robot);
   entry["mass"] = body.mass;
   entry["density"] = body.density;
+  entry["physics"] = std::string(name_of(physics_of(*self.robot)));
   entry["stiffness_scale"] = 1.0;
   entry["modulus"] = body.modulus;
   entry["lowest_frequency"] = body.lowest_frequency;
@@ -298,7 +301,8 @@ void bind_robot(nb::module_& module) {
       .def("info", &info, nb::sig("def info(self) -> dict[str, typing.Any]"),
            "Measures: counts, the materials in use, sizes [m], whether the skin is closed, its area [m2] and volume "
            "[m3], "
-           "and the body's mass [kg], density [kg/m3], modulus [Pa], slowest vibration [Hz] and largest stable dt [s], "
+           "the physics (\"paper\" or \"real\"), and the body's mass [kg], density [kg/m3], modulus [Pa], slowest "
+           "vibration [Hz] and largest stable dt [s], "
            "None where there is none.")
       .def(
           "with_actuators", &with_actuators, nb::arg("actuators").none(),

@@ -5,22 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/physics/double3.h"
+
 namespace mercury {
 namespace {
 
-struct Point {
-  double x, y, z;
-  explicit Point(Vec3 v) : x(static_cast<double>(v.x)), y(static_cast<double>(v.y)), z(static_cast<double>(v.z)) {}
-  Point(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
-  friend Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-};
-
-Point cross(Point a, Point b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double dot(Point a, Point b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 // Twice the area, along the outer normal.
-Point area_vector(const Robot& robot, const Face& face) {
-  const Point a(robot.masses[face.a]), b(robot.masses[face.b]), c(robot.masses[face.c]);
+Double3 area_vector(const Robot& robot, const Face& face) {
+  const Double3 a(robot.masses[face.a]), b(robot.masses[face.b]), c(robot.masses[face.c]);
   return cross(b - a, c - a);
 }
 
@@ -29,7 +21,7 @@ std::vector<double> displaced_volumes(const Robot& robot) {
   std::vector<double> share(robot.masses.size());
   double area = 0;
   for (const Face& face : robot.faces) {
-    const Point normal = area_vector(robot, face);
+    const Double3 normal = area_vector(robot, face);
     const double third = std::sqrt(dot(normal, normal)) / 6;
     for (const std::uint16_t corner : {face.a, face.b, face.c}) share[corner] += third;
     area += 3 * third;
@@ -43,10 +35,10 @@ std::vector<double> displaced_volumes(const Robot& robot) {
 
 // The divergence theorem: each face and the first mass span a tetrahedron.
 double skin_volume(const Robot& robot) {
-  const Point origin(robot.masses.front());
+  const Double3 origin(robot.masses.front());
   double volume = 0;
   for (const Face& face : robot.faces)
-    volume += dot(area_vector(robot, face), Point(robot.masses[face.a]) - origin) / 6;
+    volume += dot(area_vector(robot, face), Double3(robot.masses[face.a]) - origin) / 6;
   return volume;
 }
 

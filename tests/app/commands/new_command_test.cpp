@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <map>
 #include <thread>
 
 #include "mercury/origin.h"
@@ -97,11 +98,15 @@ TEST_F(NewCommand, InterruptedSearchKeepsTheBest) {
                                      "these are written\n"));
   std::vector<std::pair<double, std::string>> sound;
   std::istringstream csv(read("a.csv"));
+  std::map<std::string, std::size_t> columns;
   for (std::string line; std::getline(csv, line);) {
     std::vector<std::string> fields;
     std::string field;
     for (std::istringstream rest(line); std::getline(rest, field, ',');) fields.push_back(field);
-    if (fields.at(4) == "sound") sound.emplace_back(-std::stod(fields.at(8)), fields.at(1));
+    if (columns.empty())
+      for (const std::string& name : fields) columns.emplace(name, columns.size());
+    else if (fields.at(columns.at("fate")) == "sound")
+      sound.emplace_back(-std::stod(fields.at(columns.at("distance"))), fields.at(columns.at("name")));
   }
   ASSERT_GE(sound.size(), 2u);
   std::ranges::stable_sort(sound, {}, [](const auto& robot) { return robot.first; });
