@@ -13,6 +13,7 @@ namespace {
 
 // A body of n masses that all springs join has n^4 / 24 tetrahedra: of such, not all are needed.
 constexpr int most_per_spring = 64;
+constexpr std::size_t tetrahedra_per_voxel = 6;
 // Flatter ones, by volume per cube of the longest rest length, are no space between masses.
 constexpr double flat = 1e-4;
 
@@ -45,8 +46,8 @@ class Grid {
 
   // Calls visit(mass) for all masses between two corners of a box, and perhaps more.
   template <class Visit>
-  void for_each_between(Double3 low, Double3 high, const Visit& visit) const {
-    const Place from = place(low), to = place(high);
+  void for_each_between(Vec3 low, Vec3 high, const Visit& visit) const {
+    const Place from = place(Double3(low)), to = place(Double3(high));
     const double cubes = (static_cast<double>(to.x - from.x) + 1) * (static_cast<double>(to.y - from.y) + 1) *
                          (static_cast<double>(to.z - from.z) + 1);
     if (cubes > static_cast<double>(masses_.size())) {
@@ -105,17 +106,17 @@ BodyCells::BodyCells(const Robot& robot) {
 
   const Voxels voxels = voxels_of(robot);
   for (const Voxel& voxel : voxels.all) {
-    const auto cell = static_cast<std::uint32_t>(voxels_.size());
     voxels_.push_back(voxel.corners);
     volumes_.push_back(voxels.edge * voxels.edge * voxels.edge);
     // Around the diagonal from corner 0 to corner 7, one for each order of the axes.
     for (const auto& [first, second] : {std::array{1, 2}, {2, 4}, {4, 1}, {2, 1}, {4, 2}, {1, 4}}) {
       const auto& c = voxel.corners;
       const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(first + second);
-      tetrahedra_.push_back({{c[0], c[a], c[b], c[7]}, cell});
+      tetrahedra_.push_back({c[0], c[a], c[b], c[7]});
     }
   }
   if (voxels_.empty()) find_tetrahedra(robot);
+  find_touching();
   for (const float volume : volumes_) volume_ += static_cast<double>(volume);
   for_each_intruder(robot.masses, [&](std::uint16_t mass, std::uint32_t cell) { at_rest_.push_back(key(cell, mass)); });
   std::ranges::sort(at_rest_);
@@ -143,12 +144,11 @@ void BodyCells::find_tetrahedra(const Robot& robot) {
           const double volume = sixfold_volume(corner(a), corner(b), corner(c), corner(d));
           if (std::abs(volume) < least) continue;
           ++found;
-          const auto cell = static_cast<std::uint32_t>(volumes_.size());
           const auto first = static_cast<std::uint16_t>(a);
           if (volume > 0)
-            tetrahedra_.push_back({{first, b, c, d}, cell});
+            tetrahedra_.push_back({first, b, c, d});
           else
-            tetrahedra_.push_back({{first, b, d, c}, cell});
+            tetrahedra_.push_back({first, b, d, c});
           volumes_.push_back(static_cast<float>(std::abs(volume) / 6));
         }
       }
@@ -157,7 +157,7 @@ void BodyCells::find_tetrahedra(const Robot& robot) {
 
 bool BodyCells::is_inverted(std::size_t cell, std::span<const Vec3> positions) const {
   if (voxels_.empty()) {
-    const auto& [a, b, c, d] = tetrahedra_[cell].corners;
+    const auto& [a, b, c, d] = tetrahedra_[cell];
     return sixfold_volume(Double3(positions[a]), Double3(positions[b]), Double3(positions[c]), Double3(positions[d])) <
            0;
   }
@@ -173,32 +173,52 @@ bool BodyCells::is_inverted(std::size_t cell, std::span<const Vec3> positions) c
   return dot(across(1), cross(across(2), across(4))) < 0;
 }
 
-bool BodyCells::touches(std::uint16_t mass, std::uint32_t cell) const {
-  const auto is_corner_or_joined = [&](std::uint16_t corner) {
-    return corner == mass || std::binary_search(neighbors_.begin() + first_neighbor_[mass],
-                                                neighbors_.begin() + first_neighbor_[mass + 1u], corner);
-  };
-  return voxels_.empty() ? std::ranges::any_of(tetrahedra_[cell].corners, is_corner_or_joined)
-                         : std::ranges::any_of(voxels_[cell], is_corner_or_joined);
+std::span<const std::uint16_t> BodyCells::corners(std::size_t cell) const {
+  return voxels_.empty() ? std::span<const std::uint16_t>(tetrahedra_[cell]) : voxels_[cell];
+}
+
+// Corners, and what is joined to one of them.
+void BodyCells::find_touching() {
+  first_touching_.push_back(0);
+  for (std::size_t cell = 0; cell < volumes_.size(); ++cell) {
+    for (const std::uint16_t corner : corners(cell)) {
+      touching_.push_back(corner);
+      touching_.insert(touching_.end(), neighbors_.begin() + first_neighbor_[corner],
+                       neighbors_.begin() + first_neighbor_[corner + 1u]);
+    }
+    const std::ranges::subrange added(touching_.begin() + first_touching_.back(), touching_.end());
+    std::ranges::sort(added);
+    touching_.erase(std::ranges::unique(added).begin(), touching_.end());
+    first_touching_.push_back(static_cast<std::uint32_t>(touching_.size()));
+  }
+}
+
+bool BodyCells::contains(std::size_t cell, Double3 p, std::span<const Vec3> positions) const {
+  const std::size_t each = voxels_.empty() ? 1 : tetrahedra_per_voxel;
+  return std::ranges::any_of(std::span(tetrahedra_).subspan(each * cell, each), [&](const auto& t) {
+    return is_within(p, Double3(positions[t[0]]), Double3(positions[t[1]]), Double3(positions[t[2]]),
+                     Double3(positions[t[3]]));
+  });
 }
 
 template <class Visit>
 void BodyCells::for_each_intruder(std::span<const Vec3> positions, const Visit& visit) const {
-  if (tetrahedra_.empty()) return;
+  if (volumes_.empty()) return;
   const Grid grid(positions, static_cast<double>(longest_));
-  for (const auto& [corners, cell] : tetrahedra_) {
-    std::array<Double3, 4> x;
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Double3 low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-    for (std::size_t i = 0; i < 4; ++i) {
-      x[i] = Double3(positions[corners[i]]);
-      low = {std::min(low.x, x[i].x), std::min(low.y, x[i].y), std::min(low.z, x[i].z)};
-      high = {std::max(high.x, x[i].x), std::max(high.y, x[i].y), std::max(high.z, x[i].z)};
+  for (std::size_t cell = 0; cell < volumes_.size(); ++cell) {
+    Vec3 low = positions[corners(cell)[0]], high = low;
+    for (const std::uint16_t corner : corners(cell)) {
+      const Vec3& x = positions[corner];
+      low = {std::min(low.x, x.x), std::min(low.y, x.y), std::min(low.z, x.z)};
+      high = {std::max(high.x, x.x), std::max(high.y, x.y), std::max(high.z, x.z)};
     }
-    grid.for_each_between(low, high, [&, cell = cell](std::uint16_t mass) {
-      const Double3 p = Double3(positions[mass]);
-      if (p.x <= low.x || p.x >= high.x || p.y <= low.y || p.y >= high.y || p.z <= low.z || p.z >= high.z) return;
-      if (is_within(p, x[0], x[1], x[2], x[3]) && !touches(mass, cell)) visit(mass, cell);
+    const auto touching =
+        std::span(touching_).subspan(first_touching_[cell], first_touching_[cell + 1] - first_touching_[cell]);
+    grid.for_each_between(low, high, [&](std::uint16_t mass) {
+      const Vec3& x = positions[mass];
+      if (x.x <= low.x || x.x >= high.x || x.y <= low.y || x.y >= high.y || x.z <= low.z || x.z >= high.z) return;
+      if (!std::ranges::binary_search(touching, mass) && contains(cell, Double3(x), positions))
+        visit(mass, static_cast<std::uint32_t>(cell));
     });
   }
 }

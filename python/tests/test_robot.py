@@ -427,6 +427,8 @@ def test_the_program_describes_a_robot_as_python_does(tmp_path, mercury):
             assert [use["name"] for use in described[key]] == [use.pop("name") for use in value]
             for mine, other in zip(described[key], value):
                 assert other == pytest.approx({name: mine[name] for name in other}, rel=1e-6)
+        elif isinstance(value, str):
+            assert described[key] == value
         else:
             assert described[key] == pytest.approx(list(value) if isinstance(value, tuple) else value, rel=1e-6), key
 

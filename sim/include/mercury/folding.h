@@ -20,6 +20,8 @@
 
 namespace mercury {
 
+struct Double3;
+
 struct Folding {
   float inverted = 0;  // [1]
   float overlap = 0;   // [1]
@@ -39,24 +41,25 @@ class BodyCells {
   std::size_t size() const { return volumes_.size(); }
 
  private:
-  struct Tetrahedron {
-    std::array<std::uint16_t, 4> corners;
-    std::uint32_t cell;
-  };
+  using Tetrahedron = std::array<std::uint16_t, 4>;
 
   void find_tetrahedra(const Robot& robot);
   bool is_inverted(std::size_t cell, std::span<const Vec3> positions) const;
-  bool touches(std::uint16_t mass, std::uint32_t cell) const;
-  // Calls visit(mass, cell) for masses within cells that they do not touch, once or more often.
+  void find_touching();
+  std::span<const std::uint16_t> corners(std::size_t cell) const;
+  bool contains(std::size_t cell, Double3 point, std::span<const Vec3> positions) const;
+  // Calls visit(mass, cell) for masses within cells that they do not touch.
   template <class Visit>
   void for_each_intruder(std::span<const Vec3> positions, const Visit& visit) const;
 
   std::vector<std::array<std::uint16_t, 8>> voxels_;  // corners; empty for cells that are tetrahedra
-  std::vector<Tetrahedron> tetrahedra_;               // six per voxel, or one per cell, right-handed at rest
+  std::vector<Tetrahedron> tetrahedra_;               // six per voxel, or one per cell; right-handed at rest
   std::vector<float> volumes_;                        // per cell, at rest [m3]
   double volume_ = 0;                                 // of all cells
   std::vector<std::uint32_t> first_neighbor_;         // per mass, and the end
   std::vector<std::uint16_t> neighbors_;              // of each mass, ascending
+  std::vector<std::uint32_t> first_touching_;         // per cell, and the end
+  std::vector<std::uint16_t> touching_;               // the masses that touch each cell, ascending
   std::vector<std::uint64_t> at_rest_;                // cell and mass, of a mass that is within the cell; ascending
   float longest_ = 0;                                 // rest length [m]
 };
