@@ -113,7 +113,7 @@ std::optional<std::vector<Confirmation>> check_robots(
     Configuration finer = configuration;
     finer.dt = configuration.dt / static_cast<double>(1 << k);
     EvaluationRequest request = trial_request(trials, finer, seed);
-    request.folding = request.folding || uses_folding(objective);
+    if (uses_folding(objective)) request.folding = measure_all_folding;
     Evaluator evaluator(request, trial_source(robots, trials, seed), count * per_step);
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<Evaluation> of_robot;

@@ -97,7 +97,7 @@ class LocalAssessor : public Assessor {
       return std::make_shared<const Robot>(candidates[i]->grow("candidate"));
     };
     EvaluationRequest request = trial_request(settings_, configuration_, seed_);
-    request.folding = request.folding || std::ranges::any_of(objectives_, uses_folding);
+    if (std::ranges::any_of(objectives_, uses_folding)) request.folding = measure_all_folding;
     std::vector<std::vector<double>> interim_scores(candidates.size());
     if (settings_.racing && request.steps > static_cast<std::int64_t>(racing_checks)) {
       for (std::size_t check = 1; check <= racing_checks; ++check)

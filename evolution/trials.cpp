@@ -79,10 +79,12 @@ float shortest_rest_length(const Robot& robot) {
 bool is_of_network(const Robot& robot) { return kind_of(robot) == "nn"; }
 bool has_real_body(const Robot& robot) { return real_material_of(robot).has_value(); }
 
+bool is_of_folding(const Limit& limit) { return quantities()[find_quantity(limit.quantity).value()].of_folding; }
+
 constexpr Limit table[] = {
     {.quantity = "strain", .value = &TrialSettings::strain_limit},
     {.quantity = "strained_share", .value = &TrialSettings::strained_limit, .applies = has_real_body},
-    {.quantity = "inverted", .value = &TrialSettings::inverted_limit},
+    {.quantity = "inverted", .value = &TrialSettings::inverted_limit, .applies = has_real_body},
     {.quantity = "overlap", .value = &TrialSettings::overlap_limit},
     {.quantity = "masses",
      .value = &TrialSettings::least_masses,
@@ -98,7 +100,7 @@ void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest
   const Trial trial{.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request.configuration};
   for (const Limit& limit : table) {
     const double accepted = settings.*limit.value;
-    if (!limit.is_least && accepted == 1 && quantities()[find_quantity(limit.quantity).value()].of_folding) continue;
+    if (is_of_folding(limit) && accepted == 1) continue;
     const double value = quantities()[find_quantity(limit.quantity).value()].value(trial);
     if (limit.is_least ? value >= accepted : value <= accepted) continue;
     if (limit.applies && !limit.applies(trial.robot)) continue;
@@ -107,7 +109,21 @@ void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest
   }
 }
 
+// Of which robots trials measure `inverted` and `overlap`: those that a limit asks about.
+std::function<bool(const Robot&)> measured_folding(const TrialSettings& settings) {
+  if (settings.folding) return measure_all_folding;
+  std::vector<const Limit*> asked;
+  for (const Limit& limit : table)
+    if (is_of_folding(limit) && settings.*limit.value < 1) asked.push_back(&limit);
+  if (asked.empty()) return nullptr;
+  return [asked](const Robot& robot) {
+    return std::ranges::any_of(asked, [&](const Limit* limit) { return !limit->applies || limit->applies(robot); });
+  };
+}
+
 }  // namespace
+
+bool measure_all_folding(const Robot&) { return true; }
 
 EvaluationRequest trial_request(const TrialSettings& settings, const Configuration& configuration, std::uint64_t seed) {
   const auto steps_in = [&](double seconds) { return std::int64_t{std::llround(seconds / configuration.dt)}; };
@@ -116,7 +132,7 @@ EvaluationRequest trial_request(const TrialSettings& settings, const Configurati
                             .settling = settling,
                             .steps = steps_in(settings.seconds) - settling,
                             .sample_every = std::max<std::int64_t>(1, steps_in(trial_sample_period)),
-                            .folding = measures_folding(settings),
+                            .folding = measured_folding(settings),
                             .hashes = true};
   if (settings.jitter > 0)
     request.start = [settings, seed](std::size_t index, const Robot& robot, std::span<Vec3> positions) {

@@ -180,7 +180,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   std::vector<std::shared_ptr<const Robot>> remaining;
   std::vector<const Robot*> pointers;
   std::vector<KnownExplosion> explosions;
-  std::vector<std::shared_ptr<const BodyCells>> cells;
+  std::vector<std::optional<std::shared_ptr<const BodyCells>>> cells;
   for (const std::size_t i : robots) {
     remaining.push_back(parts_->robots[i]);
     pointers.push_back(parts_->pointers[i]);
@@ -294,7 +294,7 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
   if (every <= 0 || steps < 0 || steps % every != 0)
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
-  if (parts_->measures_folding) {  // which takes the positions of every sample
+  if (measures_folding()) {  // which takes the positions of every sample
     for (std::size_t first = 0; first < samples.size(); first += size()) {
       step(every);
       std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));

@@ -33,9 +33,10 @@ struct Simulation::Parts {
   std::vector<std::unique_ptr<MaterialTable>> changed_tables;  // as they are now; null = the robot's own
   mutable std::vector<KnownExplosion> explosions;              // one per robot
   mutable std::vector<RobotStatus> reported;                   // one per robot, used by telemetry()
-  bool measures_folding = false;
-  mutable std::vector<std::shared_ptr<const BodyCells>> cells;  // one per robot; null = not known
-  double check_seconds = 0;                                     // LoadTimes::check
+  std::function<bool(const Robot&)> folding_of;                // none = of no robot
+  // One per robot; nothing = not known yet, null = not measured.
+  mutable std::vector<std::optional<std::shared_ptr<const BodyCells>>> cells;
+  double check_seconds = 0;  // LoadTimes::check
   std::vector<float> lifts;  // by which robots at rest stand higher; empty = not known
   SharedState shared_state;
   SharedActuation shared_actuation;
@@ -62,6 +63,7 @@ struct Simulation::Parts {
   void put_at_rest(std::size_t first);
 
   // To telemetry of all robots, explosions included, if it is asked for.
+  bool find_cells() const;  // returns whether the folding of any robot is measured
   void add_folding(std::span<Telemetry> telemetry) const;
   // Without the explosion.
   State state(std::size_t robot) const;

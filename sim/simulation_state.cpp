@@ -141,23 +141,42 @@ std::vector<Telemetry> Simulation::telemetry() const {
   return all;
 }
 
-void Simulation::measure_folding(bool on) { parts_->measures_folding = on; }
-bool Simulation::measures_folding() const { return parts_->measures_folding; }
+void Simulation::measure_folding(bool on) {
+  measure_folding(on ? std::function([](const Robot&) { return true; }) : nullptr);
+}
+
+void Simulation::measure_folding(std::function<bool(const Robot&)> of) {
+  parts_->folding_of = std::move(of);
+  parts_->cells.assign(size(), {});
+}
+
+bool Simulation::measures_folding() const { return parts_->find_cells(); }
+
+bool Simulation::Parts::find_cells() const {
+  if (!folding_of) return false;
+  const auto is_repeated = [&](std::size_t i) { return i > 0 && robots[i] == robots[i - 1]; };
+  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+    if (cells[i] || is_repeated(i)) return;
+    cells[i] = folding_of(*robots[i]) ? std::make_shared<const BodyCells>(*robots[i]) : nullptr;
+  });
+  for (std::size_t i = 0; i < size(); ++i)
+    if (!cells[i]) cells[i] = cells[i - 1];
+  return std::ranges::any_of(cells, [](const auto& of_robot) { return *of_robot != nullptr; });
+}
 
 void Simulation::Parts::add_folding(std::span<Telemetry> telemetry) const {
-  if (!measures_folding || telemetry.empty()) return;
+  if (telemetry.empty() || !find_cells()) return;
   std::vector<Vec3> positions(offsets.back());
   backend->read_positions(positions);
-  for (std::size_t i = 1; i < size(); ++i)
-    if (!cells[i] && robots[i] == robots[i - 1]) cells[i] = cells[i - 1];
   oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
-    if (telemetry[i].exploded) return;
-    if (!cells[i]) cells[i] = std::make_shared<const BodyCells>(*robots[i]);
-    const Folding folding = cells[i]->folding(std::span(positions).subspan(offsets[i], masses(i)));
+    const BodyCells* of_robot = cells[i]->get();
+    if (!of_robot || telemetry[i].exploded) return;
+    const Folding folding = of_robot->folding(std::span(positions).subspan(offsets[i], masses(i)));
     telemetry[i].inverted = folding.inverted;
     telemetry[i].overlap = folding.overlap;
   });
 }
+
 Telemetry Simulation::telemetry(std::size_t robot) const {
   parts_->require(robot);
   return telemetry()[robot];

@@ -251,13 +251,13 @@ nb::object evaluate(nb::object source, double seconds, nb::handle environment, c
   settings.seconds = seconds;
   settings.settle = settle;
   settings.trials = trials;
+  settings.folding = folding;
   settings.jitter = jitter.value_or(trials > 1 ? usual_jitter : 0);
   check_parameters(settings);
   EvaluationRequest request = trial_request(settings, configuration, seed);
   request.settling = settling;
   request.steps = steps - settling;
   request.sample_every = std::max<std::int64_t>(1, period);
-  request.folding = folding;
   request.hashes = hashes;
   request.states = states;
   request.memory_limit = memory_limit.value_or(0);

@@ -154,7 +154,8 @@ TEST_P(FoldingOn, MeasuringItChangesNoTrajectory) {
 TEST_P(FoldingOn, AnEvaluationHasTheLargestOfItsSamples) {
   const auto robot = std::make_shared<const Robot>(bodies::random_voxels({.x = 6, .y = 2, .z = 2}, 1));
   const State start = bodies::shaken(*robot, 0.2f, 0, 3);
-  EvaluationRequest request{.configuration = {.device = device()}, .steps = 40, .sample_every = 10, .folding = true};
+  EvaluationRequest request{.configuration = {.device = device()}, .steps = 40, .sample_every = 10};
+  request.folding = [](const Robot&) { return true; };
   request.start = [&](std::size_t, const Robot&, std::span<Vec3> positions) {
     std::ranges::copy(start.positions, positions.begin());
   };
@@ -168,7 +169,7 @@ TEST_P(FoldingOn, AnEvaluationHasTheLargestOfItsSamples) {
     inverted = std::max(inverted, double{sample.inverted});
   EXPECT_EQ(result.inverted, inverted);
   EXPECT_GT(inverted, 0);
-  request.folding = false;
+  request.folding = nullptr;
   EXPECT_TRUE(std::isnan(Evaluator(request, source_of({robot}), 1).next().value().inverted));
 }
 

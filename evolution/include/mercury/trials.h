@@ -37,7 +37,7 @@ struct TrialSettings {
   double damage = 0;          // share of the voxels that a trial's robot lacks [1]
   double strain_limit = 2;    // of a spring; limits() lists what robots must keep
   double strained_limit = 1;  // share of the springs of a real body that may be strained by more than half at a time
-  double inverted_limit = 1;  // share of the body that may be inside out at a time
+  double inverted_limit = 1;  // share of a real body that may be inside out at a time
   double overlap_limit = 1;   // share of the masses that may be within other parts of the body at a time
   double least_masses = 0;    // of a network robot
   bool median = false;        // of the trials counts, not their mean
@@ -72,7 +72,7 @@ struct TrialSettings {
                 "Robots with real bodies are overstretched if more of their springs are strained by more than half")
           .with_form("0..1"),
       Parameter("inverted_limit", &TrialSettings::inverted_limit, "", Accepts::between(0, 1), {0, 1},
-                "Robots are overstretched if more of their body is inside out")
+                "Robots with real bodies are overstretched if more of their body is inside out")
           .with_form("0..1"),
       Parameter("overlap_limit", &TrialSettings::overlap_limit, "", Accepts::between(0, 1), {0, 1},
                 "Robots are overstretched if more of their masses are within other parts of the body")
@@ -91,9 +91,11 @@ void validate(const TrialSettings& settings);
 
 // The usual jitter of several trials.
 inline constexpr double usual_jitter = 1e-3;
-// The robot as it is, with the usual limits: that the 99th percentile of the strain of a real body is 0.5, and that a
-// body is more than a few springs.
-constexpr TrialSettings one_trial() { return {.delay = 0, .strained_limit = 0.01, .least_masses = 24, .median = true}; }
+// The robot as it is, with the usual limits: that the 99th percentile of the strain of a real body is 0.5, that no part
+// of it is inside out, and that a body is more than a few springs.
+constexpr TrialSettings one_trial() {
+  return {.delay = 0, .strained_limit = 0.01, .inverted_limit = 0, .least_masses = 24, .median = true};
+}
 // What searches use: three trials with jitter, whose median counts.
 constexpr TrialSettings search_trials() {
   TrialSettings settings = one_trial();
@@ -105,10 +107,8 @@ constexpr TrialSettings search_trials() {
 // Between two samples of a trial. Paths, work and strains depend on it [s].
 inline constexpr double trial_sample_period = 0.05;
 
-// Whether trials measure `inverted` and `overlap`.
-inline bool measures_folding(const TrialSettings& settings) {
-  return settings.folding || settings.inverted_limit < 1 || settings.overlap_limit < 1;
-}
+// EvaluationRequest::folding of all robots.
+bool measure_all_folding(const Robot& robot);
 
 // What an Evaluator does for the trials of robots. Robots come from trial_source(), or each is one trial of the
 // settings: the first.

@@ -54,9 +54,10 @@ struct EvaluationRequest {
   // checked and scheduled once, so this is the cheap way to try a robot several times. Optional. Several threads call
   // it at the same time.
   std::function<void(std::size_t index, const Robot& robot, std::span<Vec3> positions)> start;
-  bool folding = false;  // whether the telemetry has `inverted` and `overlap` (Simulation::measure_folding())
-  bool hashes = false;   // of the final states
-  bool states = false;   // the final states themselves
+  // Of which robots the telemetry has `inverted` and `overlap`: Simulation::measure_folding(). None = of no robot.
+  std::function<bool(const Robot&)> folding;
+  bool hashes = false;  // of the final states
+  bool states = false;  // the final states themselves
 
   // Racing: robots that do badly are stopped early. At each of these numbers of steps of the trial (ascending, above 0
   // and below `steps`), goes_on() is asked about every robot that is still stepped. Robots for which it returns false

@@ -161,10 +161,12 @@ class Simulation {
   // One element per robot, computed on the device.
   std::vector<Telemetry> telemetry() const;
   Telemetry telemetry(std::size_t robot) const;
-  // Whether telemetry, samples included, has Telemetry::inverted and overlap. They take all positions from the device
-  // and some work on the host's cores, so this is off at first.
+  // Whether telemetry, samples included, has Telemetry::inverted and overlap, of all robots or of those for which
+  // `of` is true. They take all positions from the device and some work on the host's cores, so this is off at first.
+  // Several threads call `of` at the same time, about once per robot.
   void measure_folding(bool on);
-  bool measures_folding() const;
+  void measure_folding(std::function<bool(const Robot&)> of);
+  bool measures_folding() const;  // of any robot
   // FNV-1a over the bytes of all positions, then all velocities. Equal hashes mean equal states, bit for bit.
   std::uint64_t hash(std::size_t robot) const;
   // Of all robots, on all cores.

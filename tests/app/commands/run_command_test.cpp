@@ -72,8 +72,7 @@ TEST_F(RunCommand, ShareOfStrainedSpringsGoesWithTheLargestStrain) {
 TEST_F(RunCommand, FoldingIsMeasuredWhereItIsAskedFor) {
   const std::vector<std::string> plain{"--random", "voxel:2", "--seconds", "0.2"};
   const json without = run_json(plain);
-  for (const std::vector<std::string>& asks :
-       {std::vector<std::string>{"--folding"}, {"--inverted-limit", "0.5"}, {"--overlap-limit", "0.5"}}) {
+  for (const std::vector<std::string>& asks : {std::vector<std::string>{"--folding"}, {"--overlap-limit", "0.5"}}) {
     std::vector<std::string> arguments = plain;
     arguments.insert(arguments.end(), asks.begin(), asks.end());
     const json with = run_json(arguments);
@@ -83,6 +82,18 @@ TEST_F(RunCommand, FoldingIsMeasuredWhereItIsAskedFor) {
       EXPECT_EQ(with["robots"][i]["overlap"], 0.0);
       EXPECT_EQ(with["robots"][i]["hash"], without["robots"][i]["hash"]);
     }
+  }
+}
+
+// The usual limits ask for it, and others need not.
+TEST_F(RunCommand, FoldingOfRealBodiesIsMeasured) {
+  const std::vector<std::string> real{"--random", "voxel:2", "--physics", "real", "--seconds", "0.2"};
+  std::vector<std::string> unlimited = real;
+  unlimited.insert(unlimited.end(), {"--inverted-limit", "1"});
+  const json with = run_json(real), without = run_json(unlimited);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(with["robots"][i]["inverted"], 0.0);
+    EXPECT_TRUE(without["robots"][i]["inverted"].is_null());
   }
 }
 
