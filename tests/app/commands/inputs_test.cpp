@@ -120,14 +120,15 @@ TEST_F(Inputs, TheProgramSaysHowMuchStackItNeeds) {
   }
 }
 
-// The limit does not count for the superuser, so the program becomes the user nobody.
+// The limit counts the processes of a user, and not for the superuser: the program becomes a user who has none.
 TEST_F(Inputs, DrawingSaysHowManyThreadsItNeeds) {
   const std::string program = path("mercury");
   std::filesystem::copy_file(MERCURY_PROGRAM, program);
   std::filesystem::permissions(folder_, std::filesystem::perms::all);
-  const char* as_nobody = geteuid() == 0 ? "exec setpriv --reuid 65534 --clear-groups " : "exec ";
+  const std::string another = std::to_string(1'000'000 + getpid());
+  const std::string as_another = geteuid() == 0 ? "exec setpriv --reuid " + another + " --clear-groups " : "exec ";
   const Outcome outcome =
-      run_program("/bin/bash", {"-c", "ulimit -u 3; " + (as_nobody + program) +
+      run_program("/bin/bash", {"-c", "ulimit -u 3; " + as_another + program +
                                           " render --random voxel --still 0 --gl mesa --quiet -o " + path("a.png")});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.messages, HasSubstr("could be started: the "));
