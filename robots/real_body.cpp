@@ -70,6 +70,27 @@ void drop_cavities(Robot& robot) {
   robot.faces = std::move(outer);
 }
 
+// Of what a material of the robot's table is made, by id: [Pa], [kg/m3], [s].
+struct Substance {
+  double modulus = 0, density = 0, relaxation_time = 0;
+};
+
+// `ids`: the materials of all voxels or springs.
+std::vector<Substance> substances_of(const Robot& robot, const RealMaterial& material,
+                                     const std::vector<MaterialId>& ids) {
+  const std::span<const Material> table = materials_of(robot);
+  std::vector<Substance> substances;
+  for (const auto& [modulus, density, relaxation_time] : material.each)
+    substances.push_back(
+        {static_cast<double>(modulus), static_cast<double>(density), static_cast<double>(relaxation_time)});
+  if (!substances.empty()) return substances;
+  const double modulus_per_stiffness = static_cast<double>(material.modulus) / muscle_stiffness(table, ids);
+  for (const Material& own : table)
+    substances.push_back({modulus_per_stiffness * static_cast<double>(own.stiffness),
+                          static_cast<double>(material.density), static_cast<double>(material.relaxation_time)});
+  return substances;
+}
+
 std::string name_of_material(const Robot& robot, MaterialId id) {
   return robot.material_names.empty()
              ? robot.materials.empty() ? default_material_name(id) : "material " + std::to_string(id)
@@ -89,11 +110,13 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
     unsigned axes = 0;
     int voxels = 0;
   };
+  std::vector<MaterialId> of_voxels;
+  for (const Voxel& voxel : voxels.all) of_voxels.push_back(voxel.material);
+  const std::vector<Substance> substances = substances_of(robot, material, of_voxels);
   std::map<Spot, Shared> spots;
-  real.mass.assign(robot.masses.size(), 0);
-  std::vector<int> voxels_at(robot.masses.size());
+  std::vector<double> density_at(robot.masses.size());  // of all voxels there
   for (const auto& [corners, id] : voxels.all) {
-    for (const std::uint16_t corner : corners) ++voxels_at[corner];
+    for (const std::uint16_t corner : corners) density_at[corner] += substances[id].density;
     for_each_pair_of_corners([&, &corners = corners, id = id](std::size_t i, std::size_t j) {
       Shared& shared = spots[{pair_of(corners[i], corners[j]), id}];
       shared.axes = static_cast<unsigned>(std::popcount(i ^ j));
@@ -101,13 +124,9 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
     });
   }
   const double edge = static_cast<double>(voxels.edge);
-  for (std::size_t point = 0; point < real.mass.size(); ++point)
-    real.mass[point] =
-        static_cast<float>(static_cast<double>(material.density) * edge * edge * edge * voxels_at[point] / 8);
+  real.mass.clear();
+  for (const double density : density_at) real.mass.push_back(static_cast<float>(density * edge * edge * edge / 8));
   const std::span<const Material> table = materials_of(robot);
-  std::vector<MaterialId> of_voxels;
-  for (const Voxel& voxel : voxels.all) of_voxels.push_back(voxel.material);
-  const double modulus_per_stiffness = static_cast<double>(material.modulus) / muscle_stiffness(table, of_voxels);
   real.materials.assign(1, Material{});
   real.material_names.assign(1, "air");
   std::map<std::tuple<MaterialId, unsigned, int>, MaterialId> ids;
@@ -119,9 +138,9 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
       if (real.materials.size() == max_materials)
         throw InputError("/materials", "the voxels have too many materials for one table of springs");
       Material own = table[spot.material];
-      const double modulus = modulus_per_stiffness * static_cast<double>(own.stiffness);
-      own.stiffness = static_cast<float>(shared.voxels * share[shared.axes] * modulus * edge);
-      own.relaxation_time = material.relaxation_time;
+      const Substance& substance = substances[spot.material];
+      own.stiffness = static_cast<float>(shared.voxels * share[shared.axes] * substance.modulus * edge);
+      own.relaxation_time = static_cast<float>(substance.relaxation_time);
       real.materials.push_back(own);
       real.material_names.push_back(name_of_material(robot, spot.material) + ", " + std::to_string(shared.voxels) +
                                     " x " + kind[shared.axes]);
@@ -130,6 +149,13 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
     real.springs.push_back({static_cast<std::uint16_t>(spot.pair >> 16), static_cast<std::uint16_t>(spot.pair & 0xffff),
                             entry->second, length});
   }
+  for (Actuator& actuator : real.actuators) {
+    std::vector<MaterialId> mine;
+    for (const auto& [of, id] : ids)
+      if (std::ranges::find(actuator.materials, std::get<0>(of)) != actuator.materials.end()) mine.push_back(id);
+    std::ranges::sort(mine);
+    actuator.materials = std::move(mine);
+  }
 }
 
 void set_network_springs(const Robot& robot, const RealMaterial& material, Robot& real) {
@@ -137,27 +163,28 @@ void set_network_springs(const Robot& robot, const RealMaterial& material, Robot
   if (!(volume > 0)) throw InputError("/faces", "a real body needs a skin around a volume; this one encloses none");
   if (robot.springs.empty()) throw InputError("/springs", "a real body needs springs");
   const std::span<const Material> table = materials_of(robot);
-  double sum = 0;
-  std::vector<double> share(robot.masses.size());
-  for (const Spring& spring : robot.springs) {
-    const double squared = static_cast<double>(spring.rest_length) * static_cast<double>(spring.rest_length);
-    share[spring.a] += squared;
-    share[spring.b] += squared;
-    sum += squared;
-  }
   std::vector<MaterialId> of_springs;
   for (const Spring& spring : robot.springs) of_springs.push_back(spring.material);
-  const double stiffness_factor =
-      6 * static_cast<double>(material.modulus) * volume / (sum * muscle_stiffness(table, of_springs));
-  const double mass = static_cast<double>(material.density) * volume;
+  const std::vector<Substance> substances = substances_of(robot, material, of_springs);
+  double sum = 0, mass = 0;
+  std::vector<double> share(robot.masses.size());  // of the mass, times twice the sum
+  for (const Spring& spring : robot.springs) {
+    const double squared = static_cast<double>(spring.rest_length) * static_cast<double>(spring.rest_length);
+    const double of_spring = substances[spring.material].density * volume * squared;
+    share[spring.a] += of_spring;
+    share[spring.b] += of_spring;
+    mass += of_spring;
+    sum += squared;
+  }
   // A mass that no spring holds has a hundredth of the mean.
-  const double least = 0.01 * mass / static_cast<double>(share.size());
+  const double least = 0.01 * mass / (sum * static_cast<double>(share.size()));
   real.mass.clear();
-  for (const double s : share) real.mass.push_back(static_cast<float>(std::max(least, mass * s / (2 * sum))));
+  for (const double s : share) real.mass.push_back(static_cast<float>(std::max(least, s / (2 * sum))));
   real.materials.assign(table.begin(), table.end());
-  for (Material& own : real.materials) {
-    own.stiffness = static_cast<float>(static_cast<double>(own.stiffness) * stiffness_factor);
-    own.relaxation_time = own.stiffness > 0 ? material.relaxation_time : 0;
+  for (std::size_t id = 0; id < real.materials.size(); ++id) {
+    Material& own = real.materials[id];
+    own.stiffness = static_cast<float>(6 * substances[id].modulus * volume / sum);
+    own.relaxation_time = own.stiffness > 0 ? static_cast<float>(substances[id].relaxation_time) : 0;
   }
   if (robot.material_names.empty() && robot.materials.empty())
     for (std::size_t id = 0; id < table.size(); ++id)
@@ -177,6 +204,15 @@ std::string text_of(std::span<const Material> materials) {
   return text + "]";
 }
 
+// [[modulus, density, relaxation time], ...]
+std::string text_of(const std::vector<RealMaterial::Own>& each) {
+  std::string text;
+  for (const auto& [modulus, density, relaxation_time] : each)
+    text.append(text.empty() ? "[[" : ",[")
+        .append(shortest_text(modulus) + "," + shortest_text(density) + "," + shortest_text(relaxation_time) + "]");
+  return text + "]";
+}
+
 [[noreturn]] void refuse(const std::string& place, const std::string& what) {
   throw InputError("/origin/real" + place, what);
 }
@@ -191,6 +227,8 @@ std::optional<Json> real_in(const Robot& robot) {
 
 Robot with_real_body(const Robot& robot, const RealMaterial& material) {
   check_parameters(material);
+  if (!material.each.empty() && material.each.size() != materials_of(robot).size())
+    throw InputError("/materials", "a real body needs what each of them is made of");
   if (real_material_of(robot)) throw InputError("/origin/real", "the robot has a real body already");
   Robot real = robot;
   drop_cavities(real);
@@ -203,11 +241,10 @@ Robot with_real_body(const Robot& robot, const RealMaterial& material) {
   std::string record = "{\"modulus\":" + shortest_text(material.modulus) +
                        ",\"density\":" + shortest_text(material.density) +
                        ",\"relaxation_time\":" + shortest_text(material.relaxation_time);
+  if (!material.each.empty()) record.append(",\"each\":").append(text_of(material.each));
   if (!robot.materials.empty()) record.append(",\"materials\":").append(text_of(robot.materials));
   if (!robot.material_names.empty()) record.append(",\"material_names\":").append(Json(robot.material_names).dump());
   real.origin = with_origin_member(robot.origin, member, record + "}");
-  // Groups of muscles name materials that are others now; those that move alike still form one.
-  if (!voxels.all.empty()) real.actuators.clear();
   return real;
 }
 
@@ -219,7 +256,16 @@ std::optional<RealMaterial> real_material_of(const Robot& robot) {
     if (found == real->end() || !found->is_number()) refuse(std::string("/") + key, "a number is expected");
     return found->get<float>();
   };
-  const RealMaterial material{number("modulus"), number("density"), number("relaxation_time")};
+  RealMaterial material{number("modulus"), number("density"), number("relaxation_time"), {}};
+  if (const auto each = real->find("each"); each != real->end()) {
+    const auto is_amount = [](const Json& value) { return value.is_number() && value.get<float>() >= 0; };
+    if (!each->is_array() || each->size() > max_materials) refuse("/each", "an array of at most 256 is expected");
+    for (const Json& own : *each) {
+      if (!own.is_array() || own.size() != 3 || !std::ranges::all_of(own, is_amount))
+        refuse("/each", "[modulus, density, relaxation_time] is expected, all at least 0");
+      material.each.push_back({own[0].get<float>(), own[1].get<float>(), own[2].get<float>()});
+    }
+  }
   try {
     check_parameters(material);
   } catch (const ParameterError& error) {

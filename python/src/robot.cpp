@@ -112,6 +112,36 @@ SharedRobot with_actuators(const SharedRobot& self, nb::handle given) {
   return shared(std::move(robot));
 }
 
+// One number, or one per material.
+std::vector<float> amounts_from(const std::string& parameter, nb::handle value, std::size_t materials) {
+  if (!nb::hasattr(value, "__len__") || nb::isinstance<nb::str>(value))
+    return std::vector<float>(materials, static_cast<float>(number_from(parameter, value)));
+  std::vector<float> amounts;
+  for (const nb::handle each : value)
+    amounts.push_back(static_cast<float>(number_from(parameter + "[" + std::to_string(amounts.size()) + "]", each)));
+  if (amounts.size() != materials)
+    throw InputError(parameter, std::to_string(amounts.size()) + " numbers, and the robot has " +
+                                    std::to_string(materials) + " materials; give one number or one per material");
+  return amounts;
+}
+
+SharedRobot with_real_body(const SharedRobot& self, nb::handle modulus, nb::handle body_density,
+                           nb::handle relaxation_time) {
+  const std::size_t materials = materials_of(*self.robot).size();
+  const std::vector<float> moduli = amounts_from("modulus", modulus, materials),
+                           densities = amounts_from("body_density", body_density, materials),
+                           times = amounts_from("relaxation_time", relaxation_time, materials);
+  // The first stands for air.
+  const std::size_t usual = std::min<std::size_t>(1, materials - 1);
+  RealMaterial material{moduli[usual], densities[usual], times[usual], {}};
+  const auto is_list = [](nb::handle value) { return nb::hasattr(value, "__len__"); };
+  if (is_list(modulus))
+    for (std::size_t i = 0; i < materials; ++i) material.each.push_back({moduli[i], densities[i], times[i]});
+  else if (is_list(body_density) || is_list(relaxation_time))
+    throw InputError("modulus", "one number beside a list; give one per material, too");
+  return shared(mercury::with_real_body(*self.robot, material));
+}
+
 nb::tuple to_tuple(Vec3 value) { return nb::make_tuple(value.x, value.y, value.z); }
 
 nb::dict info(const SharedRobot& self) {
@@ -298,6 +328,15 @@ void bind_robot(nb::module_& module) {
            "A child of two robots that one generator made; body and muscles are mixed. Its name is NAME-xSEED by "
            "default. The same arguments give the same child on every machine. Raises InputError for two robots that "
            "cannot be mixed.")
+      .def("with_real_body", &python::with_real_body, nb::arg("modulus") = 1e5, nb::kw_only(),
+           nb::arg("body_density") = 1070, nb::arg("relaxation_time") = 0.01,
+           nb::sig("def with_real_body(self, modulus: numpy.typing.ArrayLike = 1e5, *, "
+                   "body_density: numpy.typing.ArrayLike = 1070, "
+                   "relaxation_time: numpy.typing.ArrayLike = 0.01) -> Robot"),
+           "The robot with masses and springs of a real material: Young's modulus of its muscles [Pa], density "
+           "[kg/m3] and relaxation time of the damping inside it [s]. Its materials keep the ratios of their "
+           "stiffnesses. With lists, one value per material (row 0 is air), each is made of its own. Raises InputError "
+           "for a robot that has a real body, and for a network without a closed skin.")
       .def("info", &info, nb::sig("def info(self) -> dict[str, typing.Any]"),
            "Measures: counts, the materials in use, sizes [m], whether the skin is closed, its area [m2] and volume "
            "[m3], "

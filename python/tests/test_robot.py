@@ -473,6 +473,35 @@ def test_origin_says_how_a_robot_was_made():
     assert tetrahedron().origin is None
 
 
+def test_a_real_body_is_that_of_the_generator():
+    paper = mercurysim.random_voxel(1, seed=3)[0]
+    made = mercurysim.random_voxel(1, seed=3, physics="real", modulus=2e5, body_density=900, relaxation_time=0.02)[0]
+    real = paper.with_real_body(2e5, body_density=900, relaxation_time=0.02)
+    for field in ("masses", "mass", "springs", "faces", "materials", "relaxation_time"):
+        assert np.array_equal(getattr(real, field), getattr(made, field)), field
+    assert real.info()["physics"] == "real" and paper.info()["physics"] == "paper"
+    with pytest.raises(mercurysim.InputError, match="the robot has a real body already"):
+        real.with_real_body()
+
+
+def test_materials_of_a_real_body_may_differ():
+    solid = tetrahedron()
+    springs = [(spring["a"], spring["b"], 1) for spring in solid.springs]
+    robot = mercurysim.Robot(solid.masses, springs, solid.faces, [[0, 0, 0, 0], [50, 0.1, 6, 0]])
+    light = robot.with_real_body([0, 1e5], body_density=[0, 500], relaxation_time=[0, 0.01])
+    heavy = robot.with_real_body([0, 3e5], body_density=[0, 1500], relaxation_time=[0, 0])
+    assert heavy.info()["mass"] == pytest.approx(3 * light.info()["mass"])
+    assert heavy.info()["mass"] == pytest.approx(1500 * robot.info()["volume"], rel=1e-5)
+    assert heavy.materials[1, 0] == pytest.approx(3 * light.materials[1, 0])
+    assert light.relaxation_time[1] == np.float32(0.01) and heavy.relaxation_time[1] == 0
+    with pytest.raises(mercurysim.InputError, match="^modulus: 3 numbers, and the robot has 2 materials; give one"):
+        robot.with_real_body([0, 1, 2])
+    with pytest.raises(mercurysim.InputError, match="^modulus: one number beside a list; give one per material, too"):
+        robot.with_real_body(1e5, body_density=[0, 1])
+    with pytest.raises(TypeError, match=r"^modulus\[1\]: must be a number, not str"):
+        robot.with_real_body([0, "x"])
+
+
 def test_info_measures_a_tetrahedron():
     info = tetrahedron().info()
     assert (info["masses"], info["springs"], info["faces"], info["muscles"]) == (4, 6, 4, 2)

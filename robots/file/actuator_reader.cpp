@@ -137,6 +137,11 @@ void ActuatorReader::check_springs(const Robot& robot) const {
     }
 }
 
+void ActuatorReader::refuse_springs(const std::string& why) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i)
+    if (!entries_[i].springs.empty()) throw InputError(place_of(i) + "/springs", why);
+}
+
 void ActuatorReader::give_to(Robot& robot) const {
   const std::size_t table = materials_of(robot).size();
   for (std::size_t i = 0; i < entries_.size(); ++i)

@@ -37,6 +37,8 @@ class ActuatorReader : public DocumentEvents {
   // materials of their own (add_actuator()). The rest of the robot is valid. Throws InputError if they do not fit the
   // robot.
   void give_to(Robot& robot) const;
+  // Throws InputError for an actuator that names springs.
+  void refuse_springs(const std::string& why) const;
 
  private:
   enum Field : unsigned { name, materials, springs, unknown };
@@ -63,7 +65,8 @@ class ActuatorReader : public DocumentEvents {
 // What a file may say that it requires ("requires"): the parts of a robot that a version without them would leave out,
 // and then run another robot. Files name those that they have. Parts that came before there was this list are not in
 // it.
-inline constexpr std::array<std::string_view, 4> known_requirements{"mass", "velocity", "fixed", "relaxation_time"};
+inline constexpr std::array<std::string_view, 5> known_requirements{"mass", "velocity", "fixed", "relaxation_time",
+                                                                    "modulus"};
 // Those of them that a robot has, in their order.
 std::vector<std::string_view> requirements_of(const Robot& robot);
 
@@ -112,6 +115,7 @@ class RobotReader : public DocumentEvents {
   struct MaterialEntry {
     Material material;
     std::string name;
+    float modulus = 0, density = 0;
     unsigned seen = 0;  // a bit for each key
   };
 
@@ -134,6 +138,7 @@ class RobotReader : public DocumentEvents {
   void refuse_if_empty();
   void material_key(std::string_view key_name);
   void end_material();
+  void make_real();
 
   Robot robot_;
   unsigned seen_ = 0;  // a bit for each section
@@ -147,6 +152,10 @@ class RobotReader : public DocumentEvents {
   MaterialEntry entry_;
   unsigned field_ = 0;  // the key of a material being read
   bool materials_have_names_ = false;
+  struct Substance {
+    float modulus, density;  // [Pa], [kg/m3]; 0 = the file says none
+  };
+  std::vector<Substance> substances_;  // one per material
   ActuatorReader actuators_;
   JsonWriter origin_{robot_.origin};
 };

@@ -4,14 +4,15 @@
 #include <limits>
 
 #include "mercury/error.h"
+#include "mercury/real_body.h"
 #include "robots/file/robot_document.h"
 
 namespace mercury {
 namespace {
 
-constexpr std::string_view material_keys[] = {"name",  "stiffness",       "amplitude", "frequency",
-                                              "phase", "relaxation_time", "half_wave"};
-constexpr unsigned half_wave_key = 6, unknown_key = 7;
+constexpr std::string_view material_keys[] = {
+    "name", "stiffness", "amplitude", "frequency", "phase", "relaxation_time", "modulus", "density", "half_wave"};
+constexpr unsigned stiffness_key = 1, modulus_key = 6, density_key = 7, half_wave_key = 8, unknown_key = 9;
 
 // Hostile files may have keys of any length; messages show the beginning.
 std::string shown(std::string_view text) {
@@ -143,8 +144,13 @@ void RobotReader::number(const Number& value) {
       refuse(std::isfinite(value.real) ? shown(to_text(value)) + " is not known; this program reads version 1"
                                        : "is not known; this program reads version 1");
   } else if (depth_ == 3 && section_ == materials && field_ > 0 && field_ < half_wave_key) {
-    float* const fields[] = {&entry_.material.stiffness, &entry_.material.amplitude, &entry_.material.frequency,
-                             &entry_.material.phase, &entry_.material.relaxation_time};
+    float* const fields[] = {&entry_.material.stiffness,
+                             &entry_.material.amplitude,
+                             &entry_.material.frequency,
+                             &entry_.material.phase,
+                             &entry_.material.relaxation_time,
+                             &entry_.modulus,
+                             &entry_.density};
     *fields[field_ - 1] = finite(value);
   } else if (depth_ == 3 && section_ >= masses && section_ <= velocity) {
     row_number(value);
@@ -287,7 +293,14 @@ void RobotReader::material_key(std::string_view key_name) {
 
 void RobotReader::end_material() {
   field_ = unknown_key;
-  if ((entry_.seen >> 1 & 1) == 0) refuse("stiffness is missing");
+  const auto has_key = [&](unsigned key) { return (entry_.seen >> key & 1) != 0; };
+  if (!has_key(stiffness_key) && !has_key(modulus_key)) refuse("stiffness or modulus is missing");
+  if (has_key(modulus_key) != has_key(density_key)) refuse("modulus and density come together; give both or neither");
+  if (has_key(modulus_key)) {
+    if (has_key(stiffness_key)) refuse("a stiffness follows from the modulus; give one of them");
+    if (!(entry_.modulus > 0 && entry_.density > 0)) refuse("modulus and density must be above 0");
+  }
+  substances_.push_back({entry_.modulus, entry_.density});
   robot_.materials.push_back(entry_.material);
   robot_.material_names.push_back(std::move(entry_.name));
   materials_have_names_ = materials_have_names_ || (entry_.seen & 1) != 0;
@@ -341,6 +354,36 @@ void RobotReader::end_object() {
   end_row();
 }
 
+// A table that says of what its materials are made: springs and masses follow.
+void RobotReader::make_real() {
+  const auto is_real = [](const Substance& substance) { return substance.modulus > 0; };
+  auto usual = std::ranges::find_if(substances_, is_real);
+  if (usual == substances_.end()) return;
+  if (has(mass)) throw InputError("/mass", "follows from the density of the materials; leave it out");
+  actuators_.refuse_springs("springs follow from the moduli of materials; name materials");
+  // As stiff beside each other as their moduli are, muscles with the paper's 50 N/m.
+  for (auto other = usual; other != substances_.end(); ++other)
+    if (is_real(*other) && robot_.materials[static_cast<std::size_t>(other - substances_.begin())].amplitude != 0) {
+      usual = other;
+      break;
+    }
+  RealMaterial real{usual->modulus,
+                    usual->density,
+                    robot_.materials[static_cast<std::size_t>(usual - substances_.begin())].relaxation_time,
+                    {}};
+  for (std::size_t id = 0; id < substances_.size(); ++id) {
+    Material& material = robot_.materials[id];
+    if (!is_real(substances_[id]) && material.stiffness != 0)
+      throw InputError("/materials/" + std::to_string(id),
+                       "has a stiffness beside materials with a modulus; give it one, and a density");
+    if (is_real(substances_[id])) material.stiffness = 50 * substances_[id].modulus / usual->modulus;
+    real.each.push_back({substances_[id].modulus, substances_[id].density, material.relaxation_time});
+    material.relaxation_time = 0;
+  }
+  robot_ = with_real_body(robot_, real);
+  validate(robot_);
+}
+
 Robot RobotReader::take() {
   if (!has(format)) throw InputError("not a Mercury robot: \"format\": \"mercury-robot\" is missing");
   for (const Section section : {version, masses, springs, faces})
@@ -351,6 +394,7 @@ Robot RobotReader::take() {
       spring.rest_length = rest_distance(robot_, spring.a, spring.b);
   validate(robot_);
   actuators_.give_to(robot_);
+  make_real();
   return std::move(robot_);
 }
 

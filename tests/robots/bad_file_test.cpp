@@ -178,14 +178,14 @@ TEST(BadRobotFiles, WhatAFileRequires) {
   EXPECT_EQ(refusal(R"(["mass","velocity","fixed","relaxation_time"])"), "no error");
   EXPECT_EQ(refusal(R"(["mass","brain"])"),
             "/requires/1: requires \"brain\", which this version does not know; it knows mass, velocity, fixed, "
-            "relaxation_time");
+            "relaxation_time, modulus");
   EXPECT_EQ(refusal("\"mass\""), "/requires: must be an array, not a text");
   EXPECT_EQ(refusal("[1]"), "/requires/0: must be a text, not a number");
   EXPECT_EQ(refusal("[[]]"), "/requires/0: must be a text, not an array");
   // A later version may change what a member is; the file says so before it.
   EXPECT_EQ(refusal_of({.head = R"("format":"mercury-robot","version":1,"requires":["brain"])", .masses = "{}"}),
             "/requires/0: requires \"brain\", which this version does not know; it knows mass, velocity, fixed, "
-            "relaxation_time");
+            "relaxation_time, modulus");
 }
 
 TEST(BadRobotFiles, RelaxationTimes) {
@@ -204,7 +204,7 @@ TEST(BadRobotFiles, MaterialsNamesAndOrigin) {
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[])"}),
             "/materials: an empty table; leave it out for the 254 defaults");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[1])"}), "/materials: holds a number at 0, not an object");
-  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{}])"}), "/materials/0: stiffness is missing");
+  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{}])"}), "/materials/0: stiffness or modulus is missing");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":"x"}])"}),
             "/materials/0/stiffness: must be a number, not a text");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":0,"name":3}])"}),

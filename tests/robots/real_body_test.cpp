@@ -14,6 +14,7 @@
 #include "mercury/error.h"
 #include "mercury/generator.h"
 #include "mercury/origin.h"
+#include "mercury/robot_file.h"
 #include "mercury/voxel.h"
 
 namespace mercury {
@@ -182,6 +183,89 @@ TEST(RealBody, TheOriginSaysWhatTheBodyIsOfAndChildrenAreOfTheSame) {
       EXPECT_EQ(real_material_of(generator.cross(parent, child, 2, "cross")), material);
     }
   }
+}
+
+// A bar of two halves, one above the other: pulled to the same strain, it carries the mean of their moduli.
+TEST(RealBody, MaterialsThatSayWhatTheyAreMadeOf) {
+  VoxelGrid grid(12, 4, 4, 1);
+  grid.edge = 0.05f;
+  for (int x = 0; x < 12; ++x)
+    for (int y = 0; y < 4; ++y)
+      for (int z = 2; z < 4; ++z) grid.cell(x, y, z) = 2;
+  const Robot paper = make_voxel_robot(grid);
+  RealMaterial material{.modulus = 1e5f};
+  material.each.resize(default_materials().size());
+  material.each[1] = {1e5f, 900, 0.02f};
+  material.each[2] = {5e5f, 1500, 0};
+  const Robot real = with_real_body(paper, material);
+  EXPECT_NEAR(total_mass(real), 0.5 * (900 + 1500) * 0.6 * 0.2 * 0.2, 1e-3);
+  for (const Spring& spring : real.springs) {
+    const Material& own = real.materials[spring.material];
+    EXPECT_EQ(own.relaxation_time, own.phase == default_materials()[1].phase ? 0.02f : 0.0f);
+  }
+  EXPECT_EQ(real_material_of(real)->each, material.each);
+  EXPECT_EQ(physics_of(real), Physics::real);
+  // One material alone.
+  for (const auto& [id, modulus] : {std::pair{MaterialId{1}, 1e5}, {MaterialId{2}, 5e5}})
+    EXPECT_NEAR(pull(with_real_body(bar(12, 4, 0.05f, id), material), 4, 0.05).modulus / modulus, 1, 0.03);
+}
+
+// A file whose table says of what the materials are made is the body that with_real_body() makes of it.
+TEST(RealBody, AFileMayGiveModuli) {
+  VoxelGrid grid(4, 2, 1, 1);
+  grid.cell(3, 0, 0) = grid.cell(3, 1, 0) = 2;
+  Robot paper = make_voxel_robot(grid);
+  for (Spring& spring : paper.springs)  // those of both have a third material among the 254
+    if (spring.material > 2) spring.material = 1;
+  paper.materials = {{}, {50, 0.2f, 6, 1}, {100}};
+  paper.material_names = {"air", "muscle", "fin"};
+  paper.actuators = {{"body", {1}}};
+  std::string text = serialize_robot(paper, RobotFormat::json);
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from << text.substr(0, 800);
+    text.replace(at, from.size(), to);
+  };
+  replace("\"stiffness\":50", "\"modulus\":2e5,\"density\":1000,\"relaxation_time\":0.02");
+  replace("\"stiffness\":100", "\"modulus\":4e5,\"density\":1200,\"relaxation_time\":0.01");
+  Robot found = parse_robot(text, RobotFormat::json);
+  const Robot real = with_real_body(paper, {2e5f, 1000, 0.02f, {{}, {2e5f, 1000, 0.02f}, {4e5f, 1200, 0.01f}}});
+  EXPECT_EQ(found, real);
+  ASSERT_EQ(real.actuators.size(), 1u);
+  // All materials that muscles became, and no other.
+  for (std::size_t id = 1; id < real.materials.size(); ++id) {
+    const auto& own = real.actuators[0].materials;
+    EXPECT_EQ(std::ranges::find(own, id) != own.end(), real.materials[id].amplitude != 0) << id;
+  }
+  EXPECT_EQ(parse_robot(serialize_robot(found, RobotFormat::json), RobotFormat::json), found);
+}
+
+TEST(RealBody, AFileOfModuliThatBreaksARuleIsRefused) {
+  const std::string text = serialize_robot(make_voxel_robot(VoxelGrid(2, 1, 1, 1)), RobotFormat::json);
+  const auto refusal = [&](const std::string& materials, const std::string& rest = "") -> std::string {
+    std::string changed = text;
+    changed.insert(changed.find("\"masses\""), rest + "\"materials\":[{\"stiffness\":0}," + materials + "],");
+    try {
+      parse_robot(changed, RobotFormat::json);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(refusal(R"({"modulus":1e5,"density":1000})"), "no error");
+  EXPECT_EQ(refusal(R"({"modulus":1e5})"), "/materials/1: modulus and density come together; give both or neither");
+  EXPECT_EQ(refusal(R"({"stiffness":5,"density":1000})"),
+            "/materials/1: modulus and density come together; give both or neither");
+  EXPECT_EQ(refusal(R"({"stiffness":5,"modulus":1e5,"density":1000})"),
+            "/materials/1: a stiffness follows from the modulus; give one of them");
+  EXPECT_EQ(refusal(R"({"modulus":0,"density":1000})"), "/materials/1: modulus and density must be above 0");
+  EXPECT_EQ(refusal(R"({"modulus":1e5,"density":-1})"), "/materials/1: modulus and density must be above 0");
+  EXPECT_EQ(refusal(R"({"modulus":1e5,"density":1000},{"stiffness":5})"),
+            "/materials/2: has a stiffness beside materials with a modulus; give it one, and a density");
+  EXPECT_EQ(refusal(R"({"modulus":1e5,"density":1000})", R"("mass":[1,1,1,1,1,1,1,1,1,1,1,1],)"),
+            "/mass: follows from the density of the materials; leave it out");
+  EXPECT_EQ(refusal(R"({"modulus":1e5,"density":1000})", R"("actuators":[{"name":"a","springs":[0]}],)"),
+            "/actuators/0/springs: springs follow from the moduli of materials; name materials");
 }
 
 TEST(RealBody, ErrorsSayWhatIsMissing) {

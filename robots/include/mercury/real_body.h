@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "mercury/generator.h"
 #include "mercury/parameters.h"
@@ -21,6 +22,13 @@ struct RealMaterial {
   float modulus = 1e5f;           // Young's, of the robot's muscles [Pa]
   float density = 1070;           // [kg/m3]
   float relaxation_time = 0.01f;  // tau of the damping inside the body (Material::relaxation_time) [s]
+  // What each material of the robot's table is made of, by id: [Pa], [kg/m3], [s], all 0 for air. If it is empty, their
+  // stiffnesses say how much stiffer than muscles they are.
+  struct Own {
+    float modulus = 0, density = 0, relaxation_time = 0;
+    friend bool operator==(const Own&, const Own&) = default;
+  };
+  std::vector<Own> each;
   friend bool operator==(const RealMaterial&, const RealMaterial&) = default;
 
   static constexpr std::tuple parameters{
@@ -32,10 +40,10 @@ struct RealMaterial {
                 "Relaxation time of the damping inside the body")};
 };
 
-// The robot with masses and springs of a real material. The robot's muscles (the median of their stiffnesses, or 50 N/m
-// without muscles) get the modulus, and a material that is r times as stiff gets r times the modulus; amplitudes,
-// frequencies and phases stay. Points and faces stay where they are, but for the faces of sealed
-// cavities, which no water reaches.
+// The robot with masses and springs of a real material, or of several if `each` says so. Otherwise the robot's muscles
+// (the median of their stiffnesses, or 50 N/m without muscles) get the modulus, and a material that is r times as stiff
+// gets r times the modulus; amplitudes, frequencies and phases stay, and so do points, faces and actuators, but for the
+// faces of sealed cavities, which no water reaches.
 //
 // A robot of voxels (every spring joins two corners of a cube with all of its 28 springs): each voxel of edge h adds to
 // its springs
@@ -51,8 +59,9 @@ struct RealMaterial {
 // Any other robot: all springs times one factor, so that an isotropic network of muscles has the modulus on average
 // (sum of k L0^2 = 6 E V, with the volume V within the skin), and masses in proportion to the L0^2 of their springs.
 //
-// The origin says "real": {"modulus": ..., "density": ..., "relaxation_time": ...}. Throws InputError("/faces", ...)
-// for a robot of the second kind without a skin around a volume, and for one that has a real body already.
+// The origin says "real": {"modulus": ..., "density": ..., "relaxation_time": ..., "each": [[...], ...]}. Throws
+// InputError("/faces", ...) for a robot of the second kind without a skin around a volume, and for one that has a real
+// body already.
 Robot with_real_body(const Robot& robot, const RealMaterial& material);
 
 // Parameters that all generators have (generator.h): physics (paper or real), modulus, body_density, relaxation_time.
