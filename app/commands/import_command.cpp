@@ -133,7 +133,7 @@ std::optional<ImportedSettings> common_settings(const std::vector<ImportedFile>&
     if (!file.import.robots.empty()) all.push_back(file.import.settings);
   if (all.size() < 2) return std::nullopt;
   ImportedSettings common = all.front();
-  common.damping = common.drag_coefficient = common.lift_coefficient = 0;
+  common.damping = common.drag_coefficient = 0;
   common.seconds.reset();
   common.settle.reset();
   for (const ImportedSettings& settings : all) {
@@ -144,7 +144,6 @@ std::optional<ImportedSettings> common_settings(const std::vector<ImportedFile>&
     common.dt = std::min(common.dt, settings.dt);
     common.damping += share * settings.damping;
     common.drag_coefficient += share * settings.drag_coefficient;
-    common.lift_coefficient += share * settings.lift_coefficient;
   }
   return common;
 }

@@ -6,3 +6,4 @@ import water  # noqa: F401  isort: skip
 import ground  # noqa: F401  isort: skip
 import reference  # noqa: F401  isort: skip
 import experiments  # noqa: F401  isort: skip
+import programs  # noqa: F401  isort: skip

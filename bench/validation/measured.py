@@ -39,6 +39,14 @@ CATSHARK_SOURCE = (
     "github.com/fberio/scanicula_steady_swimming (MIT)"
 )
 
+# How far sample robots of evosoro get in its own simulator in 5 s [m], along the ground on land: with 98, 99, 100, 101 and 102 %
+# of the elastic moduli of their files. Why Mercury is known to differ by more than a tenth, or nothing.
+EVOSORO: dict[str, tuple[list[float], str]] = {}
+EVOSORO_SOURCE = (
+    "evosoro at commit b95ec95, `_voxcad_land_water`, built with its Makefile; S. Kriegman, F. Corucci and others, "
+    "github.com/skriegman/evosoro (MIT)"
+)
+
 # Where the six markers are before the release [m]: x along the beam from its end, z up. The last three are on the clamp.
 MARKERS = np.array(
     [[0, 0.015, 0.036], [0, -0.006, 0.024], [0, 0.036, 0.006], [-0.094, -0.01, -0.001], [-0.094, 0.04, 0.0275], [-0.094, 0.04, 0]]

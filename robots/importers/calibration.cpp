@@ -37,8 +37,8 @@ void require_range(const Calibration& calibration, double stiffness) {
   for (const double value : {calibration.length_scale, calibration.time_scale, stiffness, calibration.time_step})
     require(fits(value) && value > smallest, "elastic modulus, density and edge",
             "give a robot whose numbers are too large or too small to simulate");
-  for (const double value : {calibration.gravity, calibration.damping, calibration.contact_stiffness,
-                             calibration.drag_coefficient, calibration.lift_coefficient})
+  for (const double value :
+       {calibration.gravity, calibration.damping, calibration.contact_stiffness, calibration.drag_coefficient})
     require(fits(value), "gravity, damping and drag", "give numbers that are too large to simulate");
 }
 
@@ -91,20 +91,10 @@ Calibration calibrate(const BeamModel& model, std::optional<double> time_scale) 
   // A voxel of 0.1 m in a thick body weighs 1 kg, as water of 1000 kg/m3. In thinner ones it has more masses.
   const double n = model.thickness, masses_per_voxel = n > 0 ? (n + 1) * (n + 1) / (n * n) : 1;
   found.drag_coefficient = model.aggregate_drag / model.density * masses_per_voxel;
-  found.lift_coefficient = found.drag_coefficient / 5;
   found.largest_time_step = 2 / highest_frequency(stiffness) * scale;
   found.time_step = rounded_down(std::fmin(step_at(scale), longest_time_step));
   require_range(found, stiffness / squared_scale);
   return found;
-}
-
-double slowest_drag_speed(double stiffness, double drag_coefficient) {
-  constexpr double water = 1000;  // [kg/m3]
-  const double largest_force = 16 * stiffness * std::sqrt(3.0) * calibrated_edge;
-  const double unit = std::exp2(std::ceil(std::log2(largest_force)) - 22);
-  const double area = calibrated_edge * calibrated_edge / 2;
-  // On a corner: density area C_D speed^2 / 2 / 3.
-  return std::sqrt(unit / 2 * 6 / (water * area * drag_coefficient));
 }
 
 }  // namespace mercury

@@ -38,8 +38,7 @@ struct Calibration {
   double gravity = 0;                // downwards [m/s2]
   double damping = 0;                // Configuration::damping [1/s]
   double contact_stiffness = 0;      // Land::contact_stiffness times the stiffness scale [N/m]
-  double drag_coefficient = 0;       // Ocean's C_D in water of 1000 kg/m3, exact for a face across the flow [1]
-  double lift_coefficient = 0;       // Ocean's C_L, closest over all directions of a face [1]
+  double drag_coefficient = 0;       // C_N of resistive water of 1000 kg/m3 [1]
   double largest_time_step = 0;      // below which the force solver is stable [s]
   double time_step = 0;              // at most a third of it, and at most 1e-3: 1, 2 or 5 times a power of ten [s]
 };
@@ -57,10 +56,5 @@ double gravity_time_scale(double edge);
 // The stiffness of a slice of a bar of springs, per stiffness of a spring and per mass of a layer [1]: 27/10 without a
 // surface, 22/13 for one voxel. `thickness` = voxels across, 0 = without a surface.
 double slice_stiffness(int thickness);
-
-// A side of a voxel that moves more slowly than this feels no drag in Mercury's `ocean` [m/s]. Forces on a mass are
-// summed in whole units, of which no spring may reach 2^22 when it is stretched to 16 times its length, and the drag of
-// a triangle on its corner is below half a unit. `stiffness` of the stiffest spring [N/m].
-double slowest_drag_speed(double stiffness, double drag_coefficient);
 
 }  // namespace mercury

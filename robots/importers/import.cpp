@@ -153,9 +153,9 @@ std::string to_toml(const ImportedSettings& settings, const ImportReport& report
       text += fmt::format("contact-stiffness = {:.9g}\n", settings.contact_stiffness);
     else
       text += "no-self-collision = true\n";
-  } else if (settings.environment == "ocean") {
-    text += fmt::format("drag-coefficient = {:.9g}\nlift-coefficient = {:.9g}\n", settings.drag_coefficient,
-                        settings.lift_coefficient);
+  } else if (settings.environment == "resistive") {
+    text += fmt::format("normal-coefficient = {:.9g}\ntangential-coefficient = 0\nadded-mass-coefficient = 0\n",
+                        settings.drag_coefficient);
   } else {
     text += "point-drag = 0\n";
   }

@@ -54,7 +54,7 @@ class VxaImport {
       throw InputError("/VXA/VXC/Structure", error.what());
     }
     import.settings.dt = stable_time_step(import.robots, import.settings.stiffness_scale);
-    if (import.settings.environment == "ocean") set_drag(import);
+    if (import.settings.environment == "resistive") set_drag(import);
     import.report.elements = document_.elements(known_vxa_element);
     return import;
   }
@@ -79,7 +79,7 @@ class VxaImport {
     ImportedSettings settings;
     settings.self_collision = model_.self_collision;
     settings.gravity = model_.gravity_enabled ? std::copysign(scaling_->calibration.gravity, model_.gravity) : 0;
-    settings.environment = model_.in_fluid ? "ocean" : model_.floor_enabled ? "land" : "ocean-simple";
+    settings.environment = model_.in_fluid ? "resistive" : model_.floor_enabled ? "land" : "ocean-simple";
     if (model_.in_fluid) settings.gravity = 0;
     if (settings.environment == "land") {
       settings.stiffness_scale = land_stiffness_scale;
@@ -102,13 +102,6 @@ class VxaImport {
     model.thickness = 0;  // one mass per voxel
     const Calibration bulk = calibrate(model, scaling_->calibration.time_scale);
     import.settings.drag_coefficient = bulk.drag_coefficient * masses / static_cast<double>(voxels_);
-    import.settings.lift_coefficient = bulk.lift_coefficient * masses / static_cast<double>(voxels_);
-    const double slowest = slowest_drag_speed(scaling_->stiffness(stiffest_), import.settings.drag_coefficient);
-    if (import.settings.drag_coefficient > 0 && slowest > 0.01)
-      import.report.notes.push_back(
-          fmt::format("water: sides of voxels that move more slowly than {:.2g} m/s here feel no drag, because the "
-                      "springs are so stiff",
-                      slowest));
   }
 
   // The substance of a voxel, apart from its size.

@@ -114,11 +114,11 @@ class VxaReader {
     }
     model_.in_fluid = switch_in(environment, "FluidEnvironment").value_or(false);
     mark(environment, "FluidEnvironment", mapped,
-         model_.in_fluid ? "environment ocean, without gravity as in evosoro" : "no water");
+         model_.in_fluid ? "environment resistive, without gravity as in evosoro" : "no water");
     model_.drag_coefficient = number_in(environment, "AggregateDragCoefficient").value_or(0);
     if (model_.in_fluid)
       mark(environment, "AggregateDragCoefficient", approximated,
-           "drag and lift coefficient of the ocean; evosoro's drag acts along the normals of leading faces alone");
+           "C_N of resistive water, whose drag acts on leading and trailing faces; evosoro's on leading ones alone");
     else
       mark(environment, "AggregateDragCoefficient", ignored, "the file is not in water");
     read_temperature(environment.child("Thermal"));

@@ -26,14 +26,14 @@ void validate(const ImportOptions& options);
 // What the file says about the world, in Mercury's units and names.
 struct ImportedSettings {
   std::string environment = "land";
-  double gravity = 0;                                 // along z, negative = down [m/s2]
-  double stiffness_scale = 1;                         // of the environment, for which the robots' stiffnesses are made
-  double friction = 0;                                // of the floor; land only
-  bool self_collision = true;                         // land only
-  double contact_stiffness = 100;                     // land only, times the stiffness scale [N/m]
-  double drag_coefficient = 0, lift_coefficient = 0;  // ocean only
-  double dt = 1e-3;                                   // time step that is stable for the stiffest robot [s]
-  double damping = 0;                                 // [1/s]
+  double gravity = 0;                     // along z, negative = down [m/s2]
+  double stiffness_scale = 1;             // of the environment, for which the robots' stiffnesses are made
+  double friction = 0;                    // of the floor; land only
+  bool self_collision = true;             // land only
+  double contact_stiffness = 100;         // land only, times the stiffness scale [N/m]
+  double drag_coefficient = 0;            // C_N of resistive water; resistive only
+  double dt = 1e-3;                       // time step that is stable for the stiffest robot [s]
+  double damping = 0;                     // [1/s]
   std::optional<double> seconds, settle;  // how long the file's program simulates, and what it waits before [s]
   friend bool operator==(const ImportedSettings&, const ImportedSettings&) = default;
 };

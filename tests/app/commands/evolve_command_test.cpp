@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -59,6 +60,48 @@ class EvolveCommand : public FolderTest {
     while (generations_in(run) < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   }
 };
+
+// By column name, one map per line.
+std::vector<std::map<std::string, std::string>> rows_of(const std::string& csv) {
+  std::vector<std::map<std::string, std::string>> rows;
+  std::vector<std::string> names;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    }
+    if (names.empty()) {
+      names = cells;
+      continue;
+    }
+    auto& row = rows.emplace_back();
+    for (std::size_t i = 0; i < cells.size(); ++i) row[names.at(i)] = cells[i];
+  }
+  return rows;
+}
+
+// A run of version 0.2 after two generations goes on to the lineage that version 0.2 came to in four.
+TEST_F(EvolveCommand, RunsOfVersion02GoOn) {
+  const std::filesystem::path data = MERCURY_TEST_DATA;
+  std::filesystem::copy(data / "run-of-version-0.2", path("old"), std::filesystem::copy_options::recursive);
+  std::filesystem::copy(data / "run-of-version-0.2-lineage.csv", path("expected.csv"));
+  const Outcome outcome = evolve("old", {"--resume", "--generations", "4", "--quiet", "--device", "cpu"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const auto expected = rows_of(read("expected.csv")), found = rows_of(lineage("old"));
+  ASSERT_EQ(expected.size(), 20u);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const auto& [column, value] : expected[i]) {
+      ASSERT_TRUE(found[i].contains(column)) << column;
+      EXPECT_EQ(found[i].at(column), value) << column << " of " << i;
+    }
+}
 
 // All champions are checked, beside the search; those whose results hold are in best/, and no others.
 TEST_F(EvolveCommand, OnlyConfirmedChampionsAreInBest) {

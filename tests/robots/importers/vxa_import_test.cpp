@@ -198,7 +198,7 @@ TEST(Vxa, WorldsBecomeEnvironments) {
   VxaParts water;
   water.environment = "<FluidEnvironment>1</FluidEnvironment><AggregateDragCoefficient>750</AggregateDragCoefficient>";
   const Import swimmer = import_of(water);
-  EXPECT_EQ(swimmer.settings.environment, "ocean");
+  EXPECT_EQ(swimmer.settings.environment, "resistive");
   EXPECT_EQ(swimmer.settings.gravity, 0);
   // 750 kg/m3 of drag at 1000 kg/m3 is 0.75 at the density of the robot: 16 masses of 1 kg in three voxels, where the
   // water weighs 1 kg per voxel.
