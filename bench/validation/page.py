@@ -34,8 +34,6 @@ TAIL = """
 
 - A tendon-driven fish at eight motor speeds, 0.023 to 0.223 m/s (github.com/srl-ethz/fishsim, MIT): its drag coefficients
   and the way of its tendons have to be fitted first.
-- Walkers and swimmers of evosoro in its own simulator, and lattices in Newton. The calculation in double precision above is
-  independent of Mercury, but has its equations.
 - The shape of a swimming animal along its body: catsharks are compared by their Strouhal number alone.
 """
 

@@ -33,8 +33,8 @@ def mercury(*arguments: Any) -> str:
     "median of 5 trials with a jitter of a thousandth of a spring's length",
     source=EVOSORO_SOURCE,
     kind="real",
-    remark="The files of `tests/data/evosoro`, imported with their worlds. Expected is the median of five runs of its simulator, with "
-    "elastic moduli of 98 to 102 % of the file's; the second number of a robot's name is how far these are apart. Beams of evosoro "
+    remark="The files of `tests/data/evosoro`, imported with their worlds. Expected is the median of three runs of its simulator, with "
+    "elastic moduli of 99 to 101 % of the file's; the second number of a robot's name is how far these are apart. Beams of evosoro "
     "resist bending by stiffnesses of their own, and are damped by themselves (BondDampingZ), which the import leaves out.",
 )
 def evosoro(short: bool) -> Result:
