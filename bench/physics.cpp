@@ -272,7 +272,7 @@ double frequency_in_water(Physics physics) {
 
 // The largest share of a sample robot that is inside out within 20 s.
 double inside_out(Physics physics, const char* name) {
-  const Robot robot = body_in(physics, load_robot(sample_or_path(fmt::format("sample:{}", name))));
+  const Robot robot = body_in(physics, load_robot(sample_or_path(fmt::format("sample:paper/{}", name))));
   Simulation simulation(settings(physics), {&robot, 1});
   simulation.measure_folding(true);
   float most = 0;
@@ -336,7 +336,7 @@ std::vector<Row> rows() {
     all.push_back({fmt::format("swim of the sample {}: body lengths per second, Strouhal number", name),
                    "Strouhal 0.2 to 0.4 (animals)", std::string_view(name) == "eel" ? "1.8 to 2.9" : "2.9 to 4.4",
                    [=](Physics physics) {
-                     const Robot robot = load_robot(sample_or_path(fmt::format("sample:{}", name)));
+                     const Robot robot = load_robot(sample_or_path(fmt::format("sample:paper/{}", name)));
                      std::string text;
                      for (const float modulus : {1e4f, 1e5f, 1e6f}) {
                        Configuration configuration = settings(physics);
@@ -354,7 +354,7 @@ std::vector<Row> rows() {
   for (const int n : {1, 2, 3})
     all.push_back({fmt::format("swim of the sample eel, voxels divided by {}: body lengths per second", n), "converges",
                    std::array{"", "0.060", "0.090", "0.0004"}[static_cast<std::size_t>(n)], [=](Physics physics) {
-                     const Robot robot = refined(load_robot(sample_or_path("sample:eel")), n);
+                     const Robot robot = refined(load_robot(sample_or_path("sample:paper/eel")), n);
                      Configuration configuration = settings(physics);
                      configuration.dt /= n;
                      return fmt::format(

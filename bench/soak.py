@@ -4,7 +4,7 @@
 
     bench/soak.py --minutes 60 -o memory.csv -- build/bin/mercury run --random voxel:64 --seconds 1e6 --record /tmp/a.h5
     MERCURY_WINDOW_PRESSES=100000000 bench/soak.py --minutes 60 -o memory.csv -- \\
-      python3 tests/app/window/window_random_test.py build/bin/mercury robots/library
+      python3 tests/app/window/window_random_test.py build/bin/mercury robots/library/paper
 
 Adds up the resident memory of all processes named `mercury` below the command (or of the command, if there is none) and, where
 nvidia-smi is, what they use of GPUs. After the time it sends SIGINT. Prints the median of each sixth of the time in MB, and the

@@ -381,7 +381,7 @@ def test_files_give_the_robot_again(tmp_path, extension):
 
 def test_samples_have_names():
     assert mercurysim.load("sample:eel").name == "eel"
-    with pytest.raises(InputError, match="^sample:ell: there is no such sample; give beetle, .*did you mean eel"):
+    with pytest.raises(InputError, match="^sample:ell: there is no such sample; give .*paper/beetle, .*did you mean eel"):
         mercurysim.load("sample:ell")
 
 

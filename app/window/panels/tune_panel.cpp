@@ -36,8 +36,8 @@ std::string name_of_material(const Robot& robot, int id) {
 
 bool is_dry(const Environment& environment) { return has_ground(environment) && !has_water(environment); }
 
-// On land every spring is 200 times as stiff. Of the 12 swimmers in robots/library, 7 explode there within 3 ms with
-// the force solver at 1 ms, 7 at 0.5 ms, 4 at 0.2 ms and none at 0.1 ms; with XPBD none does at 0.5 to 5 ms (10 s
+// On land every spring is 200 times as stiff. Of the 12 swimmers in robots/library/paper, 7 explode there within 3 ms
+// with the force solver at 1 ms, 7 at 0.5 ms, 4 at 0.2 ms and none at 0.1 ms; with XPBD none does at 0.5 to 5 ms (10 s
 // each).
 constexpr double safe_dt = 1e-4;  // of the force solver [s]
 

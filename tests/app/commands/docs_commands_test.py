@@ -116,8 +116,8 @@ def is_for_one_host(text):
 
 def make_folder(folder, program, texts):
     shutil.copytree(PROJECT / "robots/library", folder / "robots/library",
-                    ignore=lambda _, names: [name for name in names if not name.endswith((".json", ".cbor"))])
-    for robot in (folder / "robots/library").iterdir():
+                    ignore=lambda _, names: [name for name in names if name != "paper" and not name.endswith((".json", ".cbor"))])
+    for robot in (folder / "robots/library/paper").iterdir():
         shutil.copy(robot, folder)
     run = dict(check=True, cwd=folder, capture_output=True)
     subprocess.run([program, "new", "voxel", "--count", "3", "--seed", "7", "-o", "my-robots"], **run)

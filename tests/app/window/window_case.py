@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The base of tests that start the real window and drive it with mouse and keys.
 
-A test file calls main() and is run as FILE PROGRAM SAMPLE-FOLDER [TEST...]: the program `mercury`, robots/library, and
+A test file calls main() and is run as FILE PROGRAM SAMPLE-FOLDER [TEST...]: the program `mercury`, robots/library/paper, and
 the names of cases. It exits with SKIPPED if the machine lacks a tool that the tests need.
 """
 import importlib.util

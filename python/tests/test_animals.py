@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The sample animals: the claims of docs/library.md in short form."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+import mercurysim
+
+ROOT = Path(__file__).resolve().parents[2]
+LIBRARY = ROOT / "robots" / "library"
+sys.path[:0] = [str(LIBRARY / "animals"), str(ROOT / "bench")]
+
+from animals import ANIMALS  # noqa: E402
+from measure_animals import gait  # noqa: E402
+
+FILES = {file.stem: file for file in sorted(LIBRARY.glob("*.json"))}
+
+
+def test_every_animal_has_a_file():
+    assert sorted(FILES) == sorted(ANIMALS)
+
+
+@pytest.mark.parametrize("name", ANIMALS)
+def test_the_file_is_what_the_script_makes(name):
+    """Within the last digit that is written."""
+    made, written = ANIMALS[name](), json.loads(FILES[name].read_text())
+    assert made.keys() == written.keys()
+    for key in ("name", "origin", "springs", "faces"):
+        assert made[key] == written[key]
+    assert made["mass"] == pytest.approx(written["mass"], rel=1e-3)
+    for point, same in zip(made["masses"], written["masses"], strict=True):
+        assert point == pytest.approx(same, abs=2e-5)
+    for material, same in zip(made["materials"], written["materials"], strict=True):
+        assert material.keys() == same.keys()
+        for key, value in material.items():
+            assert value == (same[key] if isinstance(value, str | bool) else pytest.approx(same[key], rel=2e-3, abs=1e-6))
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_an_animal_is_one_body_with_a_closed_skin(name):
+    robot = mercurysim.load(FILES[name])
+    info = robot.info()
+    assert info["closed"] and info["components"] == 1 and info["euler_characteristic"] == 2
+    assert info["volume"] > 0 and info["loose_masses"] == 0
+    assert info["density"] == pytest.approx(robot.origin["real"]["density"], rel=0.02)
+    assert info["modulus"] == pytest.approx(robot.origin["real"]["modulus"], rel=0.02)
+    assert info["largest_dt"] > 1.2e-3  # the default step of 1 ms is safe
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_check_confirms_an_animal(name, mercury):
+    report = json.loads(mercury("check", FILES[name], "--seconds", 12, "--trials", 3, "--device", "cpu", "--json", "--quiet"))
+    assert [robot["verdict"] for robot in report["robots"]] == ["confirmed"]
+
+
+@pytest.mark.parametrize("name", {"eel", "fish"} & FILES.keys())
+def test_eel_and_fish_swim_as_animals_do(name):
+    """The Strouhal number of swimming animals, and 0.6 body lengths per second or more."""
+    swim = gait(mercurysim.load(FILES[name]), 12)
+    assert 0.2 <= swim.strouhal <= 0.4
+    assert swim.speed / swim.length >= 0.6
