@@ -53,11 +53,11 @@ std::size_t block_length(std::size_t masses, std::size_t largest, std::int64_t e
   return (frames - 1) / blocks + 1;  // equal blocks, so that the last one has little padding
 }
 
-Handle create_file(const std::filesystem::path& path, bool survives_kill) {
+Handle create_file(const std::filesystem::path& path, bool survives_kill, WriteFailure& failure) {
   const Handle access(H5Pcreate(H5P_FILE_ACCESS));
   // This version of the format has checksums for metadata, so that the reader detects damage.
   checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_LATEST));
-  checked(H5Pset_file_locking(access, true, true));  // some network drives lack locks
+  set_recording_file(access, failure);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE));
   if (survives_kill) {
     // A program that is killed while it writes leaves whole pages. So no piece of metadata may lie on two pages: half
@@ -66,16 +66,6 @@ Handle create_file(const std::filesystem::path& path, bool survives_kill) {
     checked(H5Pset_file_space_page_size(creation, page_bytes));
   }
   return Handle(H5Fcreate(path.c_str(), H5F_ACC_EXCL, creation, access));
-}
-
-// When HDF5 closes a file, it writes what is left, and marks the file as complete even if that fails. A file that
-// cannot be written shall stay as it is, or be gone at once, so HDF5 goes on with another one.
-void write_to_nowhere(hid_t file) {
-  void* handle = nullptr;
-  const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0 && nowhere >= 0)
-    dup3(nowhere, *static_cast<int*>(handle), O_CLOEXEC);
-  if (nowhere >= 0) close(nowhere);
 }
 
 // Takes room for the bytes [begin, end) of a file, which stays as long as it is. Disks that cannot do that promise
@@ -111,16 +101,22 @@ template <class Work>
 void TrajectoryWriter::guarded(const Work& work) {
   try {
     work();
+    require_written();
   } catch (const Error& error) {
-    give_up(text_of(error));
+    give_up(failure_->number != 0 ? reason_of(failure_->number) : text_of(error));
   }
+}
+
+void TrajectoryWriter::require_written() const {
+  if (failure_->number != 0) throw Error("a write failed", failure_->number);
 }
 
 // The file has the frames of the last flush, as after a kill, or all blocks if there is room left to complete it.
 void TrajectoryWriter::give_up(const std::string& reason) {
   failed_ = true;
-  const bool complete = reserved_ > 0 && is_completed();
-  if (!complete) write_to_nowhere(file_);
+  const bool complete = reserved_ > 0 && failure_->number == 0 && is_completed();
+  if (!complete && failure_->number == 0) failure_->number = EIO;  // nothing more is written
+  for (Handle* handle : {&particles_, &connectivity_, &parameters_, &file_}) Handle(std::move(*handle));
   if (flushed_ == 0 || !(complete || survives_kill())) throw write_failure(path_, reason, "nothing was kept");
   unfinished_.keep();
   throw write_failure(
@@ -132,6 +128,7 @@ bool TrajectoryWriter::is_completed() {
   try {
     announce(written_);
     close();
+    require_written();
     flushed_ = written_;
     return true;
   } catch (const Error&) {
@@ -142,8 +139,8 @@ bool TrajectoryWriter::is_completed() {
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const TrajectoryHeader& header,
                                    std::span<const Robot* const> robots, std::span<const Material> materials,
                                    const char* option)
-    : path_(path), unfinished_(path), deflate_(header.deflate), flush_period_(header.flush_period),
-      clock_(header.clock), last_commit_(clock_()), last_flush_(last_commit_) {
+    : path_(path), unfinished_(path), failure_(std::make_unique<WriteFailure>()), deflate_(header.deflate),
+      flush_period_(header.flush_period), clock_(header.clock), last_commit_(clock_()), last_flush_(last_commit_) {
   if (!is_trajectory_name(path))
     throw InputError(option, "\"" + path.string() + "\" is not accepted; give a name that ends in .h5, .hdf5 or .h5md");
   std::error_code ignored;
@@ -160,10 +157,13 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
   groups_ = group_names(names);
   prepare();
   try {
-    file_ = create_file(unfinished_.path(), survives_kill());
+    file_ = create_file(unfinished_.path(), survives_kill(), *failure_);
+    require_written();
   } catch (const Error& error) {
-    if (is_fault_of_machine(error.number())) throw write_failure(path_, text_of(error), "nothing was kept");
-    throw InputError(option, path.string() + " cannot be written: " + text_of(error));
+    const int number = failure_->number != 0 ? failure_->number : error.number();
+    const std::string reason = number != 0 ? reason_of(number) : error.what();
+    if (is_fault_of_machine(number)) throw write_failure(path_, reason, "nothing was kept");
+    throw InputError(option, path.string() + " cannot be written: " + reason);
   }
   frames_per_block_ = block_length(std::max<std::size_t>(1, offsets_.back()), largest, header.expected_frames);
   positions_.resize(frames_per_block_ * offsets_.back());

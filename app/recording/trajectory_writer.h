@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -13,6 +14,7 @@
 
 #include "app/base/interrupt.h"
 #include "app/recording/hdf5_handle.h"
+#include "app/recording/recording_file.h"
 #include "mercury/clock.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
@@ -115,9 +117,11 @@ class TrajectoryWriter {
   void close();
   bool is_completed();
   [[noreturn]] void give_up(const std::string& reason);
+  void require_written() const;  // throws Error after a write that failed
 
   std::filesystem::path path_;
   UnfinishedFile unfinished_;
+  std::unique_ptr<WriteFailure> failure_;
   hdf5::Handle file_, particles_, connectivity_, parameters_;
   std::vector<std::string> groups_;           // names in /particles
   std::vector<std::size_t> offsets_;          // of each robot's first mass in a frame, then the number of masses
