@@ -36,10 +36,11 @@ void Companion::begin(const Robots& wanted) {
   batch_.branch_measures(first_);
 }
 
-void Companion::copy(const Robots& wanted) {
+bool Companion::copy(const Robots& wanted) {
   require_comparable(wanted.configuration, first_.configuration());
-  batch_.copy(first_, wanted.robots, wanted.configuration);
+  const bool changed = batch_.copy(first_, wanted.robots, wanted.configuration);
   batch_.perturb(wanted.perturbations);
+  return changed;
 }
 
 void Companion::follow(const Robots& wanted) {
@@ -59,7 +60,10 @@ void Companion::advance() {
 }
 
 void Companion::show(const Robots& wanted, const std::shared_ptr<const BatchState>& state, bool jumps) {
-  if (first_.steps() <= begin_step_) return copy(wanted);
+  if (first_.steps() <= begin_step_) {
+    if (copy(wanted)) batch_.branch_measures(first_);
+    return;
+  }
   follow(wanted);
   if (state)
     batch_.restore(*state);

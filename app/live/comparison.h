@@ -56,7 +56,7 @@ class Companion {
   LiveBatch& batch() { return batch_; }
 
  private:
-  void copy(const Robots& wanted);
+  bool copy(const Robots& wanted);  // returns whether the list of robots changed
 
   const LiveBatch& first_;
   LiveBatch batch_;

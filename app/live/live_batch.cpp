@@ -75,9 +75,9 @@ void LiveBatch::perturb(std::vector<LivePerturbation> perturbations) {
   simulation_.set_perturbations(population_.perturbations_of(perturbations_));
 }
 
-void LiveBatch::copy(const LiveBatch& first, const std::vector<LiveRobot>& wanted, const Configuration& configuration) {
+bool LiveBatch::copy(const LiveBatch& first, const std::vector<LiveRobot>& wanted, const Configuration& configuration) {
   configure(first.configuration());
-  follow(wanted);
+  const bool changed = follow(wanted);
   population_.forget_departed();
   surroundings_ = first.surroundings_;
   simulation_.reset();
@@ -95,6 +95,7 @@ void LiveBatch::copy(const LiveBatch& first, const std::vector<LiveRobot>& wante
     population_.settle();
   sample();
   ++jumps_;
+  return changed;
 }
 
 void LiveBatch::reset() {

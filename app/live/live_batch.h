@@ -39,8 +39,9 @@ class LiveBatch {
   bool move(const std::vector<LiveRobot>& robots, const Configuration& configuration, std::uint64_t surroundings);
   void perturb(std::vector<LivePerturbation> perturbations);
   // Simulates these robots in the states of their partners in `first`, those of the same id, at its time. Robots that
-  // are not joined as their partner is are at rest. At step 0, all are as a reset leaves them.
-  void copy(const LiveBatch& first, const std::vector<LiveRobot>& robots, const Configuration& configuration);
+  // are not joined as their partner is are at rest. At step 0, all are as a reset leaves them. Returns whether the list
+  // changed.
+  bool copy(const LiveBatch& first, const std::vector<LiveRobot>& robots, const Configuration& configuration);
 
   // States. A jump in time is counted; snapshots say how many there were.
   void step(std::int64_t count) { simulation_.step(count); }

@@ -260,6 +260,29 @@ TEST(Comparison, GhostsCountNowhere) {
   EXPECT_TRUE(scene.drawn().scene().ghosts.empty());
 }
 
+// The ghost begins at the step at which its robot was made; then the robots go on without it from that step.
+TEST(Comparison, AGhostGoesWithARobotThatIsForgotten) {
+  LiveScene scene(test::on_cpu());
+  test::make_robots(scene, 1);
+  make_steps(scene, 100);
+  scene.duplicate(test::ids_of(scene));
+  scene.wait_until_done();
+  const RobotId robot = test::ids_of(scene)[0], copy = test::ids_of(scene)[1];
+  EXPECT_EQ(scene.show_ghosts({copy}), 1u);
+  make_steps(scene, 50);
+  ASSERT_EQ(scene.snapshot().ghosts->robots->size(), 1u);
+  scene.seek(0.09);
+  make_steps(scene, 10);
+  ASSERT_EQ(scene.snapshot().robots->size(), 1u);
+  scene.go_on();
+  make_steps(scene, 50);
+  EXPECT_EQ(scene.snapshot().steps, 150);
+  EXPECT_EQ(scene.snapshot().ghosts->robots->size(), 0u);
+  ASSERT_EQ(scene.ranking().size(), 1u);
+  EXPECT_EQ(scene.ranking()[0].robot, robot);
+  EXPECT_TRUE(scene.ghost_series(copy).times.empty());
+}
+
 TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
   LiveSceneOptions options = test::on_cpu();
   options.view.layout = Layout::grid;
