@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <vector>
 
@@ -115,6 +116,16 @@ TEST_P(RealBody, AnyNumberOfSpringsBetweenTwoMassesAddUp) {
   };
   for (std::size_t i = 0; i < robots.size(); ++i) expect_forces({&robots[i], 1}, i);
   expect_forces(robots, 0);
+}
+
+// They took 90 s while each cost time for all others.
+TEST(CpuRobot, AFileWithManySpringsBetweenTwoMassesIsSimulatedSoon) {
+  Robot robot = bodies::voxels({.x = 2, .y = 1, .z = 1}, {});
+  robot.springs.insert(robot.springs.end(), 400'000, robot.springs.front());
+  const std::clock_t start = std::clock();
+  Simulation simulation(Configuration{.device = {.kind = DeviceKind::cpu}}, {&robot, 1});
+  simulation.step(1);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20);
 }
 
 TEST_P(RealBody, AFixedMassStaysAndHoldsTheOther) {

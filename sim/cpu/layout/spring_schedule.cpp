@@ -14,6 +14,7 @@ namespace {
 struct ScheduledSpring {
   std::uint32_t owner, partner;  // slots
   std::uint32_t spring;
+  std::uint32_t repetition = 0;  // springs before it that join the same masses
 };
 
 // What a step of one robot costs, in runs.
@@ -52,20 +53,21 @@ class Scheduler {
       const auto [low, high] = std::minmax(slots_.of_mass[robot_.springs[s].a], slots_.of_mass[robot_.springs[s].b]);
       scheduled_.push_back({low, high, s});
     }
-    // Springs between the same masses cannot share a run: the first of each is in one, the second in another, ...
     const auto key = [&](const ScheduledSpring& s) { return std::tuple(tile_of(s.owner), s.partner - s.owner); };
     std::ranges::sort(scheduled_, {},
                       [&](const ScheduledSpring& s) { return std::tuple_cat(key(s), std::tuple(s.owner, s.spring)); });
+    // Springs between the same masses cannot share a run: the first of each is in one, the second in another, ...
+    for (std::size_t i = 1; i < scheduled_.size(); ++i)
+      if (const ScheduledSpring& before = scheduled_[i - 1];
+          before.owner == scheduled_[i].owner && before.partner == scheduled_[i].partner)
+        scheduled_[i].repetition = before.repetition + 1;
+    const auto run_key = [&](const ScheduledSpring& s) { return std::tuple_cat(key(s), std::tuple(s.repetition)); };
+    std::ranges::stable_sort(scheduled_, {}, run_key);
     for (auto first = scheduled_.begin(); first != scheduled_.end();) {
-      const auto last =
-          std::find_if(first, scheduled_.end(), [&](const ScheduledSpring& s) { return key(s) != key(*first); });
-      while (first != last) {
-        std::uint32_t before = ~0u;
-        const auto repeated = std::stable_partition(
-            first, last, [&](const ScheduledSpring& s) { return std::exchange(before, s.owner) != s.owner; });
-        candidates_.push_back({first, repeated});
-        first = repeated;
-      }
+      const auto last = std::find_if(first, scheduled_.end(),
+                                     [&](const ScheduledSpring& s) { return run_key(s) != run_key(*first); });
+      candidates_.push_back({first, last});
+      first = last;
     }
   }
 
