@@ -91,6 +91,7 @@ std::vector<ImportedFile> read(const ImportCommandOptions& options, const std::v
                                bool& complete) {
   std::vector<ImportedFile> imports;
   Progress progress("importing", "files", static_cast<std::int64_t>(files.size()));
+  progress.show();
   for (std::size_t i = 0; i < files.size(); ++i) {
     throw_if_interrupted();
     try {
@@ -217,6 +218,17 @@ std::string common_toml(const ImportedSettings& settings, const std::vector<Impo
   return to_toml(settings, report);
 }
 
+void write_robots(const std::vector<ImportedFile>& imports, std::size_t count) {
+  Progress progress("writing", "robots", static_cast<std::int64_t>(count));
+  std::int64_t written = 0;
+  for (const ImportedFile& file : imports)
+    for (std::size_t i = 0; i < file.robot_files.size(); ++i) {
+      throw_if_interrupted();
+      save_robot(file.robot_files[i], file.import.robots[i]);
+      progress.update(++written);
+    }
+}
+
 int import_files(ImportCommandOptions options) {
   options.reading.base = options.base;
   validate(options.reading);
@@ -244,10 +256,8 @@ int import_files(ImportCommandOptions options) {
         "import",
         {{"files", fmt::to_string(imports.size())}, {"robots", fmt::to_string(robots)}, {"write", options.output}});
   outputs.make_folders();
+  write_robots(imports, robots);
   for (const ImportedFile& file : imports) {
-    for (std::size_t i = 0; i < file.robot_files.size(); ++i) {
-      save_robot(file.robot_files[i], file.import.robots[i]);
-    }
     if (!file.configuration_file.empty())
       write_results(file.configuration_file, to_toml(file.import.settings, file.import.report));
     if (file.robot_files.empty())
