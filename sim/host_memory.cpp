@@ -96,23 +96,36 @@ std::size_t left_in_control_groups(const std::string& root, const std::string& m
   return left;
 }
 
-std::size_t left_by_process_limits() {
+namespace {
+
+struct ProcessLimit {
+  std::size_t left = unlimited_memory, limit = unlimited_memory;  // [bytes]
+  const char* command = "";
+};
+
+// The one that leaves the least.
+ProcessLimit tightest_limit() {
   const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   unsigned long long size = 0, resident = 0, shared = 0, code = 0, unused = 0, data = 0;  // [pages]
   const std::vector<std::string> lines = lines_of("/proc/self/statm");
   if (lines.empty() || std::sscanf(lines.front().c_str(), "%llu %llu %llu %llu %llu %llu", &size, &resident, &shared,
                                    &code, &unused, &data) != 6)
-    return unlimited_memory;
-  std::size_t left = unlimited_memory;
-  const auto apply = [&](auto resource, std::size_t taken) {
+    return {};
+  ProcessLimit tightest;
+  const auto apply = [&](auto resource, std::size_t taken, const char* command) {
     rlimit limit{};
-    if (getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-      left = std::min(left, difference(limit.rlim_cur, taken * page));
+    if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+    const std::size_t left = difference(limit.rlim_cur, taken * page);
+    if (left < tightest.left) tightest = {left, limit.rlim_cur, command};
   };
-  apply(RLIMIT_AS, size);
-  apply(RLIMIT_DATA, data);
-  return left;
+  apply(RLIMIT_AS, size, "ulimit -v");
+  apply(RLIMIT_DATA, data, "ulimit -d");
+  return tightest;
 }
+
+}  // namespace
+
+std::size_t left_by_process_limits() { return tightest_limit().left; }
 
 std::size_t available_host_memory() {
   std::size_t bytes =
@@ -132,6 +145,18 @@ std::string memory_line(std::size_t needed, std::size_t usable, std::string_view
   std::string line = "about " + with_unit(needed) + " of memory are needed, " + with_unit(usable) + " can be used";
   if (!fits.empty()) line.append("; give ").append(fits);
   return line;
+}
+
+std::string memory_limit_text() {
+  const ProcessLimit limit = tightest_limit();
+  if (limit.limit == unlimited_memory) return {};
+  return std::to_string(limit.limit >> 20) + " MiB (" + limit.command + ")";
+}
+
+std::string no_memory_line() {
+  const std::string limit = memory_limit_text();
+  if (limit.empty()) return "not enough memory: more is needed than can be used, " + with_unit(available_host_memory());
+  return "not enough memory: more is needed than the limit, " + limit;
 }
 
 }  // namespace mercury

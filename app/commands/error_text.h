@@ -9,7 +9,7 @@
 
 namespace mercury {
 
-// "FILE: No such file or directory" for an error of the file system, "not enough memory" for a failed allocation, else
+// "FILE: No such file or directory" for an error of the file system, no_memory_line() for a failed allocation, else
 // the error's own text without the marks of a library.
 std::string error_text(const std::exception& error);
 

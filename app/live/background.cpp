@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "mercury/host_memory.h"
+
 namespace mercury {
 
 struct Background::Parts {
@@ -53,7 +55,7 @@ struct Background::Parts {
     try {
       if (!entry.control->canceled()) return entry.task(*entry.control);
     } catch (const std::bad_alloc&) {
-      messages.add(Severity::error, entry.name + ": not enough memory");
+      messages.add(Severity::error, entry.name + ": " + no_memory_line());
     } catch (const std::exception& error) {
       messages.add(Severity::error, error.what());
     }

@@ -4,7 +4,7 @@
 
 namespace mercury::render {
 
-// Throws ContextError if too little address space (ulimit -v) or too few threads (ulimit -u) are left for Mesa.
+// Throws ContextError if too little memory (ulimit -v, ulimit -d) or too few threads (ulimit -u) are left for Mesa.
 void require_room_to_draw();
 
 }  // namespace mercury::render

@@ -7,12 +7,14 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "app/base/child_process.h"
+#include "mercury/host_memory.h"
 
 namespace mercury::test {
 
@@ -46,7 +48,11 @@ class FolderTest : public testing::Test {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
-  ~FolderTest() override { std::filesystem::remove_all(folder_); }
+  ~FolderTest() override {
+    std::filesystem::remove_all(folder_);
+    // Programs and children that get no memory end with other results than expected.
+    if (HasFailure()) std::cerr << "The machine has " << available_host_memory() / 1'000'000 << " MB of memory left.\n";
+  }
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 

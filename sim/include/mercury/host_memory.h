@@ -20,4 +20,10 @@ std::size_t usable_host_memory();
 // semicolon.
 std::string memory_line(std::size_t needed, std::size_t usable, std::string_view fits = {});
 
+// For a failed allocation: "not enough memory: more is needed than the limit, 40 MiB (ulimit -d)".
+std::string no_memory_line();
+
+// The limit of the process that leaves the least memory: "40 MiB (ulimit -d)"; empty if there is none.
+std::string memory_limit_text();
+
 }  // namespace mercury

@@ -95,12 +95,41 @@ TEST_F(Inputs, SamplesHaveNames) {
 TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
   const Outcome outcome = limited(400'000, "render --random voxel --still 0 --gl osmesa --quiet -o " + path("a.png"));
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.messages, HasSubstr("needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)"));
+  EXPECT_THAT(outcome.messages, HasSubstr("needs 1024 MiB of address space, the limit is 390 MiB (ulimit -v)"));
   EXPECT_FALSE(std::filesystem::exists(path("a.png")));
   const Outcome window = limited(400'000, "view --random voxel --quiet");
   EXPECT_EQ(window.status, 1);
   EXPECT_EQ(window.messages,
-            "mercury: drawing on the processor needs 1 GiB of address space, the limit is 390 MiB (ulimit -v)\n");
+            "mercury: drawing on the processor needs 1024 MiB of address space, the limit is 390 MiB (ulimit -v)\n");
+}
+
+// Mesa ends by SIGSEGV where threads leave it too little.
+TEST_F(Inputs, DrawingSaysHowMuchDataItNeeds) {
+  for (const int megabytes : {60, 130, 170, 190}) {
+    const Outcome outcome = limited("-d " + std::to_string(megabytes * 1000),
+                                    "render --random voxel --still 0 --gl osmesa --quiet -o " + path("a.png"));
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.messages,
+                testing::MatchesRegex("mercury: drawing on the processor needs [0-9]+ MiB of data and stacks, the "
+                                      "limit is [0-9]+ MiB \\(ulimit -d\\)\n"));
+  }
+}
+
+TEST_F(Inputs, AProgramWithoutMemorySaysWhatTheLimitIs) {
+  std::string faces;
+  for (int i = 0; i < 2'000'000; ++i) faces += "[0,1,2],";
+  write("large.json", R"({"format": "mercury-robot", "version": 1, "masses": [[0,0,0], [1,0,0], [0,1,0]],)"
+                      R"("springs": [[0,1,1]], "faces": [)" +
+                          faces + "[0,1,2]]}");
+  const Outcome file = limited("-d 32768", "info " + path("large.json"));
+  EXPECT_EQ(file.status, 1);
+  EXPECT_EQ(file.messages, "mercury: not enough memory: more is needed than the limit, 32 MiB (ulimit -d)\n");
+  const Outcome threads =
+      limited("-s 16384 && ulimit -d 40960", "run --random voxel --seconds 0.01 --device cpu --threads 8");
+  EXPECT_EQ(threads.status, 1);
+  EXPECT_EQ(threads.messages,
+            "mercury: no thread could be started: each needs 16384 KiB of stack (ulimit -s), the limit is "
+            "40 MiB (ulimit -d); give more, or fewer --threads\n");
 }
 
 TEST_F(Inputs, TheProgramSaysHowMuchStackItNeeds) {
