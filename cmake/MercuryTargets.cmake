@@ -99,3 +99,19 @@ function(mercury_add_executable name)
     target_sources(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/foreign_races.cpp)
   endif()
 endfunction()
+
+# mercury_sanitized_python(VARIABLE): the environment in which an interpreter loads a sanitized module. The interpreter is not
+# instrumented: it loads the sanitizer first, and keeps memory to its end.
+function(mercury_sanitized_python variable)
+  set(${variable} "" PARENT_SCOPE)
+  if(NOT MERCURY_SANITIZE MATCHES "address")
+    return()
+  endif()
+  foreach(library asan stdc++)
+    execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=lib${library}.so
+      OUTPUT_VARIABLE path OUTPUT_STRIP_TRAILING_WHITESPACE)
+    list(APPEND libraries ${path})
+  endforeach()
+  list(JOIN libraries " " libraries)
+  set(${variable} "LD_PRELOAD=${libraries}" ASAN_OPTIONS=detect_leaks=0 PARENT_SCOPE)
+endfunction()
