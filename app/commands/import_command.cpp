@@ -218,6 +218,25 @@ std::string common_toml(const ImportedSettings& settings, const std::vector<Impo
   return to_toml(settings, report);
 }
 
+// Whether all files may be written. Returns the number of robots.
+std::size_t add_outputs(OutputFiles& outputs, const std::vector<ImportedFile>& imports, const std::string& common,
+                        const ImportCommandOptions& options) {
+  std::size_t robots = 0, done = 0;
+  for (const ImportedFile& file : imports) robots += file.robot_files.size();
+  Progress progress("checking", "outputs", static_cast<std::int64_t>(robots));
+  for (const ImportedFile& file : imports) {
+    for (const std::string& robot : file.robot_files) {
+      throw_if_interrupted();
+      outputs.add_stream("-o", robot, options.output);
+      progress.update(static_cast<std::int64_t>(++done));
+    }
+    if (!file.configuration_file.empty()) outputs.add_stream("-o", file.configuration_file, options.output);
+  }
+  if (!common.empty()) outputs.add_stream("-o", common, options.output);
+  outputs.check();
+  return robots;
+}
+
 void write_robots(const std::vector<ImportedFile>& imports, std::size_t count) {
   Progress progress("writing", "robots", static_cast<std::int64_t>(count));
   std::int64_t written = 0;
@@ -243,14 +262,7 @@ int import_files(ImportCommandOptions options) {
   name_files(imports, options);
   const std::optional<ImportedSettings> settings = common_settings(imports);
   const std::string common = settings ? (fs::path(options.output) / "import.toml").string() : "";
-  std::size_t robots = 0;
-  for (const ImportedFile& file : imports) {
-    robots += file.robot_files.size();
-    for (const std::string& robot : file.robot_files) outputs.add_stream("-o", robot, options.output);
-    if (!file.configuration_file.empty()) outputs.add_stream("-o", file.configuration_file, options.output);
-  }
-  if (!common.empty()) outputs.add_stream("-o", common, options.output);
-  outputs.check();
+  const std::size_t robots = add_outputs(outputs, imports, common, options);
   if (options.outputs.dry_run())
     return print_dry_run(
         "import",
