@@ -38,7 +38,7 @@ constexpr const char* ancestry_key = "ancestry";
 constexpr std::size_t most_parents = 16;
 constexpr const char* spaces = " \t\r\n";
 
-[[noreturn]] void refuse(const std::string& place, const std::string& what) {
+[[noreturn]] void refuse_ancestry(const std::string& place, const std::string& what) {
   throw InputError("/origin/ancestry" + place, what);
 }
 
@@ -109,26 +109,27 @@ std::string text_of(const Ancestry& ancestry) {
 std::optional<std::uint64_t> natural(const Json& ancestry, const char* key) {
   const auto found = ancestry.find(key);
   if (found == ancestry.end()) return std::nullopt;
-  if (!found->is_number_unsigned()) refuse(std::string("/") + key, "a whole number >= 0 is expected");
+  if (!found->is_number_unsigned()) refuse_ancestry(std::string("/") + key, "a whole number >= 0 is expected");
   return found->get<std::uint64_t>();
 }
 
 std::optional<double> strength(const Json& ancestry, const char* key) {
   const auto found = ancestry.find(key);
   if (found == ancestry.end()) return std::nullopt;
-  if (!found->is_number() || !(found->get<double>() >= 0)) refuse(std::string("/") + key, "a number >= 0 is expected");
+  if (!found->is_number() || !(found->get<double>() >= 0))
+    refuse_ancestry(std::string("/") + key, "a number >= 0 is expected");
   return found->get<double>();
 }
 
 std::vector<std::string> parents_in(const Json& ancestry) {
   const auto found = ancestry.find("parents");
-  if (found == ancestry.end()) refuse("/parents", "is missing");
-  if (!found->is_array()) refuse("/parents", "an array of names is expected");
-  if (found->size() > most_parents) refuse("/parents", "at most 16 names are accepted");
+  if (found == ancestry.end()) refuse_ancestry("/parents", "is missing");
+  if (!found->is_array()) refuse_ancestry("/parents", "an array of names is expected");
+  if (found->size() > most_parents) refuse_ancestry("/parents", "at most 16 names are accepted");
   std::vector<std::string> parents;
   for (const Json& parent : *found) {
     if (!parent.is_string())
-      refuse(std::string("/parents/").append(std::to_string(parents.size())), "a name is expected");
+      refuse_ancestry(std::string("/parents/").append(std::to_string(parents.size())), "a name is expected");
     parents.push_back(parent.get<std::string>());
   }
   return parents;
@@ -165,7 +166,7 @@ std::string with_origin_member(const std::string& origin, std::string_view key, 
 std::optional<Ancestry> ancestry_of(const Robot& robot) {
   const std::optional<Json> found = origin_member(robot, ancestry_key);
   if (!found) return std::nullopt;
-  if (!found->is_object()) refuse("", "a JSON object is expected");
+  if (!found->is_object()) refuse_ancestry("", "a JSON object is expected");
   return Ancestry{.parents = parents_in(*found),
                   .crossover_seed = natural(*found, "crossover_seed"),
                   .mutation_seed = natural(*found, "mutation_seed"),

@@ -10,39 +10,33 @@
 // of actuators.
 #pragma once
 
-#include <cuda_runtime_api.h>
-
-#include <cstddef>
-#include <cstdint>
 #include <span>
 
-#include "mercury/backend.h"
-#include "sim/cuda/layout.h"
+#include "sim/cuda/kernels.h"
 #include "sim/cuda/memory.h"
 
 namespace mercury::cuda {
-
-struct DrivenMaterial {
-  const Material* own;
-  Material* now;
-  MusclePhase* phase;
-  MuscleSwing* swing;
-  std::uint32_t setting;  // index in the shared arrays
-};
 
 class Actuators {
  public:
   bool empty() const { return driven_.size() == 0; }
   // `sources` without actuator_of. Both arguments are valid until robots come or go.
-  void set(std::span<const DrivenMaterial> driven, const ActuationSources& sources, cudaStream_t stream);
+  void set(std::span<const DrivenMaterial> driven, const ActuationSources& sources, cudaStream_t stream) {
+    driven_ = DeviceArray<DrivenMaterial>(driven.size());
+    driven_.write(0, driven, stream);
+    sources_ = sources;
+    sources_.actuator_of = {};
+  }
   void clear() { *this = {}; }
 
   // Computes all driven materials, and their phases for this clock. Asynchronous.
-  void apply(const Clock& clock, cudaStream_t stream) const;
+  void apply(const Clock& clock, cudaStream_t stream) const {
+    if (!empty()) actuate(driven_.data(), driven_.size(), sources_, clock, stream);
+  }
 
  private:
   DeviceArray<DrivenMaterial> driven_;
-  const float *amplitude_ = nullptr, *frequency_ = nullptr, *phase_ = nullptr, *drive_ = nullptr;
+  ActuationSources sources_;
 };
 
 }  // namespace mercury::cuda

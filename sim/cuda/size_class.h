@@ -28,7 +28,6 @@
 #include "sim/cuda/chunks.h"
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
-#include "sim/cuda/robot_views.h"
 #include "sim/physics/environments.h"
 #include "sim/physics/measures.h"
 

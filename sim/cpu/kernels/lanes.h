@@ -25,6 +25,11 @@ inline constexpr hn::RebindToUnsigned<decltype(floats)> words;
 inline constexpr hn::RepartitionToWide<decltype(words)> long_words;
 inline constexpr std::size_t lane_count = hn::MaxLanes(floats);
 
+// The portable kernel is slow anyhow and takes longest to compile, so it is compiled for fewer cases, with the same
+// bits: it checks the length of every spring, takes each body as one with gathered rows, and has one model for all
+// oceans.
+inline constexpr bool few_cases = HWY_TARGET == HWY_EMU128;
+
 struct Mask {
   hn::Mask<decltype(floats)> m;
 };

@@ -218,9 +218,14 @@ class LockstepStepper {
   template <class Finish>
   bool add_springs(const float* factors, bool compact, const Finish& finish) {
     if constexpr (EnvironmentModel::real_bodies)
-      if (group_.viscous)
-        return compact ? add_springs<false, true>(factors, finish) : add_springs<true, true>(factors, finish);
-    return compact ? add_springs<false, false>(factors, finish) : add_springs<true, false>(factors, finish);
+      if (group_.viscous) return add_springs<true>(factors, compact, finish);
+    return add_springs<false>(factors, compact, finish);
+  }
+  template <bool viscous, class Finish>
+  bool add_springs(const float* factors, bool compact, const Finish& finish) {
+    if constexpr (!few_cases)
+      if (compact) return add_springs<false, viscous>(factors, finish);
+    return add_springs<true, viscous>(factors, finish);
   }
 
   // Calls finish(slot, sum of all that acts on it) for each slot. If `checked`, returns false if a spring is beyond the

@@ -6,34 +6,10 @@
 #include <algorithm>
 
 #include "sim/cuda/block_layout.h"
+#include "sim/cuda/kernels.h"
 
 namespace mercury::cuda {
 namespace {
-
-constexpr unsigned threads = 256;
-
-// Rewrites the partners of records for tiles of another number of fields.
-__global__ void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
-                                   std::uint32_t old_fields, std::uint32_t new_fields) {
-  for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count;
-       i += std::size_t{gridDim.x} * blockDim.x) {
-    std::uint32_t& key = records[i * record_words];
-    const std::uint32_t slot = slot_at_offset(key >> 16, old_fields);
-    key = offset_of_slot(slot, new_fields) << 16 | (key & 0xffff);
-  }
-}
-
-// One block per move.
-__global__ void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves) {
-  const uint2 move = moves[blockIdx.x];
-  const std::uint32_t* from = words + move.x * words_per_chunk;
-  std::uint32_t* to = words + move.y * words_per_chunk;
-  for (std::size_t i = threadIdx.x; i < words_per_chunk; i += blockDim.x) to[i] = from[i];
-}
-
-unsigned blocks_for(std::size_t count) {
-  return static_cast<unsigned>(std::min<std::size_t>((count + threads - 1) / threads, 65536));
-}
 
 std::size_t grown(std::size_t needed, std::size_t present) {
   return needed <= present ? present : std::max(needed, present + present / 2);
@@ -195,10 +171,8 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
   DeviceArray<uint2> device_moves(moves.size());
   device_moves.write(0, moves, urgent_->get());
   for_each_array([&]<class T>(const ChunkedArray<T>& array, std::size_t stride) {
-    if (stride == 0) return;
-    move_chunks<<<static_cast<unsigned>(moves.size()), threads, 0, urgent_->get()>>>(
-        reinterpret_cast<std::uint32_t*>(array.data()), stride * sizeof(T) / 4, device_moves.data());
-    check(cudaGetLastError(), "moving robots");
+    move_chunks(reinterpret_cast<std::uint32_t*>(array.data()), stride * sizeof(T) / 4, device_moves.data(),
+                moves.size(), urgent_->get());
   });
   urgent_->synchronize();
   return new_place;
@@ -230,9 +204,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
 void SizeClass::address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
   const std::size_t count = (size() - first_place) * sizes_.springs() / sizes_.record_words;
   if (old_fields == new_fields || count == 0) return;
-  readdress_partners<<<blocks_for(count), threads, 0, urgent_->get()>>>(springs_.chunk(first_place), count,
-                                                                        sizes_.record_words, old_fields, new_fields);
-  check(cudaGetLastError(), "addressing the partners of springs");
+  readdress_partners(springs_.chunk(first_place), count, sizes_.record_words, old_fields, new_fields, urgent_->get());
   urgent_->synchronize();
 }
 

@@ -7,32 +7,10 @@
 #include <utility>
 
 #include "sim/cuda/block_layout.h"
+#include "sim/cuda/kernels.h"
 #include "sim/cuda/size_class.h"
 
 namespace mercury::cuda {
-namespace {
-
-constexpr unsigned threads = 256;
-
-__global__ void compute_phases(const Material* materials, MusclePhase* phases, MuscleSwing* swings, std::size_t count,
-                               Clock clock) {
-  const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
-  if (i >= count) return;
-  phases[i] = muscle_phase(materials[i], clock);
-  swings[i] = MuscleSwing::of(materials[i]);
-}
-
-// One block per robot.
-__global__ void rename(std::uint32_t* records, std::size_t records_per_robot, std::uint32_t record_words,
-                       const MaterialId* ids) {
-  const std::size_t robot = blockIdx.x;
-  for (std::size_t i = threadIdx.x; i < records_per_robot; i += blockDim.x) {
-    std::uint32_t& key = records[(robot * records_per_robot + i) * record_words];
-    key = (key & ~0xffu) | ids[robot * max_materials + (key & 0xff)];
-  }
-}
-
-}  // namespace
 
 void SizeClass::describe(std::uint32_t place, const Configuration& configuration) {
   const Robot& robot = *robots_[place];
@@ -117,10 +95,7 @@ void SizeClass::publish_all_materials(const Configuration& configuration) {
 void SizeClass::update_phases(const Clock& clock, cudaStream_t stream) {
   const bool same_base = clock.dt == phase_clock_.dt && clock.base_time == phase_clock_.base_time;
   if (size() == 0 || (!phases_stale_ && same_base)) return;
-  const std::size_t count = std::size_t{size()} * max_materials;
-  compute_phases<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream>>>(
-      view().materials, phases_.data(), swings_.data(), count, clock);
-  check(cudaGetLastError(), "computing muscle phases");
+  compute_phases(view().materials, phases_.data(), swings_.data(), std::size_t{size()} * max_materials, clock, stream);
   phase_clock_ = clock;
   phases_stale_ = false;
 }
@@ -160,9 +135,8 @@ void SizeClass::end_actuation() {
 void SizeClass::rename_materials(std::span<const MaterialId> ids) {
   DeviceArray<MaterialId> on_device(ids.size());
   on_device.write(0, ids, urgent_->get());
-  rename<<<size(), threads, 0, urgent_->get()>>>(springs_.data(), sizes_.springs() / sizes_.record_words,
-                                                 sizes_.record_words, on_device.data());
-  check(cudaGetLastError(), "renaming the materials of springs");
+  cuda::rename_materials(springs_.data(), size(), sizes_.springs() / sizes_.record_words, sizes_.record_words,
+                         on_device.data(), urgent_->get());
   urgent_->synchronize();
 }
 

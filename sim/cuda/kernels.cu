@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/kernels.h"
+
+#include <algorithm>
+
+#include "sim/cuda/stream.h"
+#include "sim/physics/actuation.h"
+
+namespace mercury::cuda {
+namespace {
+
+constexpr unsigned threads = 128, warps = threads / lanes;  // of kernels with a block per robot
+constexpr unsigned many_threads = 256;                      // of the others
+
+unsigned blocks_for(std::size_t count) { return static_cast<unsigned>((count + many_threads - 1) / many_threads); }
+
+__device__ double sum_of_warp(double value) {
+  for (unsigned distance = lanes / 2; distance > 0; distance /= 2)
+    value += __shfl_down_sync(0xffffffffu, value, distance);
+  return value;
+}
+
+// The vectors of one robot that begin at this field: per mass, and their mean by mass. All threads of the block call
+// this.
+__device__ void publish_field(const RobotView& robot, Field first_field, float* per_mass, float* mean) {
+  __shared__ double sums[3][warps];
+  double sum[3] = {};
+  for (std::uint32_t slot = threadIdx.x; slot < robot.masses; slot += threads) {
+    const float* from = robot.state + offset_of_slot(slot, state_fields) + first_field * lanes;
+    const std::size_t to = 3 * (robot.first_mass + robot.order[slot]);
+    const double mass = robot.point_masses ? static_cast<double>(robot.point_masses[slot]) : 1.0;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      const float value = from[axis * lanes];
+      if (per_mass) per_mass[to + axis] = value;
+      sum[axis] += mass * static_cast<double>(value);
+    }
+  }
+  if (!mean) return;
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const double of_warp = sum_of_warp(sum[axis]);
+    if (threadIdx.x % lanes == 0) sums[axis][threadIdx.x / lanes] = of_warp;
+  }
+  __syncthreads();
+  if (threadIdx.x < 3) {
+    double total = 0;
+    for (const double of_warp : sums[threadIdx.x]) total += of_warp;
+    mean[threadIdx.x] = static_cast<float>(total * (1.0 / robot.mass));
+  }
+  __syncthreads();
+}
+
+// One block per robot.
+__global__ void __launch_bounds__(threads) publish_kernel(const RobotView* robots, PublishedArrays arrays) {
+  const std::size_t i = blockIdx.x;
+  const RobotView robot = robots[i];
+  const auto of_robot = [&](float* centers) { return centers ? centers + 3 * i : nullptr; };
+  if (arrays.positions || arrays.centers) publish_field(robot, field_x, arrays.positions, of_robot(arrays.centers));
+  if (arrays.velocities || arrays.center_velocities)
+    publish_field(robot, field_v, arrays.velocities, of_robot(arrays.center_velocities));
+  if (arrays.exploded && threadIdx.x == 0) arrays.exploded[i] = robot.status->exploded_step >= 0;
+}
+
+// One block per robot.
+__global__ void __launch_bounds__(threads)
+    rest_kernel(const RobotView* robots, const float* start, const std::uint8_t* mask) {
+  if (!mask[blockIdx.x]) return;
+  const RobotView robot = robots[blockIdx.x];
+  for (std::uint32_t slot = threadIdx.x; slot < robot.masses; slot += threads) {
+    const float* from = start + 6 * (robot.first_mass + robot.order[slot]);
+    float* const to = robot.state + offset_of_slot(slot, state_fields);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      to[(field_x + axis) * lanes] = from[axis];
+      to[(field_v + axis) * lanes] = from[3 + axis];
+    }
+  }
+  if (threadIdx.x == 0) *robot.status = {-1, no_mass};
+}
+
+__global__ void readdress_kernel(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
+                                 std::uint32_t old_fields, std::uint32_t new_fields) {
+  for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count;
+       i += std::size_t{gridDim.x} * blockDim.x) {
+    std::uint32_t& key = records[i * record_words];
+    const std::uint32_t slot = slot_at_offset(key >> 16, old_fields);
+    key = offset_of_slot(slot, new_fields) << 16 | (key & 0xffff);
+  }
+}
+
+// One block per move.
+__global__ void move_kernel(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves) {
+  const uint2 move = moves[blockIdx.x];
+  const std::uint32_t* from = words + move.x * words_per_chunk;
+  std::uint32_t* to = words + move.y * words_per_chunk;
+  for (std::size_t i = threadIdx.x; i < words_per_chunk; i += blockDim.x) to[i] = from[i];
+}
+
+__global__ void phase_kernel(const Material* materials, MusclePhase* phases, MuscleSwing* swings, std::size_t count,
+                             Clock clock) {
+  const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
+  if (i >= count) return;
+  phases[i] = muscle_phase(materials[i], clock);
+  swings[i] = MuscleSwing::of(materials[i]);
+}
+
+// One block per robot.
+__global__ void rename_kernel(std::uint32_t* records, std::size_t records_per_robot, std::uint32_t record_words,
+                              const MaterialId* ids) {
+  const std::size_t robot = blockIdx.x;
+  for (std::size_t i = threadIdx.x; i < records_per_robot; i += blockDim.x) {
+    std::uint32_t& key = records[(robot * records_per_robot + i) * record_words];
+    key = (key & ~0xffu) | ids[robot * max_materials + (key & 0xff)];
+  }
+}
+
+__global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, const float* amplitude,
+                               const float* frequency, const float* phase, const float* drive, Clock clock) {
+  const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
+  if (i >= count) return;
+  const DrivenMaterial to = driven[i];
+  const Material now =
+      actuated(*to.own, {amplitude[to.setting], frequency[to.setting], phase[to.setting], drive[to.setting]});
+  *to.now = now;
+  *to.phase = muscle_phase(now, clock);
+  *to.swing = MuscleSwing::of(now);
+}
+
+}  // namespace
+
+void publish_states(const RobotView* robots, std::size_t count, const PublishedArrays& arrays, cudaStream_t stream) {
+  if (count == 0 || arrays.empty()) return;
+  publish_kernel<<<static_cast<unsigned>(count), threads, 0, stream>>>(robots, arrays);
+  check(cudaGetLastError(), "writing shared arrays");
+}
+
+void put_masked_at_rest(const RobotView* robots, std::size_t count, const float* start, const std::uint8_t* mask,
+                        cudaStream_t stream) {
+  if (count == 0) return;
+  rest_kernel<<<static_cast<unsigned>(count), threads, 0, stream>>>(robots, start, mask);
+  check(cudaGetLastError(), "putting robots at rest");
+}
+
+void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_fields,
+                        std::uint32_t new_fields, cudaStream_t stream) {
+  const unsigned blocks = std::min(blocks_for(count), 65536u);
+  readdress_kernel<<<blocks, many_threads, 0, stream>>>(records, count, record_words, old_fields, new_fields);
+  check(cudaGetLastError(), "addressing the partners of springs");
+}
+
+void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves, std::size_t count,
+                 cudaStream_t stream) {
+  move_kernel<<<static_cast<unsigned>(count), many_threads, 0, stream>>>(words, words_per_chunk, moves);
+  check(cudaGetLastError(), "moving robots");
+}
+
+void compute_phases(const Material* materials, MusclePhase* phases, MuscleSwing* swings, std::size_t count,
+                    const Clock& clock, cudaStream_t stream) {
+  phase_kernel<<<blocks_for(count), many_threads, 0, stream>>>(materials, phases, swings, count, clock);
+  check(cudaGetLastError(), "computing muscle phases");
+}
+
+void rename_materials(std::uint32_t* records, std::size_t robots, std::size_t records_per_robot,
+                      std::uint32_t record_words, const MaterialId* ids, cudaStream_t stream) {
+  rename_kernel<<<static_cast<unsigned>(robots), many_threads, 0, stream>>>(records, records_per_robot, record_words,
+                                                                            ids);
+  check(cudaGetLastError(), "renaming the materials of springs");
+}
+
+void actuate(const DrivenMaterial* driven, std::size_t count, const ActuationSources& sources, const Clock& clock,
+             cudaStream_t stream) {
+  actuate_kernel<<<blocks_for(count), many_threads, 0, stream>>>(driven, count, sources.amplitude, sources.frequency,
+                                                                 sources.phase, sources.drive, clock);
+  check(cudaGetLastError(), "driving actuators");
+}
+
+}  // namespace mercury::cuda
