@@ -8,15 +8,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string_view>
 #include <utility>
 
+#include "app/base/interrupt.h"
 #include "app/base/messages.h"
 
 namespace mercury {
 namespace {
 
 constexpr std::chrono::milliseconds bar_period{100};
-constexpr std::chrono::seconds line_period{5};
+
+// Until the first line of a log.
+std::chrono::duration<double> line_period() {
+  const char* given = std::getenv("MERCURY_PROGRESS_SECONDS");
+  const double seconds = given ? std::atof(given) : 0;
+  return std::chrono::duration<double>(seconds > 0 ? seconds : 5);
+}
 
 std::string rate_and_time_left(const std::string& unit, double done, std::int64_t total, double elapsed) {
   if (done <= 0 || elapsed <= 0) return {};
@@ -81,7 +91,7 @@ std::string progress_line(const std::string& what, const std::string& unit, doub
 
 Progress::Progress(std::string what, std::string unit, std::int64_t total)
     : what_(std::move(what)), unit_(std::move(unit)), total_(total), terminal_(draws_on_terminal()),
-      start_(Clock::now()), last_(start_) {}
+      line_period_(line_period()), start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
   if (shown_ && terminal_) write_to_standard_error("\r\033[K");
@@ -94,7 +104,8 @@ void Progress::update_with_fraction(double done) {
   if (verbosity() == Verbosity::quiet) return;
   const Clock::time_point now = Clock::now();
   // Lines in a log stay, so their intervals grow.
-  const Clock::duration period = terminal_ ? bar_period : std::max<Clock::duration>(line_period, (now - start_) / 4);
+  using Period = std::chrono::duration<double>;
+  const Period period = terminal_ ? Period(bar_period) : std::max(line_period_, Period(now - start_) / 4);
   if (now - last_ < period) return;
   draw();
 }
@@ -112,6 +123,22 @@ void Progress::draw() {
         fmt::format("\r{}\033[K", progress_bar(what_, unit_, done_, total_, elapsed, terminal_columns())));
   else
     write_to_standard_error(progress_line(what_, unit_, done_, total_, elapsed) + "\n");
+}
+
+WorkWatch shown_work() {
+  struct Shown {
+    std::string_view what;
+    std::optional<Progress> progress;
+  };
+  return [shown = std::make_shared<Shown>()](const char* what, std::size_t done, std::size_t total) {
+    throw_if_interrupted();
+    if (shown->what != what) {
+      shown->what = what;
+      shown->progress.emplace(what, "robots", static_cast<std::int64_t>(total));
+    }
+    if (shown->progress) shown->progress->update(static_cast<std::int64_t>(done));
+    if (done == total) shown->progress.reset();
+  };
 }
 
 }  // namespace mercury

@@ -7,10 +7,13 @@
 #include <cstdio>
 #include <string>
 
+#include "mercury/work_watch.h"
+
 namespace mercury {
 
-// Draws a bar with rate and time left on a terminal. Elsewhere prints a plain line at growing intervals. Writes nothing
-// if the program is quiet (app/base/messages.h); if it is verbose, says at the end how long the task took.
+// Draws a bar with rate and time left on a terminal. Elsewhere prints a plain line at growing intervals, the first
+// after 5 s or what MERCURY_PROGRESS_SECONDS says. Writes nothing if the program is quiet (app/base/messages.h); if it
+// is verbose, says at the end how long the task took.
 class Progress {
  public:
   // `what` names the task ("rendering"), `unit` what is counted ("frames").
@@ -33,6 +36,7 @@ class Progress {
   std::string what_, unit_;
   std::int64_t total_;
   bool terminal_;
+  std::chrono::duration<double> line_period_;
   bool shown_ = false;
   double done_ = 0;
   Clock::time_point start_, last_;
@@ -55,5 +59,9 @@ std::string with_magnitude(double value);
 
 // "0:04", "12:30", "1:02:03".
 std::string clock_text(double seconds);
+
+// A watch that shows the progress on standard error, and throws Interrupted after the first Ctrl-C. Copies share what
+// they show.
+WorkWatch shown_work();
 
 }  // namespace mercury

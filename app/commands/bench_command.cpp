@@ -15,7 +15,6 @@
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/standard_streams.h"
-#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/results_file.h"
 #include "app/options/generator_options.h"

@@ -22,7 +22,6 @@
 #include "app/options/evolution_options.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
-#include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
 #include "evolution/run_folder/champion_checks.h"
 #include "evolution/run_folder/derived_files.h"

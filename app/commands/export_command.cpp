@@ -9,7 +9,6 @@
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
-#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/dry_run.h"
 #include "app/export/export.h"

@@ -9,8 +9,8 @@
 #include <variant>
 
 #include "app/base/messages.h"
+#include "app/base/progress.h"
 #include "app/base/version.h"
-#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/description.h"
 #include "app/commands/info_json.h"

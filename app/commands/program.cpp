@@ -25,7 +25,7 @@
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
 #include "app/options/scene_file.h"
-#include "evolution/distribution/launcher.h"
+#include "evolution/distribution/ranks.h"
 #include "mercury/error.h"
 #include "mercury/names.h"
 #include "robots/file/document.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/base/work_progress.h"
+#include "app/base/progress.h"
 #include "app/video/frame_writer.h"
 #include "app/video/side_by_side.h"
 #include "mercury/error.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/base/messages.h"
-#include "app/base/work_progress.h"
+#include "app/base/progress.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
 

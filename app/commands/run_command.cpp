@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "app/base/messages.h"
+#include "app/base/progress.h"
 #include "app/base/standard_streams.h"
-#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/commands/description.h"
 #include "app/commands/dry_run.h"

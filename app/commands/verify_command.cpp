@@ -17,7 +17,6 @@
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
-#include "app/base/work_progress.h"
 #include "app/commands/commands.h"
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/base/work_progress.h"
+#include "app/base/progress.h"
 #include "app/commands/commands.h"
 #include "app/options/attachment_options.h"
 #include "app/options/option_values.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "app/base/work_progress.h"
+#include "app/base/progress.h"
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
 

@@ -10,7 +10,6 @@
 
 #include "app/base/interrupt.h"
 #include "app/base/progress.h"
-#include "app/base/work_progress.h"
 #include "app/options/option_values.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/repro.h"

@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-#include "app/base/work_progress.h"
+#include "app/base/progress.h"
 #include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_hdf5_writing.h"
 #include "app/recording/trajectory_reader.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "app/base/work_progress.h"
+#include "app/base/progress.h"
 #include "mercury/error.h"
 
 namespace mercury {

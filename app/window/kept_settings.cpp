@@ -2,7 +2,7 @@
 #include "app/window/kept_settings.h"
 
 #include "app/live/session_settings.h"
-#include "app/window/panels/messages_panel.h"
+#include "app/window/panels/commands.h"
 
 namespace mercury::window {
 

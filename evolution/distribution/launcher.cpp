@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/distribution/launcher.h"
+#include "evolution/distribution/ranks.h"
 
 #include <cstdlib>
 #include <string>

@@ -14,6 +14,11 @@
 
 namespace mercury {
 
+// Whether this process's environment is that of one of several processes of an MPI launcher.
+bool launched_by_mpi();
+// The number of this process among them; 0 without a launcher.
+int rank_by_launcher();
+
 // The processes that an MPI launcher (mpirun, srun) started together. Make at most one object per process.
 class Ranks {
  public:

@@ -2,7 +2,6 @@
 // A build without MPI.
 #include <stdexcept>
 
-#include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
 
 namespace mercury {

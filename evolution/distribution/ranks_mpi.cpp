@@ -22,7 +22,6 @@
 #include <thread>
 #include <utility>
 
-#include "evolution/distribution/launcher.h"
 #include "evolution/distribution/ranks.h"
 #include "evolution/run_folder/generation_record.h"
 #include "evolution/run_folder/run_file.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/body_editor.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/commands.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/material.h"
 

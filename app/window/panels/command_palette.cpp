@@ -12,9 +12,8 @@
 #include <utility>
 
 #include "app/scene/color_quantity.h"
-#include "app/window/panels/color_section.h"
+#include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
-#include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/key_bindings.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"

@@ -1,17 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/compare_panel.h"
-
+// Compares robots: two views of the same robots under different settings, and ghosts of robots before a change.
 #include <fmt/format.h>
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "app/window/panels/robot_commands.h"
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
 #include "app/window/toolkit/widgets.h"
 #include "app/window/viewport/second_view.h"
 #include "mercury/error.h"
 
 namespace mercury::window {
+
+class ComparePanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  void draw_views(PanelContext& context);
+  void draw_settings(PanelContext& context, const SideDifference& difference);
+  void draw_text(PanelContext& context, const SideDifference& difference);
+  void draw_ghosts(PanelContext& context);
+
+  std::string text_, shown_text_;  // in the field, and of the second side when it was written there
+  std::string problem_;            // with the text in the field
+  int ghost_of_ = 0;               // a GhostOf
+};
+
 namespace {
 
 void set_second(PanelContext& context, const std::optional<SideDifference>& difference) {
@@ -176,5 +194,7 @@ void ComparePanel::draw_ghosts(PanelContext& context) {
     ImGui::TextWrapped("%s: %s", name_of_robot(scene, figures.robot).c_str(), text.c_str());
   }
 }
+
+std::unique_ptr<Panel> make_compare_panel(PanelContext&) { return std::make_unique<ComparePanel>(); }
 
 }  // namespace mercury::window

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/evolution_commands.h"
+#include "app/window/panels/commands.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

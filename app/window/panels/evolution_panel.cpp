@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/evolution_panel.h"
-
+// An evolution: its scores over time, champions, map of elites and the family of one individual.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <memory>
 #include <numeric>
+#include <optional>
+#include <vector>
 
-#include "app/window/panels/evolution_commands.h"
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
 #include "app/window/panels/run_sections.h"
 #include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/plot.h"
@@ -18,6 +21,28 @@
 #include "mercury/quantity.h"
 
 namespace mercury::window {
+
+class EvolutionPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+  // Follows the run while the tab is closed, too.
+  void work(PanelContext& context, double seconds) override;
+
+ private:
+  void choose(PanelContext& context, std::uint64_t id);
+  void draw_run(PanelContext& context, const RunView& view);
+  void draw_champions(PanelContext& context, const RunView& view);
+  void read_sort_order();
+  void sort(const RunView& view);
+  void draw_family_section(PanelContext& context, const RunView& view);
+
+  std::shared_ptr<const RunView> view_;  // of the last frame; shows whether there is a newer one
+  std::optional<std::uint64_t> chosen_;  // whose family is shown; none = that of the best champion
+  std::vector<std::size_t> order_;       // of the champions in the table
+  int column_ = 2;                       // to sort by
+  bool ascending_ = false;
+};
+
 namespace {
 
 using Activity = LiveRun::Activity;
@@ -338,5 +363,7 @@ void EvolutionPanel::draw_family_section(PanelContext& context, const RunView& v
   std::uint64_t id = 0;
   if (draw_family(context, *family, view.settings, std::max(rest, 13 * ImGui::GetFontSize()), id)) choose(context, id);
 }
+
+std::unique_ptr<Panel> make_evolution_panel(PanelContext&) { return std::make_unique<EvolutionPanel>(); }
 
 }  // namespace mercury::window

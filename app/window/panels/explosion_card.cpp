@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/window/panels/file_commands.h"
-#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/commands.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 #include "app/window/viewport/marks.h"

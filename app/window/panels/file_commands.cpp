@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/file_commands.h"
+#include "app/window/panels/commands.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,8 +9,6 @@
 #include <optional>
 
 #include "app/export/export_format.h"
-#include "app/window/panels/evolution_commands.h"
-#include "app/window/panels/robot_commands.h"
 
 namespace mercury::window {
 namespace {

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "app/window/panels/evolution_commands.h"
-#include "app/window/panels/file_commands.h"
+#include "app/window/panels/commands.h"
 #include "app/window/panels/panels.h"
-#include "app/window/panels/robot_commands.h"
 #include "app/window/toolkit/theme.h"
 
 namespace mercury::window {

@@ -1,22 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/measure_panel.h"
-
+// Plots of speed, distance, energies and strain over time, for the selected robots or all.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <deque>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "app/scene/side_difference.h"
-#include "app/window/panels/file_commands.h"
-#include "app/window/panels/play_bar.h"
-#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
+
+class MeasurePanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  void draw_window(PanelContext& context);
+  void draw_plots(PanelContext& context, float height);
+  void draw_buttons(PanelContext& context);
+  void scrub(PanelContext& context);
+  void log_view(PanelContext& context);
+
+  std::array<bool, 7> shown_{true, true};  // one per measure of measures()
+  PlotView view_;
+  bool large_ = false;   // in a window of their own
+  bool scrubs_ = false;  // a drag goes through time
+  std::optional<std::pair<double, double>> logged_;
+};
+
 namespace {
 
 constexpr std::size_t max_lines = 10;  // the number of category colors
@@ -170,5 +190,7 @@ void MeasurePanel::log_view(PanelContext& context) {
   else
     context.log.write("plot", {{"from", nullptr}, {"to", nullptr}});
 }
+
+std::unique_ptr<Panel> make_measure_panel(PanelContext&) { return std::make_unique<MeasurePanel>(); }
 
 }  // namespace mercury::window

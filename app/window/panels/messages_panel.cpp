@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/messages_panel.h"
-
+// The history of messages, to read again and to copy.
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
-#include <string>
 
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/live/messages.h"
+#include "app/window/panels/panel.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
+
+class MessagesPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  void draw_row(PanelContext& context, const PastMessage& message, std::size_t row);
+
+  std::optional<Tone> only_;  // shows messages of this tone only
+  std::size_t seen_ = 0;      // messages when the panel was drawn last
+};
+
 namespace {
 
 constexpr std::size_t longest = 4000;  // of what is drawn [letters]; a copy has the rest
@@ -94,5 +110,7 @@ void MessagesPanel::draw_row(PanelContext& context, const PastMessage& message, 
                nullptr, width);
   ImGui::PopID();
 }
+
+std::unique_ptr<Panel> make_messages_panel(PanelContext&) { return std::make_unique<MessagesPanel>(); }
 
 }  // namespace mercury::window

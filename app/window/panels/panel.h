@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A panel: a tab in one of the two columns of the window, and the table of all panels.
 //
-// To add a panel, write a class that derives from Panel in new files x_panel.h and x_panel.cpp, and add a row to the
-// table in panel_table.cpp. The tab, its tooltip, the entry in the View menu and the setting that keeps the panel open
-// derive from the row; CMake finds every *_panel.cpp in this folder.
+// To add a panel, write a class that derives from Panel and a function that makes it in a new file x_panel.cpp, and add
+// a row to the table in panel_table.cpp. The tab, its tooltip, the entry in the View menu and the setting that keeps
+// the panel open derive from the row; CMake finds every *_panel.cpp in this folder.
 #pragma once
 
 #include <memory>

@@ -8,17 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/window/panels/body_editor.h"
-#include "app/window/panels/camera_commands.h"
-#include "app/window/panels/color_section.h"
-#include "app/window/panels/compare_panel.h"
-#include "app/window/panels/evolution_commands.h"
-#include "app/window/panels/file_commands.h"
+#include "app/window/panels/commands.h"
 #include "app/window/panels/panels.h"
-#include "app/window/panels/play_bar.h"
-#include "app/window/panels/robot_commands.h"
-#include "app/window/panels/video_panel.h"
-#include "app/window/panels/view_panel.h"
+#include "app/window/panels/video_recorder.h"
 
 namespace mercury::window {
 

@@ -1,40 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/browser_panel.h"
-#include "app/window/panels/compare_panel.h"
-#include "app/window/panels/evolution_panel.h"
-#include "app/window/panels/measure_panel.h"
-#include "app/window/panels/messages_panel.h"
 #include "app/window/panels/panel.h"
-#include "app/window/panels/ranking_panel.h"
-#include "app/window/panels/robots_panel.h"
-#include "app/window/panels/stats_panel.h"
-#include "app/window/panels/tune_panel.h"
-#include "app/window/panels/video_panel.h"
-#include "app/window/panels/view_panel.h"
 
 namespace mercury::window {
+
+// Each is in NAME_panel.cpp.
+using MakePanel = std::unique_ptr<Panel>(PanelContext& context);
+MakePanel make_robots_panel, make_browser_panel, make_ranking_panel, make_evolution_panel, make_compare_panel,
+    make_view_panel, make_tune_panel, make_measure_panel, make_video_panel, make_messages_panel, make_stats_panel;
+
 namespace {
 
-template <class Kind>
-std::unique_ptr<Panel> make(PanelContext& context) {
-  if constexpr (std::is_constructible_v<Kind, PanelContext&>)
-    return std::make_unique<Kind>(context);
-  else
-    return std::make_unique<Kind>();
-}
-
 constexpr PanelEntry table[] = {
-    {"Robots", "the robots of the scene", Side::left, make<RobotsPanel>},
-    {"Browser", "folders of robots, with pictures", Side::left, make<BrowserPanel>},
-    {"Ranking", "which robot went farthest", Side::left, make<RankingPanel>},
-    {"Evolution", "runs of an evolution: scores, champions, families", Side::left, make<EvolutionPanel>},
-    {"Compare", "two views, and ghosts of robots as they were", Side::left, make<ComparePanel>},
-    {"View", "colors, arrows, camera, appearance", Side::right, make<ViewPanel>},
-    {"Tune", "solver, environment, materials", Side::right, make<TunePanel>},
-    {"Measure", "plots over time", Side::right, make<MeasurePanel>},
-    {"Video", "videos and screenshots", Side::right, make<VideoPanel>},
-    {"Messages", "everything that the window has reported", Side::right, make<MessagesPanel>},
-    {"Stats", "speed of the physics and of drawing", Side::right, make<StatsPanel>},
+    {"Robots", "the robots of the scene", Side::left, make_robots_panel},
+    {"Browser", "folders of robots, with pictures", Side::left, make_browser_panel},
+    {"Ranking", "which robot went farthest", Side::left, make_ranking_panel},
+    {"Evolution", "runs of an evolution: scores, champions, families", Side::left, make_evolution_panel},
+    {"Compare", "two views, and ghosts of robots as they were", Side::left, make_compare_panel},
+    {"View", "colors, arrows, camera, appearance", Side::right, make_view_panel},
+    {"Tune", "solver, environment, materials", Side::right, make_tune_panel},
+    {"Measure", "plots over time", Side::right, make_measure_panel},
+    {"Video", "videos and screenshots", Side::right, make_video_panel},
+    {"Messages", "everything that the window has reported", Side::right, make_messages_panel},
+    {"Stats", "speed of the physics and of drawing", Side::right, make_stats_panel},
 };
 
 }  // namespace

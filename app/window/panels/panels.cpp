@@ -6,10 +6,8 @@
 
 #include <algorithm>
 
-#include "app/window/panels/body_editor.h"
-#include "app/window/panels/camera_commands.h"
+#include "app/window/panels/commands.h"
 #include "app/window/panels/help_window.h"
-#include "app/window/panels/play_bar.h"
 #include "app/window/panels/robot_list.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/play_bar.h"
+#include "app/window/panels/commands.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

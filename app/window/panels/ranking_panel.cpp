@@ -1,20 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/ranking_panel.h"
-
+// A table of all robots, sorted by distance, age, speed, energy or strain.
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <string>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
-#include "app/window/panels/file_commands.h"
-#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
 #include "app/window/panels/robot_list.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
+
+class RankingPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  struct Row {
+    std::string name;
+    RankingRow values;
+  };
+  void draw_headings(PanelContext& context);
+  void read_sort_order();
+  void arrange(std::vector<Row>& rows);
+  void sort(std::vector<Row>& rows) const;
+  void log_order(PanelContext& context, const std::vector<Row>& rows);
+  void draw_row(PanelContext& context, int index, const Row& row);
+  void draw_notes(PanelContext& context, const std::vector<Row>& rows);
+
+  int column_ = 1;  // to sort by
+  bool ascending_ = false;
+  bool logged_ = false;  // the current sort order is in the event log
+  bool held_ = false;    // the mouse is over the table, so rows stay where they are
+  std::vector<RobotId> order_;
+  RowSelection selection_;
+};
+
 namespace {
 
 struct Column {
@@ -168,5 +196,7 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   }
   ImGui::PopID();
 }
+
+std::unique_ptr<Panel> make_ranking_panel(PanelContext&) { return std::make_unique<RankingPanel>(); }
 
 }  // namespace mercury::window

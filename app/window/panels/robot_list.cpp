@@ -8,8 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "app/window/panels/file_commands.h"
-#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/commands.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 

@@ -1,19 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/robots_panel.h"
-
+// The robots of the scene: a list, commands on the selected robots, and new random robots.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "app/options/generator_options.h"
-#include "app/window/panels/evolution_commands.h"
-#include "app/window/panels/file_commands.h"
-#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
+#include "app/window/panels/robot_list.h"
 #include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/error.h"
 
 namespace mercury::window {
+
+// The part of the Robots panel that makes random robots: the settings of a generator (mercury/generator.h), and a
+// button.
+class RandomSection {
+ public:
+  void draw(PanelContext& context);
+  // Height of its rows [pixels].
+  float height(const PanelContext& context) const;
+
+ private:
+  bool advanced_ = false;  // show the advanced settings, too
+};
+
+class RobotsPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  void draw_commands(PanelContext& context);
+  void draw_strengths(PanelContext& context);
+
+  RobotList list_;
+  RandomSection random_;
+};
+
 namespace {
 
 bool whole_number(const char* name, const char* help, int& value, int low, int high, PanelContext& context,
@@ -231,5 +256,7 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   tooltip("remove all robots; undo brings them back");
   ImGui::EndDisabled();
 }
+
+std::unique_ptr<Panel> make_robots_panel(PanelContext&) { return std::make_unique<RobotsPanel>(); }
 
 }  // namespace mercury::window

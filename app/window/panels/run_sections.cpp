@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "app/window/panels/evolution_commands.h"
+#include "app/window/panels/commands.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/stats_panel.h"
-
+// The speed of the physics and of drawing.
 #include <fmt/format.h>
 
+#include <memory>
 #include <vector>
 
+#include "app/window/panels/panel.h"
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
+
+class StatsPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+};
+
 namespace {
 
 void figure(const char* name, const std::string& value, const char* help) {
@@ -94,5 +101,7 @@ void StatsPanel::draw(PanelContext& context) {
   }
   note(context.window.gl_context().describe().c_str());
 }
+
+std::unique_ptr<Panel> make_stats_panel(PanelContext&) { return std::make_unique<StatsPanel>(); }
 
 }  // namespace mercury::window

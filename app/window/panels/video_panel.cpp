@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/video_panel.h"
-
+// Videos of the window, clean videos of the group, screenshots.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <memory>
 
-#include "app/window/panels/robot_commands.h"
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
+#include "app/window/panels/video_recorder.h"
 #include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/screenshot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
+
+class VideoPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+};
+
 namespace {
 
 void report_end(PanelContext& context, const VideoStatus& status) {
@@ -176,5 +184,7 @@ void VideoPanel::draw(PanelContext& context) {
   tooltip("key P or F2; press H first to leave out the panels");
   note(fmt::format("Videos and screenshots go to {}", picture_folder(context).string()).c_str());
 }
+
+std::unique_ptr<Panel> make_video_panel(PanelContext&) { return std::make_unique<VideoPanel>(); }
 
 }  // namespace mercury::window

@@ -1,19 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/window/panels/view_panel.h"
-
+// What the view shows and how: colors, arrows, camera, appearance.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "app/window/panels/camera_commands.h"
-#include "app/window/panels/color_section.h"
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
 #include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
+
+// A row with two buttons. The panel grows with its text, so a click would move them away from under the mouse: until
+// the mouse leaves, the buttons stay where they were, above the panel.
+class TextSizeRow {
+ public:
+  void draw(PanelContext& context);
+
+ private:
+  struct Pinned {
+    ImVec2 low, high;  // of the buttons
+    float font = 0;    // size of the text then [pixels]
+  };
+  void draw_buttons(PanelContext& context, float width, float height);
+  void draw_pinned(PanelContext& context);
+
+  std::optional<Pinned> pinned_;
+};
+
+class ViewPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  TextSizeRow text_size_;
+};
+
 namespace {
 
 bool has_gravity(const Environment& environment) {
@@ -276,5 +302,7 @@ void ViewPanel::draw(PanelContext& context) {
   changed |= draw_cut_section(view, context.log);
   if (changed) context.scene.set_view(view);
 }
+
+std::unique_ptr<Panel> make_view_panel(PanelContext&) { return std::make_unique<ViewPanel>(); }
 
 }  // namespace mercury::window

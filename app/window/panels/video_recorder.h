@@ -62,9 +62,4 @@ std::filesystem::path picture_folder(const PanelContext& context);
 // Draws a red dot and the time of the recording in the upper left corner of the view.
 void draw_recording_sign(ImDrawList& list, PanelContext& context, const ViewportArea& area);
 
-class VideoPanel : public Panel {
- public:
-  void draw(PanelContext& context) override;
-};
-
 }  // namespace mercury::window
