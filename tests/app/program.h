@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -15,6 +17,7 @@
 
 #include "app/base/child_process.h"
 #include "mercury/host_memory.h"
+#include "tests/nap.h"
 
 namespace mercury::test {
 
@@ -35,6 +38,15 @@ inline Outcome run_program(const std::string& program, const std::vector<std::st
 }
 
 inline Outcome mercury(const std::vector<std::string>& arguments) { return run_program(MERCURY_PROGRAM, arguments); }
+
+// The program at work: a line of progress shows that it has begun.
+inline std::unique_ptr<ChildProcess> working_mercury(const std::vector<std::string>& arguments) {
+  setenv("MERCURY_PROGRESS_SECONDS", "0.5", 1);
+  auto child = std::make_unique<ChildProcess>(MERCURY_PROGRAM, arguments);
+  unsetenv("MERCURY_PROGRESS_SECONDS");
+  while (child->running() && child->messages().empty()) nap();
+  return child;
+}
 
 // A folder that is there for one test, removed after it.
 class FolderTest : public testing::Test {

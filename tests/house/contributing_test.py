@@ -188,9 +188,12 @@ def test_what_is_added(copy, found):
     for heading in ("A color quantity", "A generator of robots", "A genome", "An importer", "A panel of the window",
                     "A command"):
         sources += [source for source in copy.change(found[heading]) if source not in sources]
+    # Sources of a target together, as the build compiles them.
     objects = []
-    for source in sources:
-        objects += copy.compile([source], copy.flags(targets[str(Path(source).parent)]))
+    for target in sorted({targets[str(Path(source).parent)] for source in sources}):
+        together = [source for source in sources if targets[str(Path(source).parent)] == target]
+        (copy.folder / f"{target}.cpp").write_text("".join(f'#include "{source}"\n' for source in together))
+        objects += copy.compile([f"{target}.cpp"], copy.flags(target))
     program, scratch = copy.program(objects, PROGRAM), copy.folder
     mercury = lambda *words: run([program, *words], scratch)
     expect(run([program], scratch), "Stats\nCount\n")

@@ -88,12 +88,15 @@ def rules():
 
 
 RULES = list(rules())
+ANY = re.compile("(?<![A-Za-z])(" + "|".join(words for words, *_ in WORDS) + ")(?![A-Za-z])", re.IGNORECASE)
 EXCEPTIONS = [(re.compile(path), re.compile(line, re.IGNORECASE)) for path, line in ALLOWED]
 
 
 def findings_of_text(path, text):
     """(line, what is wrong) of one file."""
-    for number, line in enumerate(text.splitlines(), start=1):
+    lines = text.split("\n")
+    for number in sorted({text.count("\n", 0, found.start()) + 1 for found in ANY.finditer(text)}):  # few of all lines
+        line = lines[number - 1]
         if any(p.search(path) and exception.search(line) for p, exception in EXCEPTIONS):
             continue
         for pattern, instead, paths in RULES:

@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-#include "app/base/work_progress.h"
+#include "app/base/progress.h"
 #include "mercury/generator.h"
 
 namespace mercury {

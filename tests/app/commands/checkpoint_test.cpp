@@ -5,10 +5,10 @@
 #include <sys/stat.h>
 
 #include <csignal>
-#include <thread>
 
 #include "app/recording/trajectory_reader.h"
 #include "tests/app/program.h"
+#include "tests/nap.h"
 
 namespace mercury::test {
 namespace {
@@ -40,7 +40,7 @@ class Checkpoint : public FolderTest {
   void kill(const Arguments& more) {
     Arguments arguments = run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"} + more;
     ChildProcess child(MERCURY_PROGRAM, arguments);
-    while (!std::filesystem::exists(path("c.h5")) && child.running()) std::this_thread::yield();
+    while (!std::filesystem::exists(path("c.h5")) && child.running()) nap();
     child.kill();
   }
   const Arguments resume_{"run", "--resume", "--checkpoint", path("c.h5"), "--json", "--quiet"};
@@ -109,7 +109,7 @@ TEST_F(Checkpoint, ASignalSavesTheLastStepAndTheRunGoesOnFromThere) {
   for (const int signal : {SIGINT, SIGTERM}) {
     std::filesystem::remove(path("c.h5"));
     ChildProcess child(MERCURY_PROGRAM, run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
-    while (!std::filesystem::exists(path("c.h5")) && child.running()) std::this_thread::yield();
+    while (!std::filesystem::exists(path("c.h5")) && child.running()) nap();
     child.signal(signal);
     const Outcome outcome = outcome_of(child);
     ASSERT_EQ(outcome.status, 128 + signal) << outcome.messages;
@@ -124,7 +124,7 @@ TEST_F(Checkpoint, ARunThatWasStoppedTwiceGoesOn) {
   kill({});
   ChildProcess child(MERCURY_PROGRAM, resume_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
   const auto first = std::filesystem::last_write_time(path("c.h5"));
-  while (std::filesystem::last_write_time(path("c.h5")) == first && child.running()) std::this_thread::yield();
+  while (std::filesystem::last_write_time(path("c.h5")) == first && child.running()) nap();
   child.kill();
   EXPECT_EQ(robots_of(mercury(resume_)), whole);
 }

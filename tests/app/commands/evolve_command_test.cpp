@@ -10,7 +10,6 @@
 #include <map>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include "app/base/child_process.h"
 #include "evolution/distribution/ranks.h"
@@ -19,6 +18,7 @@
 #include "mercury/robot_file.h"
 #include "mercury/run_folder.h"
 #include "tests/app/program.h"
+#include "tests/nap.h"
 
 namespace mercury::test {
 namespace {
@@ -57,7 +57,7 @@ class EvolveCommand : public FolderTest {
   // Waits until that many generations are on the disk. Gives up after a minute.
   void wait_for_generations(const std::string& run, std::size_t count) const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    while (generations_in(run) < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    while (generations_in(run) < count && std::chrono::steady_clock::now() < deadline) nap();
   }
 };
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <thread>
 
 #include "mercury/origin.h"
 #include "mercury/random_voxel.h"
@@ -87,11 +86,10 @@ TEST_F(NewCommand, BestOfWritesEveryCandidate) {
 
 // A search that is stopped writes the best robots so far: those of its CSV that went farthest.
 TEST_F(NewCommand, InterruptedSearchKeepsTheBest) {
-  ChildProcess child(MERCURY_PROGRAM, {"new", "voxel", "-o", path("best/"), "--count", "2", "--best-of", "1000000",
-                                       "--seconds", "0.1", "--device", "cpu", "--csv", path("a.csv")});
-  while (child.messages().empty()) std::this_thread::yield();  // progress: some candidates are there
-  child.signal(SIGINT);
-  const Outcome outcome = outcome_of(child);
+  const auto child = working_mercury({"new", "voxel", "-o", path("best/"), "--count", "2", "--best-of", "1000000",
+                                      "--seconds", "0.1", "--device", "cpu", "--csv", path("a.csv")});
+  child->signal(SIGINT);
+  const Outcome outcome = outcome_of(*child);
   EXPECT_EQ(outcome.status, 130);
   EXPECT_THAT(outcome.messages,
               testing::ContainsRegex("mercury: stopped after [0-9]+ of 1000000 candidates; the best of "

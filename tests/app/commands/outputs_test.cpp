@@ -9,6 +9,7 @@
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "tests/app/program.h"
+#include "tests/nap.h"
 
 namespace mercury::test {
 namespace {
@@ -91,7 +92,7 @@ TEST_F(Outputs, CsvGoesThroughAPipe) {
 TEST_F(Outputs, PipeWithoutReaderEndsAtCtrlC) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   ChildProcess child(MERCURY_PROGRAM, run({"--csv", path("pipe"), "--json"}));
-  while (child.output().empty()) std::this_thread::yield();
+  while (child.output().empty()) nap();
   child.signal(SIGINT);
   EXPECT_EQ(outcome_of(child).status, 128 + SIGINT);
 }

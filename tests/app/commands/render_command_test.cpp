@@ -10,6 +10,7 @@
 
 #include "render/png.h"
 #include "tests/app/program.h"
+#include "tests/nap.h"
 
 namespace mercury::test {
 namespace {
@@ -236,7 +237,7 @@ class InterruptedVideo : public RenderCommand {
  protected:
   std::unique_ptr<ChildProcess> begin() {
     auto child = std::make_unique<ChildProcess>(MERCURY_PROGRAM, command("a.mp4", {"--seconds", "100000"}));
-    while (!writing()) std::this_thread::yield();
+    while (!writing()) nap();
     return child;
   }
 
@@ -270,11 +271,11 @@ TEST_F(InterruptedVideo, SecondInterruptEndsAtOnceWithTheEncoderAndLeavesNoFile)
         true);
   ChildProcess child(MERCURY_PROGRAM, command("b.mp4", {"--seconds", "100000", "--ffmpeg", path("stuck")}));
   std::ifstream life(path("life"));  // waits until the script has opened it
-  while (child.messages().find("encoding") == std::string::npos) std::this_thread::yield();
+  while (child.messages().find("encoding") == std::string::npos) nap();
   child.signal(SIGINT);
   while (listing().size() > 2) {  // until the program has handled both signals
     child.signal(SIGINT);
-    std::this_thread::yield();
+    nap();
   }
   EXPECT_EQ(outcome_of(child).status, 128 + SIGINT);
   EXPECT_EQ(life.get(), std::ifstream::traits_type::eof());  // waits until nobody holds it any more
@@ -312,7 +313,7 @@ TEST_F(RefusedVideo, FolderThatHoldsSomethingIsFilledOnlyWithForce) {
 
 TEST_F(RefusedVideo, FolderThatAnotherProcessFillsIsRefused) {
   ChildProcess first(MERCURY_PROGRAM, command("frames", {"--seconds", "100000", "--fps", "1000"}));
-  while (!std::filesystem::exists(path("frames")) || listing("frames").empty()) std::this_thread::yield();
+  while (!std::filesystem::exists(path("frames")) || listing("frames").empty()) nap();
   EXPECT_EQ(refusal("frames", {"--force"}),
             "mercury: -o: " + path("frames") + " is being filled by another process; give another folder\n");
   first.kill();

@@ -417,11 +417,9 @@ TEST_F(RunCommand, ACsvThatFailsLosesNoTable) {
 }
 
 TEST_F(RunCommand, InterruptedRunReportsItsResults) {
-  ChildProcess child(MERCURY_PROGRAM, {"run", "--random", "voxel:2", "--seconds", "1e6", "--json"});
-  // The first line of progress shows that the simulation runs.
-  while (child.messages().empty()) std::this_thread::yield();
-  child.signal(SIGINT);
-  const Outcome outcome = outcome_of(child);
+  const auto child = working_mercury({"run", "--random", "voxel:2", "--seconds", "1e6", "--json"});
+  child->signal(SIGINT);
+  const Outcome outcome = outcome_of(*child);
   EXPECT_EQ(outcome.status, 128 + SIGINT);
   const json report = json::parse(outcome.output, nullptr, false);
   EXPECT_EQ(report["interrupted"], true);

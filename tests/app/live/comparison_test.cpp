@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "app/scene/side_difference.h"
 #include "app/scene/view_words.h"
@@ -11,6 +10,7 @@
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
+#include "tests/nap.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {
@@ -207,7 +207,7 @@ TEST(Comparison, BothSidesAreAtTheSameStepAfterEachPause) {
     while (scene.snapshot().steps < before + 50) {
       scene.frame();
       ASSERT_TRUE(!scene.snapshot().second || scene.snapshot().second->steps == scene.snapshot().steps);
-      std::this_thread::yield();
+      nap();
     }
     scene.pause();
     scene.wait_until_done();

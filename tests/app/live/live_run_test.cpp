@@ -4,12 +4,11 @@
 
 #include <gmock/gmock.h>
 
-#include <thread>
-
 #include "app/live/live_scene.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/live/run_setup.h"
 #include "tests/app/program.h"
+#include "tests/nap.h"
 
 namespace mercury {
 namespace {
@@ -33,7 +32,7 @@ class LiveRunTest : public test::FolderTest {
   }
   // Waits until the process of `run` has ended.
   static void finish(LiveRun& run) {
-    for (; run.activity() != Activity::none; std::this_thread::yield()) run.frame();
+    for (; run.activity() != Activity::none; nap()) run.frame();
     run.wait();
   }
   static std::vector<LiveRobot> founders(std::size_t count) {
@@ -188,24 +187,24 @@ TEST_F(LiveRunTest, AProgramThatIsMissingIsReported) {
 TEST_F(LiveRunTest, TheEndOfTheWindowStopsTheProcessInAnOrderlyWay) {
   {
     LiveRun run(program("trap 'echo orderly > " + path("end") + "; exit 1' TERM; echo > " + path("ready") +
-                        "; while :; do :; done"));
+                        "; while :; do sleep 0.01; done"));
     run.evolve(request(), founders(1));
-    for (; !std::filesystem::exists(path("ready")); std::this_thread::yield()) run.frame();
+    for (; !std::filesystem::exists(path("ready")); nap()) run.frame();
   }
   EXPECT_EQ(read("end"), "orderly\n");
 }
 
 TEST_F(LiveRunTest, AProcessThatIsLeftRunningOutlivesTheWindow) {
   {
-    LiveRun run(
-        program("echo > " + path("ready") + "; while [ ! -e " + path("go") + " ]; do :; done; echo > " + path("end")));
+    LiveRun run(program("echo > " + path("ready") + "; while [ ! -e " + path("go") +
+                        " ]; do sleep 0.01; done; echo > " + path("end")));
     run.evolve(request(), founders(1));
-    for (; !std::filesystem::exists(path("ready")); std::this_thread::yield()) run.frame();
+    for (; !std::filesystem::exists(path("ready")); nap()) run.frame();
     run.leave_running();
     EXPECT_EQ(run.activity(), Activity::none);
   }
   write("go", "");
-  while (!std::filesystem::exists(path("end"))) std::this_thread::yield();
+  while (!std::filesystem::exists(path("end"))) nap();
 }
 
 }  // namespace

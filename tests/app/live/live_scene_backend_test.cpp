@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "app/recording/repro.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
+#include "tests/nap.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {
@@ -60,8 +60,7 @@ TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
   scene.play();
   std::uint64_t pictures = 0;
   const auto samples = [&] { return scene.series(test::ids_of(scene)[0]).times.size(); };
-  for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5 || samples() < 3;
-       std::this_thread::yield()) {
+  for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5 || samples() < 3; nap()) {
     scene.frame();
     pictures += scene.snapshot().steps != seen;
     seen = scene.snapshot().steps;

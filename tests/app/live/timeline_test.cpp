@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <thread>
 
 #include "app/live/timeline.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
+#include "tests/nap.h"
 #include "tests/same_bits.h"
 #include "tests/sim/backend.h"
 
@@ -224,7 +224,7 @@ TEST_P(TimelineOn, ALoopPlaysBetweenItsEnds) {
     if (scene.snapshot().resets > before) {
       EXPECT_LE(scene.snapshot().steps, moments_[1].steps);
     }
-    std::this_thread::yield();
+    nap();
   }
   scene.pause();
   scene.set_loop({});
@@ -357,7 +357,7 @@ TEST_P(PlayedRecording, PlaysToItsEndAndPausesThere) {
   scene.play();
   while (scene.playing()) {
     scene.frame();
-    std::this_thread::yield();
+    nap();
   }
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().steps, 100);

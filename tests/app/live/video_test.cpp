@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <thread>
 
 #include "app/live/group_video.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
+#include "tests/nap.h"
 
 namespace mercury {
 namespace {
@@ -23,7 +23,7 @@ render::Image plain(int width, int height, std::array<std::uint8_t, 3> color) {
 
 template <class Video>
 VideoStatus over(const Video& video) {
-  while (!video.status().over()) std::this_thread::yield();
+  while (!video.status().over()) nap();
   return video.status();
 }
 

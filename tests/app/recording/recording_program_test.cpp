@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <thread>
 
 #include "app/recording/trajectory_reader.h"
 #include "mercury/simulation.h"
@@ -52,11 +51,10 @@ TEST_F(RunRecord, WithoutEveryThereAreThirtyFramesPerSecond) {
 }
 
 TEST_F(RunRecord, InterruptedRunLeavesTheFramesSoFar) {
-  ChildProcess child(MERCURY_PROGRAM,
-                     {"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});
-  while (child.messages().empty()) std::this_thread::yield();  // progress shows that it simulates
-  child.signal(SIGINT);
-  const Outcome outcome = outcome_of(child);
+  const auto child =
+      working_mercury({"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});
+  child->signal(SIGINT);
+  const Outcome outcome = outcome_of(*child);
   EXPECT_EQ(outcome.status, 128 + SIGINT);
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
   TrajectoryReader reader(file());
@@ -69,10 +67,7 @@ TEST_F(RunRecord, InterruptedRunLeavesTheFramesSoFar) {
 
 TEST_F(RunRecord, KilledRunLeavesNoFileOfThatName) {
   write("a.h5", "as it was");
-  ChildProcess child(MERCURY_PROGRAM,
-                     {"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});
-  while (child.messages().empty()) std::this_thread::yield();
-  child.kill();
+  working_mercury({"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"})->kill();
   EXPECT_EQ(read("a.h5"), "as it was");
 }
 
@@ -114,11 +109,8 @@ INSTANTIATE_TEST_SUITE_P(After, FullDisk, testing::Values(0, 2000, 60'000, 500'0
 // Both begin with a name that is new.
 TEST_F(RunRecord, TwoRunsWithOneNewNameKeepBothRecordings) {
   const auto started = [&](const char* seed) {
-    auto child = std::make_unique<ChildProcess>(
-        MERCURY_PROGRAM, std::vector<std::string>{"run", "--random", "voxel", "--seed", seed, "--seconds", "1e6",
-                                                  "--record", file(), "--every", "10"});
-    while (child->messages().empty()) std::this_thread::yield();
-    return child;
+    return working_mercury(
+        {"run", "--random", "voxel", "--seed", seed, "--seconds", "1e6", "--record", file(), "--every", "10"});
   };
   const auto first = started("1"), second = started("2");
   first->signal(SIGINT);

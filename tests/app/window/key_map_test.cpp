@@ -6,7 +6,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include "app/window/panels/color_section.h"
+#include "app/window/panels/commands.h"
 #include "tests/app/program.h"
 
 namespace mercury::window {

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two views and ghosts in the real window: window_compare_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
 from window_case import WindowCase, main, numpy
+from window_driver import SIZE
 
 
 class CompareTest(WindowCase):
@@ -109,7 +110,7 @@ class CompareTest(WindowCase):
         self.assertAlmostEqual(shown["time"], moment, delta=0.002)
         self.assertEqual(shown["second"]["steps"], shown["steps"])
         # Away from plots and timeline there is no cursor; over the timeline, plots have it, too.
-        window.do("mousemove", 640, 300)
+        window.do("mousemove", SIZE[0] // 2, 300)
         window.frame(lambda frame: frame["cursor"] is None)
         window.do("mousemove", round(strip["x"]), round(strip["y"]))
         self.assertAlmostEqual(window.frame(lambda frame: frame["cursor"] is not None)["cursor"], (begin + head) / 2,

@@ -15,12 +15,13 @@ import time
 from pathlib import Path
 
 DEADLINE = 60  # seconds
+SIZE = (1100, 720)  # pixels of a window: room for both columns of panels, and few to draw without a GPU
 
 
 class Display:
     """An X server without a screen."""
 
-    def __init__(self, width=1280, height=720):
+    def __init__(self, width=SIZE[0], height=SIZE[1]):
         read, write = os.pipe()
         self.server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp", "-noreset"],
@@ -37,7 +38,7 @@ class Display:
 
 
 class Window:
-    def __init__(self, program, display, folder, *arguments, size="1280x720"):
+    def __init__(self, program, display, folder, *arguments, size="{}x{}".format(*SIZE)):
         self.folder = Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.report = self.folder / "report.jsonl"

@@ -8,6 +8,7 @@ import subprocess
 import unittest
 
 from window_case import SAMPLES, WindowCase, main, numpy
+from window_driver import SIZE
 
 
 LEFT = ["Robots", "Browser", "Ranking", "Evolution", "Compare"]
@@ -112,7 +113,7 @@ class PanelsTest(WindowCase):
         window = self.small("--paused", "--color", "strain")
         window.key("f")
         x, y = map(round, window.frame(lambda frame: len(frame["where"]) == 2)["where"][0])
-        aside = window.place("play.play") if "play.play" in window.items else (640, 715)
+        aside = window.place("play.play") if "play.play" in window.items else (SIZE[0] // 2, SIZE[1] - 5)
         window.do("mousemove", *aside)
         window.frame()
         before = window.screenshot()
@@ -249,7 +250,7 @@ class PanelsTest(WindowCase):
         probe = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", file],
                                capture_output=True, text=True, check=True)
         stream = json.loads(probe.stdout)["streams"][0]
-        self.assertEqual((stream["width"], stream["height"]), (1280, 720))
+        self.assertEqual((stream["width"], stream["height"]), SIZE)
         self.assertGreater(int(stream["nb_read_frames"]), 10)
         self.finish(window)
 

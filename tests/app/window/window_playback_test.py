@@ -3,7 +3,7 @@
 import json
 
 from window_case import SAMPLES, WindowCase, main, numpy
-from window_driver import scratch
+from window_driver import SIZE, scratch
 
 
 def robot_that_explodes(name):
@@ -92,7 +92,7 @@ class PlaybackTest(WindowCase):
             """The number of pixels of a color within `reach` of an item (None: the middle), once the camera rests."""
             while (before := window.frame())["where"] != window.frame()["where"]:
                 self.assertGreater(before["distance"], 0)
-            x, y = window.place(place) if place else (640, 360)
+            x, y = window.place(place) if place else (SIZE[0] // 2, SIZE[1] // 2)
             near = window.screenshot()[max(0, y - reach):y + reach + 1, max(0, x - reach):x + reach + 1]
             return int((numpy.abs(near - color).max(axis=2) < 0.04).sum())
 

@@ -11,7 +11,7 @@ from window_case import PROGRAM, SAMPLES, WindowCase, main
 from window_driver import Display, Window, scratch
 
 SEEDS = [int(seed) for seed in os.environ.get("MERCURY_WINDOW_SEEDS", "4").split(",")]
-PRESSES = int(os.environ.get("MERCURY_WINDOW_PRESSES", "3000"))
+PRESSES = int(os.environ.get("MERCURY_WINDOW_PRESSES", "2000"))
 
 
 class RandomInputTest(WindowCase):

@@ -4,7 +4,7 @@ import shutil
 import subprocess
 
 from window_case import PROGRAM, SAMPLES, WindowCase, main, numpy
-from window_driver import Window, scratch
+from window_driver import SIZE, Window, scratch
 
 
 class ToolsTest(WindowCase):
@@ -60,13 +60,13 @@ class ToolsTest(WindowCase):
         window.until("wider picture", lambda: width() > both + 200)
         one = width()
         window.click("handle.right")
-        window.until("whole width", lambda: width() == 1280)
+        window.until("whole width", lambda: width() == SIZE[0])
         window.key("bracketleft")
-        window.until("left column", lambda: width() == both + 1280 - one)
+        window.until("left column", lambda: width() == both + SIZE[0] - one)
         self.finish(window)
         # The choice is kept for the next start.
         window = self.window_in(self.folder, "--paused")
-        self.assertEqual(width(), both + 1280 - one)
+        self.assertEqual(width(), both + SIZE[0] - one)
         self.finish(window)
         window = Window(PROGRAM, self.display, scratch(), str(SAMPLES / "eel.json"), "--paused", size="640x400")
         self.addCleanup(window.close)
@@ -158,7 +158,7 @@ class ToolsTest(WindowCase):
         window.until("no sign", lambda: "recording.sign" not in window.items)
         film = subprocess.run(["ffmpeg", "-v", "error", "-i", file, "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
                               capture_output=True, check=True).stdout
-        self.assertEqual(red(numpy.frombuffer(film, numpy.uint8).reshape(720, 1280, 3)), 0)
+        self.assertEqual(red(numpy.frombuffer(film, numpy.uint8).reshape(SIZE[1], SIZE[0], 3)), 0)
         self.finish(window)
 
     def test_the_first_gestures_fade_after_use(self):
