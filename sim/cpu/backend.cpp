@@ -18,9 +18,9 @@
 #include "mercury/stopwatch.h"
 #include "mercury/threads.h"
 #include "mercury/work_counter.h"
+#include "sim/cpu/advance.h"
 #include "sim/cpu/backend.h"
 #include "sim/cpu/grouping/cost_model.h"
-#include "sim/cpu/grouping/work_batch.h"
 #include "sim/cpu/telemetry.h"
 
 namespace mercury {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "mercury/work_watch.h"
-#include "sim/cpu/kernels/kernel.h"
 #include "sim/cpu/layout/lockstep_group.h"
 #include "sim/cpu/layout/muscles.h"
 
@@ -34,15 +33,5 @@ std::vector<WorkBatch> make_work_batches(std::span<Body* const> bodies, std::siz
 // Takes these bodies out of their batches. The rest of their groups break up: their bodies are in no batch, either.
 // Returns those, without the ones that are taken.
 std::vector<Body*> take_out(const std::unordered_set<const Body*>& bodies, std::vector<WorkBatch>& batches);
-
-// These two are in sim/cpu/advance.cpp.
-
-// Advances those of the batch's bodies that have not exploded. The batch's groups may hold states from then on. Returns
-// the number of groups that were broken up because a member may have exploded.
-std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& setting, const Clock& clock,
-                    std::int64_t steps);
-
-// Brings all states back to the bodies.
-void store(std::span<WorkBatch> batches);
 
 }  // namespace mercury::cpu
