@@ -12,104 +12,96 @@ struct NnGenes {
   NnGenome genome;
   MaterialGenes materials;
 
-  static NnGenes of(const Robot& robot);
-  NnGenes mutated(Genes genes, double strength, std::uint64_t seed) const;
-  NnGenes crossed(const NnGenes& other, Genes genes, std::uint64_t seed) const;
-  Robot grown(const std::string& name, const std::string& environment) const;
-  void write(ByteWriter& writer) const;
-  static NnGenes read(ByteReader& reader);
-  void add_identity(IdentityHash& hash) const;
+  static NnGenes of(const Robot& robot) {
+    std::optional<NnGenome> genome = nn_genome_of(robot);
+    if (!genome) throw InputError("/origin", "holds no network");
+    genome->environment.clear();
+    if (!robot.materials.empty() && robot.materials.size() < default_material_count)
+      throw InputError("/materials", "the base materials and their pairs are needed, 254 in all, not " +
+                                         std::to_string(robot.materials.size()));
+    return {*std::move(genome), material_genes_of(robot)};
+  }
+
+  NnGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
+    NnGenes child = *this;
+    const Changes changes = changes_of(genes, seed);
+    constexpr double rate = 0.1, size = 0.3;
+    if (changes.body) child.genome = mutate(genome, rate, size * strength, seed);
+    if (changes.muscles) child.materials = mercury::mutated(materials, strength, seed_of(seed, 0), {});
+    return child;
+  }
+
+  NnGenes crossed(const NnGenes& other, Genes genes, std::uint64_t seed) const {
+    NnGenes child = *this;
+    if (genes != Genes::muscles) child.genome = crossover(genome, other.genome, seed);
+    if (genes != Genes::body) child.materials = mercury::crossed(materials, other.materials, seed_of(seed, 0));
+    return child;
+  }
+
+  Robot grown(const std::string& name, const std::string& environment) const {
+    NnGenome whole = genome;
+    whole.environment = environment;
+    Robot robot = grow(whole, name);
+    robot.materials = table_of(materials);
+    return robot;
+  }
+
+  void write(ByteWriter& writer) const {
+    writer.add(genome.cloud_seed);
+    writer.add(static_cast<std::uint32_t>(genome.points));
+    writer.add(static_cast<std::uint8_t>(genome.mirrored ? 1 : 0));
+    writer.add(genome.alpha);
+    writer.add(genome.spacing);
+    writer.add(static_cast<std::uint8_t>(genome.network.layers.size()));
+    for (const Layer& layer : genome.network.layers) {
+      writer.add(static_cast<std::uint16_t>(layer.inputs));
+      writer.add(static_cast<std::uint16_t>(layer.outputs));
+      for (const float weight : layer.weights) writer.add(weight);
+      for (const float bias : layer.biases) writer.add(bias);
+    }
+    mercury::write(writer, materials);
+  }
+
+  static NnGenes read(ByteReader& reader) {
+    NnGenes genes;
+    NnGenome& genome = genes.genome;
+    genome.cloud_seed = reader.read<std::uint64_t>();
+    genome.points = reader.read<std::uint32_t>();
+    const auto mirrored = reader.read<std::uint8_t>();
+    if (mirrored > 1) throw InputError("genome", "mirrored must be 0 or 1");
+    genome.mirrored = mirrored == 1;
+    genome.alpha = reader.read<float>();
+    genome.spacing = reader.read<float>();
+    const auto layers = reader.read<std::uint8_t>();
+    for (std::size_t i = 0; i < layers; ++i) {
+      Layer& layer = genome.network.layers.emplace_back();
+      layer.inputs = reader.read<std::uint16_t>();
+      layer.outputs = reader.read<std::uint16_t>();
+      const auto outputs = static_cast<std::uint64_t>(layer.outputs);
+      const std::uint64_t weights = outputs * static_cast<std::uint64_t>(layer.inputs);
+      reader.expect(weights + outputs, sizeof(float));
+      layer.weights.resize(weights);
+      layer.biases.resize(outputs);
+      for (float& weight : layer.weights) weight = reader.read<float>();
+      for (float& bias : layer.biases) bias = reader.read<float>();
+    }
+    validate(genome);
+    genes.materials = read_material_genes(reader);
+    const std::size_t count = genes.materials.size();
+    if (count != 0 && count != base_material_count && count + 1 < default_material_count)
+      throw InputError("genome", std::to_string(count) + " materials are not accepted; give 22, or 253 or more");
+    return genes;
+  }
+
+  // Which weights matter is known only to the one who grows the robot.
+  void add_identity(IdentityHash& hash) const {
+    ByteWriter writer;
+    NnGenes body{genome, {}};
+    body.write(writer);
+    hash.add(std::move(writer).take());
+    mercury::add_identity(hash, materials, {});
+  }
 };
-
-NnGenes NnGenes::of(const Robot& robot) {
-  std::optional<NnGenome> genome = nn_genome_of(robot);
-  if (!genome) throw InputError("/origin", "holds no network");
-  genome->environment.clear();
-  if (!robot.materials.empty() && robot.materials.size() < default_material_count)
-    throw InputError("/materials", "the base materials and their pairs are needed, 254 in all, not " +
-                                       std::to_string(robot.materials.size()));
-  return {*std::move(genome), material_genes_of(robot)};
-}
-
-NnGenes NnGenes::mutated(Genes genes, double strength, std::uint64_t seed) const {
-  NnGenes child = *this;
-  const Changes changes = changes_of(genes, seed);
-  constexpr double rate = 0.1, size = 0.3;
-  if (changes.body) child.genome = mutate(genome, rate, size * strength, seed);
-  if (changes.muscles) child.materials = mercury::mutated(materials, strength, seed_of(seed, 0), {});
-  return child;
-}
-
-NnGenes NnGenes::crossed(const NnGenes& other, Genes genes, std::uint64_t seed) const {
-  NnGenes child = *this;
-  if (genes != Genes::muscles) child.genome = crossover(genome, other.genome, seed);
-  if (genes != Genes::body) child.materials = mercury::crossed(materials, other.materials, seed_of(seed, 0));
-  return child;
-}
-
-Robot NnGenes::grown(const std::string& name, const std::string& environment) const {
-  NnGenome whole = genome;
-  whole.environment = environment;
-  Robot robot = grow(whole, name);
-  robot.materials = table_of(materials);
-  return robot;
-}
-
-void NnGenes::write(ByteWriter& writer) const {
-  writer.add(genome.cloud_seed);
-  writer.add(static_cast<std::uint32_t>(genome.points));
-  writer.add(static_cast<std::uint8_t>(genome.mirrored ? 1 : 0));
-  writer.add(genome.alpha);
-  writer.add(genome.spacing);
-  writer.add(static_cast<std::uint8_t>(genome.network.layers.size()));
-  for (const Layer& layer : genome.network.layers) {
-    writer.add(static_cast<std::uint16_t>(layer.inputs));
-    writer.add(static_cast<std::uint16_t>(layer.outputs));
-    for (const float weight : layer.weights) writer.add(weight);
-    for (const float bias : layer.biases) writer.add(bias);
-  }
-  mercury::write(writer, materials);
-}
-
-NnGenes NnGenes::read(ByteReader& reader) {
-  NnGenes genes;
-  NnGenome& genome = genes.genome;
-  genome.cloud_seed = reader.read<std::uint64_t>();
-  genome.points = reader.read<std::uint32_t>();
-  const auto mirrored = reader.read<std::uint8_t>();
-  if (mirrored > 1) throw InputError("genome", "mirrored must be 0 or 1");
-  genome.mirrored = mirrored == 1;
-  genome.alpha = reader.read<float>();
-  genome.spacing = reader.read<float>();
-  const auto layers = reader.read<std::uint8_t>();
-  for (std::size_t i = 0; i < layers; ++i) {
-    Layer& layer = genome.network.layers.emplace_back();
-    layer.inputs = reader.read<std::uint16_t>();
-    layer.outputs = reader.read<std::uint16_t>();
-    const auto outputs = static_cast<std::uint64_t>(layer.outputs);
-    const std::uint64_t weights = outputs * static_cast<std::uint64_t>(layer.inputs);
-    reader.expect(weights + outputs, sizeof(float));
-    layer.weights.resize(weights);
-    layer.biases.resize(outputs);
-    for (float& weight : layer.weights) weight = reader.read<float>();
-    for (float& bias : layer.biases) bias = reader.read<float>();
-  }
-  validate(genome);
-  genes.materials = read_material_genes(reader);
-  const std::size_t count = genes.materials.size();
-  if (count != 0 && count != base_material_count && count + 1 < default_material_count)
-    throw InputError("genome", std::to_string(count) + " materials are not accepted; give 22, or 253 or more");
-  return genes;
-}
-
-// Which weights matter is known only to the one who grows the robot.
-void NnGenes::add_identity(IdentityHash& hash) const {
-  ByteWriter writer;
-  NnGenes body{genome, {}};
-  body.write(writer);
-  hash.add(std::move(writer).take());
-  mercury::add_identity(hash, materials, {});
-}
 
 }  // namespace
 

@@ -28,64 +28,56 @@ struct ShellGenes {
   static constexpr std::uint8_t tag = 4;
   ShellGenome genome;
 
-  static ShellGenes of(const Robot& robot);
-  ShellGenes mutated(Genes genes, double strength, std::uint64_t seed) const;
-  ShellGenes crossed(const ShellGenes& other, Genes genes, std::uint64_t seed) const;
-  Robot grown(const std::string& name, const std::string& environment) const;
-  void write(ByteWriter& writer) const;
-  static ShellGenes read(ByteReader& reader);
-  void add_identity(IdentityHash& hash) const;
+  static ShellGenes of(const Robot& robot) {
+    std::optional<ShellGenome> genome = shell_genome_of(robot);
+    if (!genome) throw InputError("/origin", "holds no shell");
+    genome->environment.clear();
+    return {*std::move(genome)};
+  }
+
+  ShellGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
+    ShellGenome child = mutate(genome, strength, seed);
+    if (genes == Genes::body) child = with_muscles_of(std::move(child), genome);
+    if (genes == Genes::muscles) child = with_muscles_of(genome, mutate_muscles(genome, strength, seed));
+    return {std::move(child)};
+  }
+
+  ShellGenes crossed(const ShellGenes& other, Genes genes, std::uint64_t seed) const {
+    ShellGenome child = crossover(genome, other.genome, seed);
+    if (genes == Genes::body) child = with_muscles_of(std::move(child), genome);
+    if (genes == Genes::muscles) child = with_muscles_of(genome, child);
+    return {std::move(child)};
+  }
+
+  Robot grown(const std::string& name, const std::string& environment) const {
+    ShellGenome whole = genome;
+    whole.environment = environment;
+    return grow(whole, name);
+  }
+
+  void write(ByteWriter& writer) const {
+    writer.add(static_cast<std::uint8_t>(genome.form));
+    for (const auto number : whole_numbers) writer.add(static_cast<std::uint32_t>(genome.*number));
+    for (const auto number : real_numbers) writer.add(genome.*number);
+  }
+
+  static ShellGenes read(ByteReader& reader) {
+    ShellGenes genes;
+    const auto form = reader.read<std::uint8_t>();
+    if (form > static_cast<std::uint8_t>(ShellForm::pod)) throw InputError("genome", "has no known form");
+    genes.genome.form = static_cast<ShellForm>(form);
+    for (const auto number : whole_numbers) genes.genome.*number = static_cast<int>(reader.read<std::uint32_t>());
+    for (const auto number : real_numbers) genes.genome.*number = reader.read<double>();
+    validate(genes.genome);
+    return genes;
+  }
+
+  void add_identity(IdentityHash& hash) const {
+    ByteWriter writer;
+    write(writer);
+    hash.add(std::move(writer).take());
+  }
 };
-
-ShellGenes ShellGenes::of(const Robot& robot) {
-  std::optional<ShellGenome> genome = shell_genome_of(robot);
-  if (!genome) throw InputError("/origin", "holds no shell");
-  genome->environment.clear();
-  return {*std::move(genome)};
-}
-
-ShellGenes ShellGenes::mutated(Genes genes, double strength, std::uint64_t seed) const {
-  ShellGenome child = mutate(genome, strength, seed);
-  if (genes == Genes::body) child = with_muscles_of(std::move(child), genome);
-  if (genes == Genes::muscles) child = with_muscles_of(genome, mutate_muscles(genome, strength, seed));
-  return {std::move(child)};
-}
-
-ShellGenes ShellGenes::crossed(const ShellGenes& other, Genes genes, std::uint64_t seed) const {
-  ShellGenome child = crossover(genome, other.genome, seed);
-  if (genes == Genes::body) child = with_muscles_of(std::move(child), genome);
-  if (genes == Genes::muscles) child = with_muscles_of(genome, child);
-  return {std::move(child)};
-}
-
-Robot ShellGenes::grown(const std::string& name, const std::string& environment) const {
-  ShellGenome whole = genome;
-  whole.environment = environment;
-  return grow(whole, name);
-}
-
-void ShellGenes::write(ByteWriter& writer) const {
-  writer.add(static_cast<std::uint8_t>(genome.form));
-  for (const auto number : whole_numbers) writer.add(static_cast<std::uint32_t>(genome.*number));
-  for (const auto number : real_numbers) writer.add(genome.*number);
-}
-
-ShellGenes ShellGenes::read(ByteReader& reader) {
-  ShellGenes genes;
-  const auto form = reader.read<std::uint8_t>();
-  if (form > static_cast<std::uint8_t>(ShellForm::pod)) throw InputError("genome", "has no known form");
-  genes.genome.form = static_cast<ShellForm>(form);
-  for (const auto number : whole_numbers) genes.genome.*number = static_cast<int>(reader.read<std::uint32_t>());
-  for (const auto number : real_numbers) genes.genome.*number = reader.read<double>();
-  validate(genes.genome);
-  return genes;
-}
-
-void ShellGenes::add_identity(IdentityHash& hash) const {
-  ByteWriter writer;
-  write(writer);
-  hash.add(std::move(writer).take());
-}
 
 }  // namespace
 

@@ -36,76 +36,68 @@ struct VoxelGenes {
   VoxelGrid grid;
   MaterialGenes materials;
 
-  static VoxelGenes of(const Robot& robot);
-  VoxelGenes mutated(Genes genes, double strength, std::uint64_t seed) const;
-  VoxelGenes crossed(const VoxelGenes& other, Genes genes, std::uint64_t seed) const;
-  Robot grown(const std::string& name, const std::string& environment) const;
-  void write(ByteWriter& writer) const;
-  static VoxelGenes read(ByteReader& reader);
-  void add_identity(IdentityHash& hash) const;
-};
-
-VoxelGenes VoxelGenes::of(const Robot& robot) {
-  std::optional<VoxelGrid> grid = voxel_grid_of(robot);
-  if (!grid) throw InputError("/origin", "holds no voxel grid");
-  return {*std::move(grid), material_genes_of(robot)};
-}
-
-VoxelGenes VoxelGenes::mutated(Genes genes, double strength, std::uint64_t seed) const {
-  VoxelGenes child = *this;
-  const Changes changes = changes_of(genes, seed);
-  if (changes.body) child.grid = mutated_grid(grid, strength, seed);
-  if (changes.muscles)
-    child.materials = mercury::mutated(materials, strength, seed_of(seed, 0), materials_in(largest_body(child.grid)));
-  return child;
-}
-
-VoxelGenes VoxelGenes::crossed(const VoxelGenes& other, Genes genes, std::uint64_t seed) const {
-  VoxelGenes child = *this;
-  if (genes != Genes::muscles) child.grid = crossed_grids(grid, other.grid, seed);
-  if (genes != Genes::body) child.materials = mercury::crossed(materials, other.materials, seed_of(seed, 0));
-  return child;
-}
-
-Robot VoxelGenes::grown(const std::string& name, const std::string& environment) const {
-  return make_voxel_robot(grid, {.name = name, .environment = environment, .materials = table_of(materials)});
-}
-
-void VoxelGenes::write(ByteWriter& writer) const {
-  for (const int n : {grid.nx, grid.ny, grid.nz}) writer.add(static_cast<std::uint32_t>(n));
-  writer.add(grid.edge);
-  writer.append(grid.cells);
-  mercury::write(writer, materials);
-}
-
-VoxelGenes VoxelGenes::read(ByteReader& reader) {
-  VoxelGenes genes;
-  std::uint64_t cells = 1;
-  for (int* n : {&genes.grid.nx, &genes.grid.ny, &genes.grid.nz}) {
-    const std::uint64_t size = std::min<std::uint64_t>(reader.read<std::uint32_t>(), VoxelGrid::max_cells + 1);
-    *n = static_cast<int>(size);
-    cells = std::min<std::uint64_t>(cells * size, VoxelGrid::max_cells + 1);
+  static VoxelGenes of(const Robot& robot) {
+    std::optional<VoxelGrid> grid = voxel_grid_of(robot);
+    if (!grid) throw InputError("/origin", "holds no voxel grid");
+    return {*std::move(grid), material_genes_of(robot)};
   }
-  genes.grid.edge = reader.read<float>();
-  const std::string_view bytes = reader.take(cells);
-  genes.grid.cells.assign(bytes.begin(), bytes.end());
-  validate(genes.grid);
-  if (std::ranges::all_of(genes.grid.cells, [](MaterialId cell) { return cell == air; }))
-    throw InputError("genome", "all voxels are air");
-  genes.materials = read_material_genes(reader);
-  const std::size_t count = genes.materials.size();
-  if (count != 0 && count != base_material_count && count + 1 < default_material_count)
-    throw InputError("genome", std::to_string(count) + " materials are not accepted; give 22, or 253 or more");
-  return genes;
-}
 
-void VoxelGenes::add_identity(IdentityHash& hash) const {
-  const VoxelGrid body = largest_body(grid);
-  for (const int n : {grid.nx, grid.ny, grid.nz}) hash.add(static_cast<std::uint32_t>(n));
-  hash.add(grid.edge);
-  hash.add(body.cells);
-  mercury::add_identity(hash, materials, materials_in(body));
-}
+  VoxelGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
+    VoxelGenes child = *this;
+    const Changes changes = changes_of(genes, seed);
+    if (changes.body) child.grid = mutated_grid(grid, strength, seed);
+    if (changes.muscles)
+      child.materials = mercury::mutated(materials, strength, seed_of(seed, 0), materials_in(largest_body(child.grid)));
+    return child;
+  }
+
+  VoxelGenes crossed(const VoxelGenes& other, Genes genes, std::uint64_t seed) const {
+    VoxelGenes child = *this;
+    if (genes != Genes::muscles) child.grid = crossed_grids(grid, other.grid, seed);
+    if (genes != Genes::body) child.materials = mercury::crossed(materials, other.materials, seed_of(seed, 0));
+    return child;
+  }
+
+  Robot grown(const std::string& name, const std::string& environment) const {
+    return make_voxel_robot(grid, {.name = name, .environment = environment, .materials = table_of(materials)});
+  }
+
+  void write(ByteWriter& writer) const {
+    for (const int n : {grid.nx, grid.ny, grid.nz}) writer.add(static_cast<std::uint32_t>(n));
+    writer.add(grid.edge);
+    writer.append(grid.cells);
+    mercury::write(writer, materials);
+  }
+
+  static VoxelGenes read(ByteReader& reader) {
+    VoxelGenes genes;
+    std::uint64_t cells = 1;
+    for (int* n : {&genes.grid.nx, &genes.grid.ny, &genes.grid.nz}) {
+      const std::uint64_t size = std::min<std::uint64_t>(reader.read<std::uint32_t>(), VoxelGrid::max_cells + 1);
+      *n = static_cast<int>(size);
+      cells = std::min<std::uint64_t>(cells * size, VoxelGrid::max_cells + 1);
+    }
+    genes.grid.edge = reader.read<float>();
+    const std::string_view bytes = reader.take(cells);
+    genes.grid.cells.assign(bytes.begin(), bytes.end());
+    validate(genes.grid);
+    if (std::ranges::all_of(genes.grid.cells, [](MaterialId cell) { return cell == air; }))
+      throw InputError("genome", "all voxels are air");
+    genes.materials = read_material_genes(reader);
+    const std::size_t count = genes.materials.size();
+    if (count != 0 && count != base_material_count && count + 1 < default_material_count)
+      throw InputError("genome", std::to_string(count) + " materials are not accepted; give 22, or 253 or more");
+    return genes;
+  }
+
+  void add_identity(IdentityHash& hash) const {
+    const VoxelGrid body = largest_body(grid);
+    for (const int n : {grid.nx, grid.ny, grid.nz}) hash.add(static_cast<std::uint32_t>(n));
+    hash.add(grid.edge);
+    hash.add(body.cells);
+    mercury::add_identity(hash, materials, materials_in(body));
+  }
+};
 
 }  // namespace
 
