@@ -81,7 +81,7 @@ bool has_real_body(const Robot& robot) { return real_material_of(robot).has_valu
 
 bool is_of_folding(const Limit& limit) { return quantities()[find_quantity(limit.quantity).value()].of_folding; }
 
-constexpr Limit table[] = {
+constexpr Limit limits_table[] = {
     {.quantity = "strain", .value = &TrialSettings::strain_limit},
     {.quantity = "strained_share", .value = &TrialSettings::strained_limit, .applies = has_real_body},
     {.quantity = "inverted", .value = &TrialSettings::inverted_limit, .applies = has_real_body},
@@ -98,7 +98,7 @@ template <class Found>
 void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest& request,
                            const TrialSettings& settings, const Found& found) {
   const Trial trial{.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request.configuration};
-  for (const Limit& limit : table) {
+  for (const Limit& limit : limits_table) {
     const double accepted = settings.*limit.value;
     if (is_of_folding(limit) && accepted == 1) continue;
     const double value = quantities()[find_quantity(limit.quantity).value()].value(trial);
@@ -113,7 +113,7 @@ void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest
 std::function<bool(const Robot&)> measured_folding(const TrialSettings& settings) {
   if (settings.folding) return measure_all_folding;
   std::vector<const Limit*> asked;
-  for (const Limit& limit : table)
+  for (const Limit& limit : limits_table)
     if (is_of_folding(limit) && settings.*limit.value < 1) asked.push_back(&limit);
   if (asked.empty()) return nullptr;
   return [asked](const Robot& robot) {
@@ -161,7 +161,7 @@ void add_jitter(const Robot& robot, const TrialSettings& settings, std::uint64_t
     }
 }
 
-std::span<const Limit> limits() { return table; }
+std::span<const Limit> limits() { return limits_table; }
 
 Fate fate_of(const Evaluation& evaluation, const EvaluationRequest& request, const TrialSettings& settings) {
   if (!evaluation.failure.empty()) return Fate::failed;

@@ -50,7 +50,7 @@ struct TimeCursor {
   void begin_frame() { time = std::exchange(next, std::nullopt); }
 };
 
-// The body that is edited and the tool in use (body_editor.h).
+// The body that is edited and the tool in use (body_editor.cpp).
 struct BodyEdit {
   RobotId robot = 0;  // 0 = none
   VoxelEdit edit{.tool = VoxelTool::add};
