@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -D FILES=A|B|... -D OUTPUT=FILE.cpp -P EmbedFiles.cmake
-# Embeds the files into the program by the assembler: a compiler would take seconds for arrays of this size.
+# cmake -D FILES=A|B|... -D HEADER=FILE.h -D NAMESPACE=N -D FUNCTION=F -D OUTPUT=FILE.cpp -P EmbedFiles.cmake
+# Embeds the files into the program by the assembler: a compiler would take seconds for arrays of this size. The header
+# declares std::span<const EmbeddedFile> N::F().
 string(REPLACE "|" ";" FILES "${FILES}")
 set(number 0)
 set(blobs "")
@@ -15,19 +16,19 @@ foreach(file IN LISTS FILES)
   math(EXPR number "${number} + 1")
 endforeach()
 file(WRITE ${OUTPUT} "// Made at build time.
-#include \"app/window/toolkit/embedded.h\"
+#include \"${HEADER}\"
 
 __asm__(\".pushsection .rodata\\n\"
 ${blobs}    \".popsection\\n\");
 
 ${declarations}
-namespace mercury::window {
+namespace ${NAMESPACE} {
 
-std::span<const EmbeddedFile> embedded_files() {
+std::span<const EmbeddedFile> ${FUNCTION}() {
   static const EmbeddedFile files[] = {
 ${entries}  };
   return files;
 }
 
-}  // namespace mercury::window
+}  // namespace ${NAMESPACE}
 ")

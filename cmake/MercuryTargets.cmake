@@ -115,3 +115,17 @@ function(mercury_sanitized_python variable)
   list(JOIN libraries " " libraries)
   set(${variable} "LD_PRELOAD=${libraries}" ASAN_OPTIONS=detect_leaks=0 PARENT_SCOPE)
 endfunction()
+
+# mercury_embed_files(RESULT FILES HEADER NAMESPACE FUNCTION): a source with the contents of the files, for
+# FUNCTION() of the header; its name is in RESULT.
+function(mercury_embed_files result files header namespace function)
+  list(JOIN files "|" joined)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+  add_custom_command(OUTPUT ${source}
+    COMMAND ${CMAKE_COMMAND} -D "FILES=${joined}" -D HEADER=${header} -D NAMESPACE=${namespace} -D FUNCTION=${function}
+      -D OUTPUT=${source} -P ${PROJECT_SOURCE_DIR}/cmake/EmbedFiles.cmake
+    DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/EmbedFiles.cmake
+    COMMENT "Embedding files for ${header}" VERBATIM)
+  set_source_files_properties(${source} PROPERTIES OBJECT_DEPENDS "${files}")
+  set(${result} ${source} PARENT_SCOPE)
+endfunction()

@@ -2,27 +2,12 @@
 // Resolves samples of linear light to one pixel. Applies the tone curve to each sample before averaging, so that edges of
 // bright things stay smooth.
 #include "frame.glsl"
+#include "tone.glsl"
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2DMS samples;
 layout(binding = 8) uniform sampler2D glow;
 layout(binding = 0, rgba8) writeonly uniform image2D picture;  // gamma-encoded
 layout(location = 0) uniform float vignette;
-
-// Identity up to `shoulder`, so that colors of values keep their meaning; above it, bends towards 1 and towards white,
-// like photographic film.
-vec3 tone_mapped(vec3 light) {
-  const float shoulder = 0.62;
-  float peak = max(light.r, max(light.g, light.b));
-  if (peak <= shoulder) return light;
-  const float room = 1.0 - shoulder;
-  float bent = 1.0 - room * room / (peak + room - shoulder);
-  float bleach = 1.0 - 1.0 / (0.22 * (peak - bent) + 1.0);
-  return mix(light * (bent / peak), vec3(bent), bleach);
-}
-
-vec3 gamma_encoded(vec3 light) {
-  return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
-}
 
 void main() {
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(picture);

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "mercury/configuration.h"
+#include "app/recording/configuration_json.h"
 #include "mercury/run_folder.h"
 
 namespace mercury {
@@ -13,11 +13,6 @@ namespace mercury {
 void print_heading(const std::string& text);
 // "  masses      300"
 void print_line(const std::string& what, const std::string& text);
-
-// "ocean, density 1000, ...", with the names of the options.
-std::string environment_text(const Configuration& configuration);
-// "force, dt 0.001 s, damping 0.1 1/s"
-std::string solver_text(const Configuration& configuration);
 
 // A run of an evolution, which may be going on.
 void describe(const RunHistory& run);

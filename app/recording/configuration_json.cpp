@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/recording/configuration_json.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -98,6 +100,19 @@ nlohmann::ordered_json json_of(const Configuration& configuration) {
   json["environment"] = name_of(configuration.environment);
   write_parameters(json, configuration.environment);
   return json;
+}
+
+std::string environment_text(const Configuration& configuration) {
+  std::string text(name_of(configuration.environment));
+  const nlohmann::ordered_json json = json_of(configuration);
+  for (auto item = std::next(json.find("environment")); item != json.end(); ++item)
+    text += fmt::format(", {} {}", item.key(), item.value().dump());
+  return text;
+}
+
+std::string solver_text(const Configuration& configuration) {
+  return fmt::format("{}, dt {} s, damping {} 1/s", name_of(configuration.solver), configuration.dt,
+                     configuration.damping);
 }
 
 }  // namespace mercury

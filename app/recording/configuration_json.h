@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A configuration as JSON.
+// A configuration as JSON, and in words.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "mercury/configuration.h"
 
@@ -14,6 +15,11 @@ nlohmann::ordered_json json_of(const Configuration& configuration);
 
 // The reverse. A missing parameter has its default. Throws InputError if the document is not a configuration.
 Configuration configuration_from(const nlohmann::ordered_json& json);
+
+// "ocean, density 1000, ...", with the names of the options.
+std::string environment_text(const Configuration& configuration);
+// "force, dt 0.001 s, damping 0.1 1/s"
+std::string solver_text(const Configuration& configuration);
 
 // The double with the shortest decimal that converts back to this float: 0.2, not 0.20000000298023224.
 double shortest(float value);

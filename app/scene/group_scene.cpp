@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "app/scene/camera_controller.h"
+#include "app/scene/group_look.h"
 #include "mercury/origin.h"
 #include "render/text/overlay.h"
 
@@ -15,10 +16,6 @@ namespace {
 
 // Muscles change lengths by up to 14 %, and bodies bend.
 constexpr float room_to_deform = 1.2f;
-
-render::Surroundings surroundings_of(const Environment& environment) {
-  return has_ground(environment) && !has_water(environment) ? render::Surroundings::land : render::Surroundings::water;
-}
 
 // The height of the sand below a swimming group: lower than the group by half its height plus twice its tallest robot.
 float sand_below(std::span<const render::Bounds> robots) {
@@ -41,17 +38,7 @@ std::vector<std::pair<render::Color, std::string>> swatches_of(const Group& grou
     for (std::size_t id = 0; id < springs_of.size(); ++id)
       springs_of[id] = springs_of[id] || group.shapes[i]->materials[id];
   }
-  std::vector<bool> used(base_material_count + 1, false);
-  for (int id = 1; id < default_material_count; ++id) {
-    if (!springs_of[static_cast<std::size_t>(id)]) continue;
-    const BasePair pair = base_materials_of(static_cast<MaterialId>(id));
-    used[pair.first] = used[pair.second] = true;
-  }
-  const std::vector<render::Color> colors = material_colors(default_materials(), true);
-  std::vector<std::pair<render::Color, std::string>> swatches;
-  for (std::size_t id = 1; id < used.size(); ++id)
-    if (used[id]) swatches.emplace_back(colors[id], default_material_name(static_cast<MaterialId>(id)));
-  return swatches;
+  return mercury::swatches_of(springs_of);
 }
 
 // Between marks on trails and in lanes: a round length of about one robot.

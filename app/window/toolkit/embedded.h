@@ -6,14 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "app/base/embedded_file.h"
 #include "mercury/robot.h"
 
 namespace mercury::window {
-
-struct EmbeddedFile {
-  std::string_view name;  // "eel.json"
-  std::string_view contents;
-};
 
 // cmake/EmbedFiles.cmake writes this function at build time, from the font and robots/library.
 std::span<const EmbeddedFile> embedded_files();
