@@ -157,7 +157,8 @@ std::vector<std::uint64_t> steps_of(const RunHistory& run, std::vector<std::uint
   return steps;
 }
 
-void add(Clip& clip, const RunHistory& run, std::uint64_t id, std::string caption) {
+void add(RunFilm& film, Clip& clip, const RunHistory& run, std::uint64_t id, std::string caption) {
+  film.ids.push_back(id);
   clip.robots.push_back(std::make_shared<const Robot>(run.grow(id)));
   clip.captions.push_back(std::move(caption));
 }
@@ -172,14 +173,17 @@ void show_at_one_scale(std::vector<Clip>& clips) {
 }
 
 RunFilm film_of_champions(const RunHistory& run, std::size_t most) {
-  Clip clip{.title = fmt::format("{}\nthe best of generation {}", name_of_run(run), run.generations().back().number)};
+  RunFilm film;
+  Clip& clip = film.clips.emplace_back();
+  clip.title = fmt::format("{}\nthe best of generation {}", name_of_run(run), run.generations().back().number);
   for (const std::uint64_t id : run.living().first(std::min(most, run.living().size())))
-    add(clip, run, id, fmt::format("{}\nrobot {}", score_text(run.settings(), individual(run, id)), id));
-  return {.clips = {std::move(clip)}};
+    add(film, clip, run, id, fmt::format("{}\nrobot {}", score_text(run.settings(), individual(run, id)), id));
+  return film;
 }
 
 RunFilm film_of_generations(const RunHistory& run, const std::string& list) {
-  Clip clip;
+  RunFilm film;
+  Clip& clip = film.clips.emplace_back();
   for (const std::string_view text : split(list, ',')) {
     const int last = run.generations().back().number;
     const int number = text == "last" ? last : number_from<int>("--generation", text);
@@ -187,10 +191,10 @@ RunFilm film_of_generations(const RunHistory& run, const std::string& list) {
       throw InputError("--generation",
                        fmt::format("the run has no generation {}; give numbers from 0 to {}, or last", text, last));
     const std::uint64_t id = run.champion(number);
-    add(clip, run, id,
+    add(film, clip, run, id,
         fmt::format("generation {}\n{}\nrobot {}", number, score_text(run.settings(), individual(run, id)), id));
   }
-  return {.clips = {std::move(clip)}};
+  return film;
 }
 
 RunFilm film_of_lineage(const RunHistory& run, std::uint64_t id, std::size_t most, bool at_once) {
@@ -201,11 +205,12 @@ RunFilm film_of_lineage(const RunHistory& run, std::uint64_t id, std::size_t mos
     const Individual& ancestor = individual(run, step);
     const std::string score = score_text(run.settings(), ancestor);
     if (at_once) {
-      add(film.clips.front(), run, step, fmt::format("generation {}\n{}\nrobot {}", ancestor.generation, score, step));
+      add(film, film.clips.front(), run, step,
+          fmt::format("generation {}\n{}\nrobot {}", ancestor.generation, score, step));
       continue;
     }
     Clip& clip = film.clips.emplace_back();
-    add(clip, run, step, "");
+    add(film, clip, run, step, "");
     clip.title = fmt::format("generation {}\n{}\nrobot {}", ancestor.generation, score, step);
   }
   if (!at_once) show_at_one_scale(film.clips);
@@ -225,7 +230,7 @@ RunFilm film_of_map(const RunHistory& run) {
       fmt::format("{}\ngeneration {}: {} of {}, the best {}", name_of_run(run), run.generations().back().number,
                   map.robots.size(), count_text(map.board->values.size(), "cell", "cells"),
                   score_text(run.settings(), individual(run, run.living().front())));
-  return {.clips = {std::move(clip)}, .board = map.board, .notes = map.notes};
+  return {.clips = {std::move(clip)}, .board = map.board, .notes = map.notes, .ids = map.robots};
 }
 
 }  // namespace

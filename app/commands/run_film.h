@@ -2,6 +2,7 @@
 // Films and pictures of an evolution: which of its individuals they show, and what is written beside them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ struct RunFilm {
   std::vector<Clip> clips;             // one after another
   std::shared_ptr<const Board> board;  // of the only clip, or nothing
   std::vector<std::string> notes;
+  std::vector<std::uint64_t> ids;  // of the robots of all clips in the run
 };
 
 class RunFilmOptions {

@@ -26,6 +26,8 @@ struct ExportFormat {
   // What it can hold: a pose, a motion, or both; nullptr = it cannot.
   void (*pose)(const ExportedRobot&, const Pose&, const std::filesystem::path&, const ExportChoices&) = nullptr;
   void (*motion)(const ExportedRobot&, RecordedMotion&, const std::filesystem::path&, const ExportChoices&) = nullptr;
+  // Several motions in one file; nullptr = it holds one robot.
+  void (*motions)(std::span<RecordedMotion>, const std::filesystem::path&, const ExportChoices&) = nullptr;
   // Files and a folder that are written beside the file; nullptr = none.
   std::vector<std::filesystem::path> (*files_beside)(const std::filesystem::path&) = nullptr;
   std::filesystem::path (*folder_beside)(const std::filesystem::path&) = nullptr;

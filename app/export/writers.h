@@ -3,8 +3,14 @@
 // replaced. All throw as OutputStream.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "app/export/exported_robot.h"
 #include "app/export/output_stream.h"
@@ -13,11 +19,33 @@
 
 namespace mercury {
 
+struct Board;
+
 // Called after each frame; may throw to stop the work, which then leaves nothing behind.
 using FrameWatch = std::function<void(std::size_t done, std::size_t total)>;
 
+// An individual of an evolution, as a node of a family tree.
+struct ExportedIndividual {
+  std::uint64_t id = 0;
+  std::vector<std::uint64_t> parents;
+  int generation = 0;
+  double score = 0;
+  std::optional<std::size_t> robot;  // of those that are exported
+};
+
+// What a page says besides motions.
+struct ExportNotes {
+  std::string title;                               // empty = the robots' names
+  std::string subtitle;                            // empty = how many robots there are
+  std::string command;                             // that makes the file again
+  std::vector<std::vector<std::string>> captions;  // lines below the names, per robot; empty = none
+  std::shared_ptr<const Board> board;              // a map whose cells have the robots, or nothing
+  std::vector<ExportedIndividual> family;          // the robots and their kin, by id; empty = none
+};
+
 struct ExportChoices {
   bool springs = false;  // also the springs, as lines
+  ExportNotes notes;
   FrameWatch watch = [](std::size_t, std::size_t) {};
 };
 
@@ -62,6 +90,11 @@ void write_usda_motion(const ExportedRobot& robot, RecordedMotion& motion, const
 // finished.
 void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                 const ExportChoices& choices);
+
+// A web page that plays all motions side by side. They are of one recording.
+void write_html(std::span<RecordedMotion> motions, const std::filesystem::path& path, const ExportChoices& choices);
+void write_html_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                       const ExportChoices& choices);
 
 // Text of an XML document, between quotes too.
 std::string xml_text(const std::string& text);

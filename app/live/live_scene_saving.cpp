@@ -2,7 +2,6 @@
 // What the window's scene writes: robot files, commands, tables, videos, repros of explosions, and current poses and
 // motions for other programs.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +11,9 @@
 
 #include "app/base/csv.h"
 #include "app/export/export.h"
+#include "app/export/simulated_motion.h"
 #include "app/live/live_scene_parts.h"
 #include "app/live/scene_text.h"
-#include "app/recording/recorder.h"
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
 #include "mercury/simulation.h"
@@ -23,8 +22,6 @@ namespace mercury {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double frame_rate = 30;  // of motions, per second of simulated time
 
 // As frames show it: with its colors, its name and its materials as they are in the window.
 struct Exported {
@@ -52,23 +49,6 @@ void make_folder_of(const fs::path& path) {
   if (path.has_parent_path()) fs::create_directories(path.parent_path());
 }
 
-// A recording that lives as long as the export from it.
-class TemporaryRecording {
- public:
-  explicit TemporaryRecording(const fs::path& beside)
-      : path_(beside.parent_path() / fmt::format(".{}.{}.h5", beside.filename().string(), getpid())) {}
-  ~TemporaryRecording() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  TemporaryRecording(const TemporaryRecording&) = delete;
-  TemporaryRecording& operator=(const TemporaryRecording&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 struct Canceled {};
 
 void require_going(const WorkControl& control) {
@@ -81,17 +61,10 @@ std::int64_t record(const Exported& exported, const Configuration& configuration
   Simulation simulation(configuration, std::vector{exported.robot});
   for (std::size_t id = 1; id < exported.materials.size(); ++id)
     simulation.set_material(0, static_cast<MaterialId>(id), exported.materials[id]);
-  const std::int64_t last = std::llround(seconds / configuration.dt);
-  const std::int64_t every = std::max<std::int64_t>(1, std::llround(1 / (frame_rate * configuration.dt)));
-  Recorder recorder(simulation, path, {.every = every, .last_step = last});
-  while (simulation.steps() < last) {
+  return record_motion(simulation, seconds, path, std::nullopt, [&](std::int64_t frames) {
     require_going(control);
-    simulation.step(std::min(last, recorder.next_step()) - simulation.steps());
-    recorder.observe();
-    control.progress(recorder.frames());
-  }
-  recorder.finish();
-  return recorder.frames();
+    control.progress(frames);
+  });
 }
 
 }  // namespace
@@ -277,7 +250,7 @@ SaveResult LiveScene::export_motion(RobotId robot, const fs::path& path, double 
     if (const auto files = existing_outputs(format, path); !overwrite && !files.empty())
       return {SaveResult::Outcome::exists, files, ""};
     make_folder_of(path);
-    const auto frames = static_cast<std::int64_t>(seconds * frame_rate) + 1;
+    const auto frames = motion_frames(configuration, seconds);
     parts_->background.begin(
         "exporting " + path.filename().string(), 2 * frames,
         [&messages = parts_->messages, &format, exported, configuration, path, seconds](WorkControl& control) {

@@ -8,8 +8,10 @@
 namespace mercury::test {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 class ExportCommand : public FolderTest {
  protected:
@@ -102,6 +104,42 @@ TEST_F(ExportCommand, StillTakesThePoseOfTheNearestFrame) {
   EXPECT_NE(vertices(read("rest.obj")), vertices(read("exact.obj")));
 }
 
+TEST_F(ExportCommand, RobotsAreSimulatedForAMotion) {
+  ASSERT_EQ(mercury({"run", robot_, "--seconds", "0.1", "--device", "cpu", "--record", path("run.h5")}).status, 0);
+  ASSERT_EQ(mercury({"export", path("run.h5"), "-o", path("recorded.pc2")}).status, 0);
+  const Outcome outcome =
+      mercury({"export", robot_, "--seconds", "0.1", "--device", "cpu", "-o", path("simulated.pc2")});
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(outcome.output, path("simulated.pc2") + "\n");
+  EXPECT_EQ(read("simulated.pc2"), read("recorded.pc2"));
+  EXPECT_THAT(listing("."), Not(Contains(HasSubstr(".simulated"))));  // no recording is left
+  refuses({robot_, "-o", path("eel.stl"), "--seconds", "1"},
+          "--seconds: stl holds one pose; give " + format_names(holds_simulated_motion));
+  refuses({robot_, "-o", path("eel.html"), "--seconds", "0"}, "--seconds: 0 is not accepted for a motion; give more");
+  refuses({robot_, "-o", path("eel.stl"), "--dt", "0.002"},
+          "--dt: goes with a motion, and stl is written at rest; give --seconds, too, and " +
+              format_names(holds_simulated_motion));
+  refuses({path("run.h5"), "-o", path("eel.pc2"), "--dt", "0.002"},
+          "--dt: a recording has its own configuration; give robots to simulate");
+}
+
+TEST_F(ExportCommand, APageHoldsAllRobots) {
+  const Outcome outcome =
+      mercury({"export", path("robots"), "--seconds", "0.1", "--device", "cpu", "-o", path("two.html")});
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(outcome.output, path("two.html") + "\n");
+  const std::string page = read("two.html");
+  for (const char* text : {"voxel-7-0", "voxel-7-1", "mercury export", "id=\"robot-1\""})
+    EXPECT_THAT(page, HasSubstr(text));
+  // Nothing comes from a network; only the name of SVG looks like an address.
+  const std::string name_of_svg = "http://www.w3.org/2000/svg";
+  for (std::size_t at = page.find("http"); at != std::string::npos; at = page.find("http", at + 1))
+    EXPECT_EQ(page.substr(at, name_of_svg.size()), name_of_svg);
+  EXPECT_THAT(page, Not(HasSubstr("{{")));  // every part is filled in
+  refuses({path("robots"), "--lineage", "best", "-o", path("a.html")},
+          "--lineage: chooses robots of a run of mercury evolve; give its folder");
+}
+
 TEST_F(ExportCommand, WhatCannotBeUsedIsOneLine) {
   const std::string names = format_names();
   refuses({robot_, "-o", path("eel.xyz")}, "-o: " + path("eel.xyz") + ": \".xyz\" is no format; give a file of " +
@@ -113,8 +151,8 @@ TEST_F(ExportCommand, WhatCannotBeUsedIsOneLine) {
           "--springs: a .stl file holds no springs; give " + format_names(holds_springs));
   refuses({robot_, "-o", path("eel.stl"), "--still", "1"},
           "--still: chooses frames of a recording (.h5), and there is none");
-  refuses({robot_, "-o", path("eel.pvd")},
-          "--format: pvd holds a motion, which comes from a recording: mercury run ROBOT --seconds 5 --record run.h5; "
+  refuses({robot_, "-o", path("eel.xdmf")},
+          "--format: xdmf holds a motion, which comes from a recording: mercury run ROBOT --seconds 5 --record run.h5; "
           "for one pose give " +
               format_names(holds_pose));
   refuses({robot_, "-o", path("eel.stl"), "--robot", "eel"},

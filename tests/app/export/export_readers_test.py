@@ -15,6 +15,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
+import page_reading
 
 MERCURY = sys.argv[1]
 
@@ -270,6 +271,61 @@ class Hyperslabs(Case):
                 np.testing.assert_array_equal(self.item(file.parent, grid.find("Attribute[@Name='velocity']")[0]), velocity)
         material = springs[0].find("Attribute[@Name='material']")
         np.testing.assert_array_equal(self.item(file.parent, material[0]), self.spring_materials)
+
+
+class WebPage(Case):
+    """What the page holds, without a browser; page_test.py opens it in one."""
+
+    needs = "h5py"
+
+    def test_positions_are_within_a_quarter_of_a_millimeter(self):
+        mercury("run", self.folder / "eel.json", "--seconds", 0.5, "--every", 40, "--device", "cpu", "--record",
+                self.folder / "swim.h5")
+        page = page_reading.Page(Path(self.export_motion("swim.html")))
+        times, recorded, _ = self.recorded()
+        robot = page.robots[0]
+        self.assertEqual(robot["step"], 0.0005)
+        np.testing.assert_allclose(robot["start"] + np.arange(robot["frames"]) / robot["rate"], times, atol=1e-9)
+        np.testing.assert_allclose(page.positions(0), recorded, atol=0.00025 + 1e-6)
+        tables = page.tables(0)
+        np.testing.assert_array_equal(tables["faces"], self.faces)
+        np.testing.assert_array_equal(tables["springs"][:, :2], self.springs)
+        lengths = np.linalg.norm(self.masses[self.springs[:, 0]] - self.masses[self.springs[:, 1]], axis=1)
+        np.testing.assert_allclose(tables["springs"][:, 2] * robot["rest_step"], lengths, atol=robot["rest_step"] / 2 + 1e-6)
+
+    def test_many_frames_per_second_are_thinned_to_30(self):
+        mercury("run", self.folder / "eel.json", "--seconds", 0.5, "--every", 1, "--device", "cpu", "--record",
+                self.folder / "swim.h5")
+        page = page_reading.Page(Path(self.export_motion("swim.html")))
+        times, recorded, _ = self.recorded()
+        self.assertEqual((page.robots[0]["rate"], page.robots[0]["frames"]), (30, 16))
+        for frame, shown in enumerate(page.positions(0)):
+            expected = [[np.interp(frame / 30, times, recorded[:, mass, axis]) for axis in range(3)]
+                        for mass in range(recorded.shape[1])]
+            np.testing.assert_allclose(shown, expected, atol=0.00025 + 2e-6)
+
+    def test_sizes_and_hash(self):
+        def exported(*robots):
+            mercury("export", *robots, "--seconds", 10, "--device", "cpu", "-o", self.folder / "robots.html", "--force")
+            return page_reading.Page(self.folder / "robots.html")
+        page = exported("sample:eel")
+        print("viewer", page.viewer_bytes(), "B; eel,", page.robots[0]["masses"], "masses, 10 s:", len(page.text), "B")
+        self.assertLessEqual(page.viewer_bytes(), 100_000)
+        self.assertLessEqual(len(page.text) * 336 / page.robots[0]["masses"], 1_000_000)
+        result = json.loads(mercury("run", "sample:eel", "--seconds", 9.999, "--device", "cpu", "--json"))
+        facts = dict(page.robots[0]["facts"])
+        self.assertEqual(facts["final state"], result["robots"][0]["hash"] + " at 9.999 s")  # the last frame
+        six = exported(*(f"sample:{name}" for name in ("eel", "fish", "manta", "squid", "ray", "turtle")))
+        print("six robots:", len(six.text), "B")
+        self.assertLessEqual(len(six.text), 4_000_000)
+
+    def test_names_cannot_break_the_page(self):
+        robot = json.loads((self.folder / "eel.json").read_text())
+        robot["name"] = "</script><b>&\"{{page}}"
+        (self.folder / "eel.json").write_text(json.dumps(robot))
+        page = page_reading.Page(Path(self.export_motion("swim.html")))
+        self.assertEqual(page.robots[0]["name"], robot["name"])
+        self.assertNotIn("<b>", page.text)
 
 
 if __name__ == "__main__":
