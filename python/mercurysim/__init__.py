@@ -30,6 +30,7 @@ from ._mercury import (
     load,
     voxel,
 )
+from ._pages import Page, show
 from ._pictures import Film, Look, Video, picture, render
 
 __version__: str = getattr(_mercury, "__version__")
@@ -46,6 +47,7 @@ __all__ = [
     "Look",
     "Ocean",
     "OceanSimple",
+    "Page",
     "Recording",
     "Result",
     "Results",
@@ -57,6 +59,7 @@ __all__ = [
     "load",
     "picture",
     "render",
+    "show",
     "voxel",
 ]
 

@@ -4,11 +4,15 @@
 
 #include <nanobind/stl/string.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "app/export/simulated_motion.h"
 #include "mercury/error.h"
+#include "python/src/batch.h"
 #include "python/src/bindings.h"
 #include "python/src/gil.h"
 #include "python/src/values.h"
@@ -36,6 +40,8 @@ struct Request {
   std::optional<double> still;
   FrameRange range;
   bool springs = false;
+  std::optional<double> seconds;
+  nb::object environment;
 
   // Files are replaced; a folder must be new or empty.
   void prepare(const ExportFormat& chosen) const {
@@ -52,63 +58,144 @@ struct Request {
   }
 };
 
-void export_robot(const Robot& robot, const Request& request) {
+void refuse_choices(const Request& request) {
   if (request.still || request.range.from || request.range.to || request.range.every != 1 || !request.robot.is_none())
-    throw ParameterError("robot, still, start, end, every", "choose from a Recording; a robot is exported at rest");
-  const ExportFormat& format = format_for(request.path, request.format);
+    throw ParameterError("robot, still, start, end, every",
+                         "choose from a Recording; a robot is exported at rest, or "
+                         "its motion for `seconds`");
+}
+
+void export_pose(const Robot& robot, const ExportFormat& format, const Request& request) {
   require_pose(format, robot, request.springs);
   const ReleasedGil released;
   request.prepare(format);
   format.pose(exported_robot(robot), rest_pose(robot), request.path, {.springs = request.springs});
 }
 
-std::size_t robot_of(const TrajectoryReader& recording, nb::handle robot) {
+std::vector<std::size_t> robots_of(const TrajectoryReader& recording, nb::handle robot, bool several) {
   const std::string name = robot.is_none()                  ? ""
                            : nb::isinstance<nb::str>(robot) ? text_from("robot", robot)
                                                             : std::to_string(whole_from("robot", robot, 0));
-  const std::vector<std::size_t> chosen = chosen_robots(name, names_of_robots(recording));
-  if (chosen.size() > 1)
+  std::vector<std::size_t> chosen = chosen_robots(name, names_of_robots(recording));
+  if (chosen.size() > 1 && !several)
     throw ParameterError("robot", "the recording has " + std::to_string(chosen.size()) + "; give a name or an index");
-  return chosen.front();
+  return chosen;
 }
 
-// Ctrl-C.
-void check_signals(std::optional<nb::python_error>& stopped) {
-  const nb::gil_scoped_acquire acquired;
-  if (PyErr_CheckSignals() != 0) stopped.emplace();
+// Work without the GIL that Ctrl-C ends between two frames.
+class InterruptibleWork {
+ public:
+  // Call it after each frame.
+  void check() {
+    const nb::gil_scoped_acquire acquired;
+    if (PyErr_CheckSignals() == 0) return;
+    stopped_.emplace();
+    throw Interrupted();
+  }
+  template <class Work>
+  void run(const Work& work) {
+    try {
+      const ReleasedGil released;
+      work();
+    } catch (const Interrupted&) {
+      throw nb::python_error(std::move(*stopped_));
+    }
+  }
+
+ private:
+  struct Interrupted {};
+  std::optional<nb::python_error> stopped_;
+};
+
+void write_motions(std::vector<RecordedMotion>& motions, const ExportFormat& format, const Request& request,
+                   InterruptibleWork& work) {
+  const ExportChoices choices{
+      .springs = request.springs, .notes = {}, .watch = [&](std::size_t, std::size_t) { work.check(); }};
+  if (format.motions)
+    format.motions(motions, request.path, choices);
+  else
+    format.motion(motions.front().robot(), motions.front(), request.path, choices);
 }
 
 // Reads the file again: the Recording may be in use by another thread.
 void export_recording(const TrajectoryReader& given, const Request& request) {
-  struct Interrupted {};
   if (request.still && (request.range.from || request.range.to || request.range.every != 1))
     throw ParameterError("still", "not together with start, end and every, which choose a motion");
+  if (request.seconds) throw ParameterError("seconds", "a Recording has its own length; give start and end");
   const ExportFormat& format = format_for(request.path, request.format);
-  const std::size_t robot = robot_of(given, request.robot);
-  std::optional<nb::python_error> stopped;
-  try {
-    const ReleasedGil released;
+  const std::vector<std::size_t> robots = robots_of(given, request.robot, format.motions != nullptr && !request.still);
+  InterruptibleWork work;
+  work.run([&] {
     const auto recording = std::make_shared<TrajectoryReader>(given.path());
-    RecordedMotion motion = request.still ? RecordedMotion::still(recording, robot, *request.still)
-                                          : RecordedMotion(recording, robot, request.range);
-    const Robot& body = motion.robot().robot;
-    request.still ? require_pose(format, body, request.springs) : require_motion(format, body, request.springs);
+    if (request.still) {
+      RecordedMotion motion = RecordedMotion::still(recording, robots.front(), *request.still);
+      require_pose(format, motion.robot().robot, request.springs);
+      request.prepare(format);
+      return format.pose(motion.robot(), motion.pose_with_velocities(0), request.path, {.springs = request.springs});
+    }
+    std::vector<RecordedMotion> motions;
+    for (const std::size_t robot : robots) {
+      motions.emplace_back(recording, robot, request.range);
+      require_motion(format, motions.back().robot().robot, request.springs);
+    }
     request.prepare(format);
-    const ExportChoices choices{.springs = request.springs, .watch = [&](std::size_t, std::size_t) {
-                                  check_signals(stopped);
-                                  if (stopped) throw Interrupted();
-                                }};
-    if (request.still)
-      format.pose(motion.robot(), motion.pose_with_velocities(0), request.path, choices);
-    else
-      format.motion(motion.robot(), motion, request.path, choices);
-  } catch (const Interrupted&) {
-    throw nb::python_error(std::move(*stopped));
+    write_motions(motions, format, request, work);
+  });
+}
+
+void export_simulated(Simulation& simulation, const ExportFormat& format, const Request& request) {
+  const double seconds = request.seconds.value_or(10);
+  if (!(seconds > 0 && seconds / simulation.configuration().dt < 1e9))
+    throw ParameterError("seconds", "give a number of seconds above 0");
+  for (std::size_t i = 0; i < simulation.size(); ++i) require_motion(format, simulation.robot(i), request.springs);
+  if (simulation.size() != 1 && !format.motions)
+    throw ParameterError("what", "has " + std::to_string(simulation.size()) + " robots, and a " +
+                                     std::string(format.name) + " file holds one; give one of them");
+  InterruptibleWork work;
+  work.run([&] {
+    request.prepare(format);
+    const TemporaryRecording recording(request.path);
+    record_motion(simulation, seconds, recording.path(), std::nullopt, [&](std::int64_t) { work.check(); });
+    const auto reader = std::make_shared<TrajectoryReader>(recording.path());
+    std::vector<RecordedMotion> motions;
+    for (std::size_t i = 0; i < simulation.size(); ++i) motions.emplace_back(reader, i);
+    write_motions(motions, format, request, work);
+  });
+}
+
+// Goes on from where the batch is, which stays there.
+void export_batch(const Batch& batch, const Request& request) {
+  refuse_choices(request);
+  if (!request.environment.is_none()) throw ParameterError("environment", "a batch has one already");
+  const ExportFormat& format = format_for(request.path, request.format);
+  const SharedRobots robots = batch.robots();
+  if (robots.empty()) throw InputError("there is no robot to export");
+  std::optional<Simulation> copy;
+  batch.use([&](const Simulation& simulation) {
+    copy.emplace(simulation.configuration(), robots);
+    copy->restore(simulation.save());
+  });
+  export_simulated(*copy, format, request);
+}
+
+void export_robots(const SharedRobots& robots, const Request& request) {
+  refuse_choices(request);
+  const ExportFormat& format = format_for(request.path, request.format);
+  if (robots.empty()) throw InputError("there is no robot to export");
+  if (!request.seconds && (holds_pose(format) || !holds_simulated_motion(format))) {
+    if (robots.size() > 1) throw ParameterError("what", "one Robot is expected for a pose");
+    return export_pose(*robots.front(), format, request);
   }
+  // Where the first robot is made for.
+  const Environment environment =
+      request.environment.is_none() ? exported_robot(*robots.front()).environment : environment_of(request.environment);
+  Simulation simulation(Configuration{.environment = environment}, robots);
+  export_simulated(simulation, format, request);
 }
 
 void export_any(nb::handle what, nb::handle path, nb::handle format, nb::handle robot, nb::handle still,
-                nb::handle start, nb::handle end, nb::handle every, nb::handle springs) {
+                nb::handle start, nb::handle end, nb::handle every, nb::handle springs, nb::handle seconds,
+                nb::handle environment) {
   const Request request{.path = path_from("path", path),
                         .format = format.is_none() ? "" : text_from("format", format),
                         .robot = nb::borrow(robot),
@@ -116,38 +203,49 @@ void export_any(nb::handle what, nb::handle path, nb::handle format, nb::handle 
                         .range = {.from = number_or_none("start", start),
                                   .to = number_or_none("end", end),
                                   .every = whole_from("every", every, 1)},
-                        .springs = bool_from("springs", springs)};
-  SharedRobot shared;
+                        .springs = bool_from("springs", springs),
+                        .seconds = number_or_none("seconds", seconds),
+                        .environment = nb::borrow(environment)};
   try {
-    if (nb::try_cast(what, shared)) return export_robot(*shared.robot, request);
     if (nb::isinstance<TrajectoryReader>(what))
       return export_recording(nb::cast<const TrajectoryReader&>(what), request);
+    if (nb::isinstance<Batch>(what)) return export_batch(nb::cast<const Batch&>(what), request);
+    SharedRobot shared;
+    const bool is_robot = nb::try_cast(what, shared);
+    if (!is_robot && (!PySequence_Check(what.ptr()) || nb::isinstance<nb::str>(what)))
+      refuse_type("what", "a Robot, a Batch, a Recording or a sequence of Robots", what);
+    return export_robots(python::robots_of(what), request);
   } catch (const ParameterError& error) {
     rethrow_as_argument(error);
   }
-  refuse_type("what", "a Robot or a Recording", what);
 }
 
 }  // namespace
 
 void bind_export(nb::module_& module) {
   std::string doc =
-      "Writes a Robot at rest, or the motion of a robot of a Recording, as files of another program. The extension of "
-      "`path` says the format, or `format`:\n\n";
+      "Writes a Robot at rest, or a motion, as files of another program: the motion of a robot of a Recording, or of "
+      "robots that are simulated for `seconds`. The extension of `path` says the format, or `format`:\n\n";
   for (const ExportFormat& format : export_formats())
     doc += "- " + std::string(format.name) + ": " + std::string(format.help) + "\n";
   doc +=
       "\nOf a recording, `robot` is a name or an index (not needed if there is one), `start`, `end` [s from the first "
       "frame] and `every` choose frames, and `still` [s] is the moment of a pose. `springs` writes the springs as "
       "lines, "
-      "too. Files are replaced, whole or not at all. Raises InputError for what the format cannot hold.";
+      "too. Without `seconds`, robots are simulated for 10 s where the format holds motions alone, in `environment` or "
+      "that which they are made for. A Batch goes on from where it is, and stays there. A web page (html) holds "
+      "several "
+      "robots, also all of a recording, a batch or a sequence. Files are replaced, whole or not at all. Raises "
+      "InputError for what the format cannot hold.";
   module.def("export", &export_any, nb::arg("what").none(), nb::arg("path").none(),
              nb::arg("format").none() = nb::none(), nb::kw_only(), nb::arg("robot").none() = nb::none(),
              nb::arg("still").none() = nb::none(), nb::arg("start").none() = nb::none(),
              nb::arg("end").none() = nb::none(), nb::arg("every").none() = 1, nb::arg("springs").none() = false,
-             nb::sig("def export(what: Robot | Recording, path: str | os.PathLike[str], format: str | None = None, *, "
+             nb::sig("def export(what: Robot | Batch | Recording | collections.abc.Sequence[Robot], path: str | "
+                     "os.PathLike[str], format: str | None = None, *, "
                      "robot: str | int | None = None, still: float | None = None, start: float | None = None, "
-                     "end: float | None = None, every: int = 1, springs: bool = False) -> None"),
+                     "end: float | None = None, every: int = 1, springs: bool = False, seconds: float | None = None, "
+                     "environment: object = None) -> None"),
              doc.c_str());
 }
 

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
+import json
+import re
 import struct
 
 import numpy as np
@@ -60,13 +62,43 @@ def test_what_cannot_be_used_is_one_line(recording, robots, tmp_path):
     refused('format: "gif" is not accepted; give obj, ', robots[0], tmp_path / "a", "gif")
     refused("format: .* does not say it; give obj, ", robots[0], tmp_path / "a.xyz")
     refused("path: .* is a name of obj files", robots[0], tmp_path / "a.obj", "stl")
-    refused("format: pc2 holds a motion", robots[0], tmp_path / "a.pc2")
+    refused("format: xdmf holds a motion", robots[0], tmp_path / "a.xdmf")
+    refused("seconds: give a number of seconds above 0", robots[0], tmp_path / "a.pc2", seconds=0)
+    refused("what: has 2 robots, and a pc2 file holds one", robots, tmp_path / "a.pc2")
+    refused("what: one Robot is expected for a pose", robots, tmp_path / "a.stl")
+    refused("seconds: a Recording has its own length", recording, tmp_path / "a.html", seconds=1)
     refused("springs: a .stl file holds no springs", robots[0], tmp_path / "a.stl", springs=True)
     refused("choose from a Recording", robots[0], tmp_path / "a.stl", still=0)
     refused("robot: the recording has 2; give a name or an index", recording, tmp_path / "a.glb")
     refused("robot: no robot is named \"7\"", recording, tmp_path / "a.glb", robot=7)
     refused("start: 3 is not accepted; the recording has 0 to 0.2 s", recording, tmp_path / "a.glb", robot=0, start=3)
     refused("format: stl holds one pose", recording, tmp_path / "a.stl", robot=0)
-    with pytest.raises(TypeError, match="what: must be a Robot or a Recording, not list"):
-        mercurysim.export(robots, tmp_path / "a.stl")
+    with pytest.raises(TypeError, match="what: must be a Robot, a Batch, a Recording or a sequence of Robots, not int"):
+        mercurysim.export(7, tmp_path / "a.stl")
     assert [path.name for path in tmp_path.iterdir() if path.suffix not in (".h5", ".json")] == []
+
+
+def page_of(text):
+    return json.loads(re.search('<script type="application/json" id="page">(.*?)</script>', text, re.DOTALL).group(1))
+
+
+def test_robots_are_simulated_for_a_motion(robots, recording, tmp_path):
+    mercurysim.export(robots[1], tmp_path / "a.pc2", seconds=0.2, environment="ocean")
+    points, _, _, samples = struct.unpack_from("<iffi", (tmp_path / "a.pc2").read_bytes(), 16)
+    assert (points, samples) == (len(np.unique(robots[1].faces)), 1 + 200 // 33)
+
+
+def test_show_is_a_page_of_all_robots_and_leaves_a_batch_alone(robots, recording, tmp_path):
+    batch = mercurysim.Batch(robots, device="cpu")
+    batch.step(10)
+    before = [batch.hash(i) for i in range(2)]
+    page = mercurysim.show(batch, seconds=0.1)
+    assert [robot["name"] for robot in page_of(page.text)["robots"]] == [robot.name for robot in robots]
+    assert page_of(page.text)["robots"][0]["start"] == pytest.approx(0.01)
+    assert [batch.hash(i) for i in range(2)] == before and batch.time == pytest.approx(0.01)
+    page.save(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text() == page.text
+    assert "srcdoc=" in page._repr_html_() and "<script" not in page._repr_html_()
+    for shown in (robots[0], recording):
+        assert "srcdoc=" in shown._repr_html_()
+    assert len(page_of(mercurysim.show(recording).text)["robots"]) == 2
