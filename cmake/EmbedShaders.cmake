@@ -9,7 +9,7 @@ foreach(name IN LISTS files)
   string(APPEND entries "    {\"${name}\", R\"shader(${text})shader\"},\n")
 endforeach()
 file(WRITE ${OUTPUT} "// Made from shaders/ at build time.
-#include \"render/context/programs.h\"
+#include \"render/context/shader_source.h\"
 
 namespace mercury::render {
 namespace {

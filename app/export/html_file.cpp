@@ -26,7 +26,7 @@
 #include "mercury/error.h"
 #include "mercury/fnv.h"
 #include "mercury/observables.h"
-#include "render/context/programs.h"
+#include "render/context/shader_source.h"
 #include "render/style.h"
 
 namespace mercury {

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <type_traits>
 
+#include "app/base/shell_word.h"
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 
@@ -264,19 +265,6 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
   std::ranges::sort(command.notes);
   command.notes.erase(std::unique(command.notes.begin(), command.notes.end()), command.notes.end());
   return command;
-}
-
-std::string shell_quoted(const std::string& word) {
-  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char letter : word) {
-    if (letter == '\'')
-      quoted += "'\\''";
-    else
-      quoted += letter;
-  }
-  return quoted + "'";
 }
 
 std::string toml_of(const OptionValues& options, const std::string& comment) {

@@ -29,9 +29,6 @@ OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usua
 // `subcommand`: "view", or "render", which writes scene.mp4.
 CommandText command_text(const SceneDocument& document, const ViewSettings& settings, const std::string& subcommand);
 
-// A word for the shell, in quotes if it needs them.
-std::string shell_quoted(const std::string& word);
-
 // A value of a TOML file: numbers as they are, all else as text in quotes.
 std::string toml_value(const std::string& text);
 

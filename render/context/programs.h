@@ -4,12 +4,12 @@
 
 #include <initializer_list>
 #include <map>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "render/context/gl_objects.h"
+#include "render/context/shader_source.h"
 
 namespace mercury::render {
 
@@ -30,14 +30,6 @@ class ProgramVariants {
 
 // "#define NAME value\n"
 std::string define(std::string_view name, int value);
-
-// A file of shaders/, embedded at build time.
-struct ShaderSource {
-  std::string_view name;  // "skin.frag"
-  std::string_view text;
-};
-
-std::span<const ShaderSource> shader_sources();
 
 // The text of one shader: #version, `defines`, then the file, with each #include "file" replaced by that file at its
 // first occurrence. Throws std::out_of_range for an unknown name.
