@@ -241,6 +241,7 @@ void bind_export(nb::module_& module) {
              nb::arg("format").none() = nb::none(), nb::kw_only(), nb::arg("robot").none() = nb::none(),
              nb::arg("still").none() = nb::none(), nb::arg("start").none() = nb::none(),
              nb::arg("end").none() = nb::none(), nb::arg("every").none() = 1, nb::arg("springs").none() = false,
+             nb::arg("seconds").none() = nb::none(), nb::arg("environment").none() = nb::none(),
              nb::sig("def export(what: Robot | Batch | Recording | collections.abc.Sequence[Robot], path: str | "
                      "os.PathLike[str], format: str | None = None, *, "
                      "robot: str | int | None = None, still: float | None = None, start: float | None = None, "
