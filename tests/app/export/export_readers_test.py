@@ -308,14 +308,14 @@ class WebPage(Case):
         def exported(*robots):
             mercury("export", *robots, "--seconds", 10, "--device", "cpu", "-o", self.folder / "robots.html", "--force")
             return page_reading.Page(self.folder / "robots.html")
-        page = exported("sample:eel")
+        page = exported("sample:paper/eel")
         print("viewer", page.viewer_bytes(), "B; eel,", page.robots[0]["masses"], "masses, 10 s:", len(page.text), "B")
         self.assertLessEqual(page.viewer_bytes(), 100_000)
         self.assertLessEqual(len(page.text) * 336 / page.robots[0]["masses"], 1_000_000)
-        result = json.loads(mercury("run", "sample:eel", "--seconds", 9.999, "--device", "cpu", "--json"))
+        result = json.loads(mercury("run", "sample:paper/eel", "--seconds", 9.999, "--device", "cpu", "--json"))
         facts = dict(page.robots[0]["facts"])
         self.assertEqual(facts["final state"], result["robots"][0]["hash"] + " at 9.999 s")  # the last frame
-        six = exported(*(f"sample:{name}" for name in ("eel", "fish", "manta", "squid", "ray", "turtle")))
+        six = exported(*(f"sample:paper/{name}" for name in ("eel", "fish", "manta", "squid", "ray", "turtle")))
         print("six robots:", len(six.text), "B")
         self.assertLessEqual(len(six.text), 4_000_000)
 

@@ -189,7 +189,7 @@ class Run(Case):
 
 class Firefox(Case):
     def test_page_draws_and_plays(self):
-        self.export("sample:eel", "--seconds", 0.5, "-o", self.folder / "eel.html")
+        self.export("sample:paper/eel", "--seconds", 0.5, "-o", self.folder / "eel.html")
         page = browser.Firefox()
         self.addCleanup(page.close)
         page.open(self.folder / "eel.html")
