@@ -49,6 +49,8 @@ def shortened(arguments):
         extra = ["--generations", "11"] if "--resume" in arguments else []
     if command == "new" and "--best-of" not in arguments:
         extra = []
+    if command == "export" and any(word.endswith(".html") for word in arguments) and not any(word.endswith(".h5") for word in arguments):
+        extra = ["--seconds", "0.1"]  # the robots are simulated
     if command == "new" and "--settle" in arguments:
         extra += ["--settle", "0.05"]
     if command in WRITES:
