@@ -207,7 +207,7 @@ TEST(Comparison, BothSidesAreAtTheSameStepAfterEachPause) {
     while (scene.snapshot().steps < before + 50) {
       scene.frame();
       ASSERT_TRUE(!scene.snapshot().second || scene.snapshot().second->steps == scene.snapshot().steps);
-      nap();
+      test::nap();
     }
     scene.pause();
     scene.wait_until_done();

@@ -32,7 +32,7 @@ class LiveRunTest : public test::FolderTest {
   }
   // Waits until the process of `run` has ended.
   static void finish(LiveRun& run) {
-    for (; run.activity() != Activity::none; nap()) run.frame();
+    for (; run.activity() != Activity::none; test::nap()) run.frame();
     run.wait();
   }
   static std::vector<LiveRobot> founders(std::size_t count) {
@@ -189,7 +189,7 @@ TEST_F(LiveRunTest, TheEndOfTheWindowStopsTheProcessInAnOrderlyWay) {
     LiveRun run(program("trap 'echo orderly > " + path("end") + "; exit 1' TERM; echo > " + path("ready") +
                         "; while :; do sleep 0.01; done"));
     run.evolve(request(), founders(1));
-    for (; !std::filesystem::exists(path("ready")); nap()) run.frame();
+    for (; !std::filesystem::exists(path("ready")); test::nap()) run.frame();
   }
   EXPECT_EQ(read("end"), "orderly\n");
 }
@@ -199,12 +199,12 @@ TEST_F(LiveRunTest, AProcessThatIsLeftRunningOutlivesTheWindow) {
     LiveRun run(program("echo > " + path("ready") + "; while [ ! -e " + path("go") +
                         " ]; do sleep 0.01; done; echo > " + path("end")));
     run.evolve(request(), founders(1));
-    for (; !std::filesystem::exists(path("ready")); nap()) run.frame();
+    for (; !std::filesystem::exists(path("ready")); test::nap()) run.frame();
     run.leave_running();
     EXPECT_EQ(run.activity(), Activity::none);
   }
   write("go", "");
-  while (!std::filesystem::exists(path("end"))) nap();
+  while (!std::filesystem::exists(path("end"))) test::nap();
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
   scene.play();
   std::uint64_t pictures = 0;
   const auto samples = [&] { return scene.series(test::ids_of(scene)[0]).times.size(); };
-  for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5 || samples() < 3; nap()) {
+  for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5 || samples() < 3; test::nap()) {
     scene.frame();
     pictures += scene.snapshot().steps != seen;
     seen = scene.snapshot().steps;

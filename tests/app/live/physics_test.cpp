@@ -61,7 +61,7 @@ TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
   physics.set_scene(robots, in_environment());
   physics.set_speed(unlimited_speed);
   physics.play();
-  while (physics.newest()->steps < 10) nap();  // commands wait for the end of a slice of steps
+  while (physics.newest()->steps < 10) test::nap();  // commands wait for the end of a slice of steps
   Configuration impossible = in_environment();
   impossible.dt = -1;
   physics.set_scene(robots, impossible);
@@ -124,7 +124,7 @@ TEST(LivePhysics, PlayingUntilPausedGivesTheStatesOfTheSimulation) {
   physics.set_scene(robots, in_environment());
   physics.set_speed(unlimited_speed);
   physics.play();
-  while (physics.newest()->steps < 300) nap();
+  while (physics.newest()->steps < 300) test::nap();
   physics.pause();
   physics.wait_until_done();
   const auto snapshot = physics.newest();
@@ -207,7 +207,7 @@ TEST(LivePhysics, ExplosionIsReportedOnceAndPausesOnRequest) {
   physics.set_speed(unlimited_speed);
   physics.play();
   physics.wait_until_done();
-  while (physics.newest()->stops == 0) nap();
+  while (physics.newest()->stops == 0) test::nap();
   physics.wait_until_done();
   const auto snapshot = physics.newest();
   EXPECT_FALSE(snapshot->playing);

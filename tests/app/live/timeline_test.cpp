@@ -224,7 +224,7 @@ TEST_P(TimelineOn, ALoopPlaysBetweenItsEnds) {
     if (scene.snapshot().resets > before) {
       EXPECT_LE(scene.snapshot().steps, moments_[1].steps);
     }
-    nap();
+    test::nap();
   }
   scene.pause();
   scene.set_loop({});
@@ -357,7 +357,7 @@ TEST_P(PlayedRecording, PlaysToItsEndAndPausesThere) {
   scene.play();
   while (scene.playing()) {
     scene.frame();
-    nap();
+    test::nap();
   }
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().steps, 100);

@@ -23,7 +23,7 @@ render::Image plain(int width, int height, std::array<std::uint8_t, 3> color) {
 
 template <class Video>
 VideoStatus over(const Video& video) {
-  while (!video.status().over()) nap();
+  while (!video.status().over()) test::nap();
   return video.status();
 }
 

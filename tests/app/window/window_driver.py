@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 DEADLINE = 60  # seconds
-SIZE = (1100, 720)  # pixels of a window: room for both columns of panels, and few to draw without a GPU
+SIZE = (1280, 720)  # pixels of a window
 
 
 class Display:
