@@ -67,7 +67,8 @@ TEST_F(RunRecord, InterruptedRunLeavesTheFramesSoFar) {
 
 TEST_F(RunRecord, KilledRunLeavesNoFileOfThatName) {
   write("a.h5", "as it was");
-  working_mercury({"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"})->kill();
+  working_mercury({"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10", "--force"})
+      ->kill();
   EXPECT_EQ(read("a.h5"), "as it was");
 }
 
