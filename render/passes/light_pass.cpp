@@ -9,9 +9,7 @@ namespace mercury::render {
 namespace {
 
 constexpr int sand_side = 512;
-
-// Of the grid of light rays, in each direction.
-int caustics_cells(const QualitySettings& settings) { return settings.caustics_side < 320 ? 80 : 110; }
+constexpr int caustics_cells = 110;
 
 // 65,536 steps over the depth that the map covers are finer than its texels.
 constexpr GLenum shadow_format = GL_DEPTH_COMPONENT16;
@@ -77,7 +75,7 @@ LightPass::LightPass(const QualitySettings& settings)
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   shadow_ = comparing_view(shadow_depths_.get());
   shadow_framebuffer_ = make_framebuffer({}, shadow_depths_.get());
-  caustics_indices_.write(grid_indices(caustics_cells(settings)));
+  caustics_indices_.write(grid_indices(caustics_cells));
   glVertexArrayElementBuffer(caustics_grid_.get(), caustics_indices_.get());
   caustics_framebuffer_ = make_framebuffer({caustics_.get()});
 }
@@ -94,11 +92,10 @@ void LightPass::draw_caustics() const {
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glUseProgram(caustics_program_.get());
-  const int cells = caustics_cells(settings_);
-  glUniform1i(0, cells);
+  glUniform1i(0, caustics_cells);
   glUniform1f(1, float(settings_.caustics_side));
   glBindVertexArray(caustics_grid_.get());
-  glDrawElements(GL_TRIANGLES, 6 * cells * cells, GL_UNSIGNED_INT, nullptr);
+  glDrawElements(GL_TRIANGLES, 6 * caustics_cells * caustics_cells, GL_UNSIGNED_INT, nullptr);
   glDisable(GL_BLEND);
   // The finest level is ragged where few rays cross, so sampling starts at the next one.
   glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 0);

@@ -36,7 +36,6 @@ QualitySettings settings_of(Quality quality) {
   if (quality == Quality::medium) {
     s.shadow_side = 2048;
     s.ground_side = 1024;
-    s.caustics_side = 320;
     s.shadow_blockers = 8;
     s.shadow_taps = 12;
     s.skin_blockers = 5;

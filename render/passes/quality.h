@@ -11,8 +11,8 @@ namespace mercury::render {
 struct QualitySettings {
   int samples = 4;                           // per pixel
   int shadow_side = 1024;                    // texels
-  int ground_side = 384;                     // texels of the floor's light map
-  int caustics_side = 256;                   // texels of a tile
+  int ground_side = 512;                     // texels of the floor's light map
+  int caustics_side = 320;                   // texels of a tile
   int shadow_blockers = 5, shadow_taps = 8;  // of shadows on the floor
   int occlusion_taps = 7;
   int particles = 500;
