@@ -52,7 +52,8 @@ def test_an_animal_is_one_body_with_a_closed_skin(name):
 
 @pytest.mark.parametrize("name", FILES)
 def test_check_confirms_an_animal(name, mercury):
-    report = json.loads(mercury("check", FILES[name], "--seconds", 12, "--settle", 1, "--trials", 3, "--device", "cpu", "--json", "--quiet"))
+    options = ("--seconds", 12, "--settle", 1, "--trials", 3, "--device", "cpu", "--json", "--quiet")
+    report = json.loads(mercury("check", FILES[name], *options))
     assert [robot["verdict"] for robot in report["robots"]] == ["confirmed"]
 
 
