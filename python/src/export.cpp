@@ -72,7 +72,7 @@ void export_pose(const Robot& robot, const ExportFormat& format, const Request& 
   format.pose(exported_robot(robot), rest_pose(robot), request.path, {.springs = request.springs});
 }
 
-std::vector<std::size_t> robots_of(const TrajectoryReader& recording, nb::handle robot, bool several) {
+std::vector<std::size_t> recorded_robots(const TrajectoryReader& recording, nb::handle robot, bool several) {
   const std::string name = robot.is_none()                  ? ""
                            : nb::isinstance<nb::str>(robot) ? text_from("robot", robot)
                                                             : std::to_string(whole_from("robot", robot, 0));
@@ -123,7 +123,8 @@ void export_recording(const TrajectoryReader& given, const Request& request) {
     throw ParameterError("still", "not together with start, end and every, which choose a motion");
   if (request.seconds) throw ParameterError("seconds", "a Recording has its own length; give start and end");
   const ExportFormat& format = format_for(request.path, request.format);
-  const std::vector<std::size_t> robots = robots_of(given, request.robot, format.motions != nullptr && !request.still);
+  const std::vector<std::size_t> robots =
+      recorded_robots(given, request.robot, format.motions != nullptr && !request.still);
   InterruptibleWork work;
   work.run([&] {
     const auto recording = std::make_shared<TrajectoryReader>(given.path());
