@@ -382,9 +382,9 @@ void add_export_command(const Command& program, const Choose& choose) {
       .on_first_screen();
   add_text(command, "--robot", options->robot, "One robot of several: its name, or its number from 0", "NAME|N")
       .on_first_screen();
-  add_number(command, "--from", options->range.from, "First moment of a recording (default: its first frame)", "S")
+  add_number(command, "--from", options->range.from, "Where to begin in a recording (default: its start)", "S")
       .on_first_screen();
-  add_number(command, "--to", options->range.to, "Last moment of a recording (default: its last frame)", "S")
+  add_number(command, "--to", options->range.to, "Where to end in a recording (default: its end)", "S")
       .on_first_screen();
   add_number(command, "--every", options->every, "Every N-th frame of a recording (default 1)", "N");
   add_number(command, "--still", options->still, "The pose at this moment of a recording rather than a motion", "S")

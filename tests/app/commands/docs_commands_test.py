@@ -51,7 +51,7 @@ def shortened(arguments):
         extra = []
     if command == "export" and any(word.endswith(".html") for word in arguments) and not any(word.endswith(".h5") for word in arguments):
         extra = ["--seconds", "0.1"]  # the robots are simulated
-    if command == "new" and "--settle" in arguments:
+    if command in ("new", "check") and "--settle" in arguments:
         extra += ["--settle", "0.05"]
     if command in WRITES:
         extra.append("--force")

@@ -39,12 +39,14 @@ TEST(ViewCommand, InvalidInputIsReportedBeforeAWindowOpens) {
 }
 
 TEST(SampleRobots, AreChosenByTheirEnvironment) {
-  const std::vector<Robot> swimmers = window::sample_robots("ocean"), crawlers = window::sample_robots("land");
-  EXPECT_FALSE(swimmers.empty());
-  EXPECT_FALSE(crawlers.empty());
-  for (const Robot& robot : swimmers) EXPECT_EQ(environment_of(robot), "ocean") << robot.name;
-  for (const Robot& robot : crawlers) EXPECT_EQ(environment_of(robot), "land") << robot.name;
-  EXPECT_EQ(window::sample_robots("").size(), swimmers.size() + crawlers.size());
+  std::size_t all = 0;
+  for (const std::string environment : {"ocean", "water", "land"}) {
+    const std::vector<Robot> robots = window::sample_robots(environment);
+    EXPECT_FALSE(robots.empty());
+    for (const Robot& robot : robots) EXPECT_EQ(environment_of(robot), environment) << robot.name;
+    all += robots.size();
+  }
+  EXPECT_EQ(window::sample_robots("").size(), all);
 }
 
 }  // namespace
