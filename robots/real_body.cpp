@@ -156,6 +156,8 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
     std::ranges::sort(mine);
     actuator.materials = std::move(mine);
   }
+  // Those of materials that no voxel has, such as of springs along one axis alone.
+  std::erase_if(real.actuators, [](const Actuator& actuator) { return actuator.materials.empty(); });
 }
 
 void set_network_springs(const Robot& robot, const RealMaterial& material, Robot& real) {

@@ -219,7 +219,15 @@ TEST(RealBody, AFileMayGiveModuli) {
     if (spring.material > 2) spring.material = 1;
   paper.materials = {{}, {50, 0.2f, 6, 1}, {100}};
   paper.material_names = {"air", "muscle", "fin"};
-  paper.actuators = {{"body", {1}}};
+  paper.actuators = {{"body", {1}}, {"of no voxel", {3}}};
+  paper.materials.push_back({50, 0.2f, 6, 2});
+  paper.material_names.push_back("spare");
+  const Robot without = with_real_body(paper, {});
+  EXPECT_EQ(without.actuators.size(), 1u);
+  EXPECT_NO_THROW(validate(without));
+  paper.actuators.pop_back();
+  paper.materials.pop_back();
+  paper.material_names.pop_back();
   std::string text = serialize_robot(paper, RobotFormat::json);
   const auto replace = [&](const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
