@@ -35,7 +35,7 @@ void TimelinePlayer::keep_keyframe() {
     timeline_.note(batch_.simulation().clock());
     keyframe_work_ = work_;
   }
-  if (batch_.empty() || 2 * sizeof(Vec3) * batch_.simulation().mass_count() > timeline_.budget()) return;
+  if (2 * sizeof(Vec3) * batch_.simulation().mass_count() > timeline_.budget()) return;
   const double start = wall_now();
   double work_before = work_;
   if (const Keyframe* last = viewing_ ? timeline_.before(batch_.steps()) : nullptr)

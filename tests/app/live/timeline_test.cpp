@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <map>
 
 #include "app/live/timeline.h"
@@ -129,6 +130,41 @@ TEST_P(TimelineOn, PlayingFromThePastRepeatsTheChangesAndReturnsToThePresent) {
   make_history(uninterrupted);
   make_steps(uninterrupted, 50);
   expect_shown(scene, moment_of(uninterrupted));
+}
+
+TEST_P(TimelineOn, RobotsThatWereAllRemovedDoNotComeBackToThePresent) {
+  LiveScene scene(options());
+  test::make_robots(scene, 2);
+  make_steps(scene, 20);
+  const Moment earlier = moment_of(scene);
+  make_steps(scene, 20);
+  const std::vector<RobotId> robots = test::ids_of(scene);
+  scene.remove(robots);
+  scene.wait_until_done();
+  const Moment present = moment_of(scene);
+  ASSERT_TRUE(present.robots.empty());
+  const std::vector<std::function<void()>> ways{[&] { scene.seek(present.time); }, [&] { scene.step(20); },
+                                                [&] { scene.step(100); }};
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    SCOPED_TRACE(i);
+    scene.seek(earlier.time);
+    scene.wait_until_done();
+    expect_shown(scene, earlier);
+    EXPECT_EQ(moment_of(scene).robots, robots);
+    ways[i]();
+    scene.wait_until_done();
+    EXPECT_FALSE(scene.snapshot().timeline.viewing);
+    expect_shown(scene, present);
+    EXPECT_EQ(moment_of(scene).robots, present.robots);
+  }
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_EQ(moment_of(scene).robots, robots);
+  EXPECT_EQ(scene.snapshot().steps, 40);
+  scene.seek(earlier.time);
+  scene.seek(present.time);
+  scene.wait_until_done();
+  EXPECT_EQ(moment_of(scene).robots, robots);
 }
 
 TEST_P(TimelineOn, StepsBackAreThoseForward) {
