@@ -97,12 +97,19 @@ std::int64_t recorded_every(const RunOptions& options, const Configuration& conf
   return options.every.value_or(static_cast<std::int64_t>(usual + 0.5));
 }
 
+// Null if none is wanted, or if the disk is full already.
 std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation) {
-  return std::make_unique<Recorder>(simulation, options.record,
-                                    RecordingOptions{.every = recorded_every(options, simulation.configuration()),
-                                                     .last_step = options.simulation.steps(),
-                                                     .seed = options.robots.seed(),
-                                                     .deflate = options.compress ? 1 : 0});
+  if (options.record.empty()) return nullptr;
+  try {
+    return std::make_unique<Recorder>(simulation, options.record,
+                                      RecordingOptions{.every = recorded_every(options, simulation.configuration()),
+                                                       .last_step = options.simulation.steps(),
+                                                       .seed = options.robots.seed(),
+                                                       .deflate = options.compress ? 1 : 0});
+  } catch (const RecordingFailure& failure) {  // tables may go elsewhere
+    warn_without_recording(failure);
+    return nullptr;
+  }
 }
 
 // Prints the results and writes the file, each even if the other fails: the simulation may have taken hours.
@@ -226,12 +233,15 @@ int run_watched(const RunOptions& options, std::unique_ptr<Recorder> recorder, s
   std::exception_ptr problem;
   try {
     if (recorder && !recorder->failed()) recorder->finish();
+  } catch (const RecordingFailure& failure) {
+    warn(failure.what());
   } catch (const std::exception&) {
     problem = std::current_exception();
   }
   const int status = report_results(options, report);
   if (problem) std::rethrow_exception(problem);
-  const bool incomplete = (recorder && recorder->failed()) || (checkpoints && checkpoints->failed());
+  const bool recorded = options.record.empty() || (recorder && !recorder->failed());
+  const bool incomplete = !recorded || (checkpoints && checkpoints->failed());
   return incomplete ? std::max(status, 1) : status;
 }
 
@@ -249,8 +259,8 @@ int run_in_one(const RunOptions& options, const RobotSequence& robots, const Con
   begin_with_jitter(simulation, trials, options.robots.seed_or_default());
   std::optional<Checkpoints> checkpoints =
       checkpoints_of(options, notes_of(options, configuration, trials, gathered.identities, gathered.failed));
-  return run_watched(options, options.record.empty() ? nullptr : open_recorder(options, simulation),
-                     std::move(checkpoints), std::move(gathered.failed), [&](const StepObservers& observers) {
+  return run_watched(options, open_recorder(options, simulation), std::move(checkpoints), std::move(gathered.failed),
+                     [&](const StepObservers& observers) {
                        return simulate(simulation, std::move(gathered.identities), trials, observers);
                      });
 }

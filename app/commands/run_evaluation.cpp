@@ -64,7 +64,7 @@ class Advance {
     try {
       recorder.observe();
     } catch (const RecordingFailure& failure) {
-      warn(fmt::format("{}; the run goes on without a recording", failure.what()));
+      warn_without_recording(failure);
     }
   }
 
@@ -159,6 +159,10 @@ RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities,
 }
 
 }  // namespace
+
+void warn_without_recording(const RecordingFailure& failure) {
+  warn(fmt::format("{}; the run goes on without a recording", failure.what()));
+}
 
 RobotIdentity identity_of(const RobotSequence& robots, std::size_t index) {
   if (index < robots.files.size()) return {.index = index, .name = "", .file = robots.files[index].string()};

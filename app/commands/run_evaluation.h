@@ -46,6 +46,9 @@ struct StepObservers {
   Checkpoints* checkpoints = nullptr;
 };
 
+// Says that the recording ended, and why.
+void warn_without_recording(const RecordingFailure& failure);
+
 // Displaces the masses of robots that are at rest, as in the first trial of the settings.
 void begin_with_jitter(Simulation& simulation, const TrialSettings& trials, std::uint64_t seed);
 
