@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fixed number of damaged documents for each target of the fuzzers.
+// For each target of the fuzzers: a fixed number of damaged documents, and those that fuzzers found earlier.
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "tests/fuzz/mutation.h"
 #include "tests/fuzz/target.h"
@@ -25,8 +31,31 @@ TEST_P(Readers, RefuseOrReadDamagedDocuments) {
   run(GetParam(), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Readers, testing::ValuesIn(targets().begin(), targets().end()),
-                         [](const auto& test) { return std::string(test.param.name); });
+// What fuzzers found earlier (docs/building.md). A suite of its own, because it takes longer.
+class Corpus : public Readers {
+ protected:
+  Corpus() { std::signal(SIGABRT, name_document); }  // fail() ends the program; this says where
+  ~Corpus() override { std::signal(SIGABRT, SIG_DFL); }
+  static void name_document(int) {
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, document.data(), document.size());
+  }
+  static inline std::string document;
+};
+
+TEST_P(Corpus, IsRefusedOrRead) {
+  std::size_t documents = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::filesystem::path(MERCURY_FUZZ_CORPUS) / GetParam().name)) {
+    document = "while reading " + file.path().string() + "\n";
+    run(GetParam(), content_of(file.path()));
+    ++documents;
+  }
+  EXPECT_GT(documents, 10u);
+}
+
+const auto name = [](const auto& test) { return std::string(test.param.name); };
+INSTANTIATE_TEST_SUITE_P(All, Readers, testing::ValuesIn(targets().begin(), targets().end()), name);
+INSTANTIATE_TEST_SUITE_P(All, Corpus, testing::ValuesIn(targets().begin(), targets().end()), name);
 
 }  // namespace
 }  // namespace mercury::fuzz
