@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@
 #include "app/commands/results_file.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
+#include "app/recording/trajectory_writer.h"
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/robot_file.h"
@@ -40,6 +42,7 @@ struct ImportedFile {
   Import import;
   std::vector<std::string> robot_files;
   std::string configuration_file;
+  std::string recording_file;  // of a motion, which has no robots to simulate
 };
 
 // The files of a folder that can be imported, sorted by name; those on which others build are left out.
@@ -95,7 +98,7 @@ std::vector<ImportedFile> read(const ImportCommandOptions& options, const std::v
   for (std::size_t i = 0; i < files.size(); ++i) {
     throw_if_interrupted();
     try {
-      imports.push_back({import_file(files[i], options.reading), {}, {}});
+      imports.push_back({import_file(files[i], options.reading), {}, {}, {}});
     } catch (const ParameterError&) {
       throw;
     } catch (const InputError& error) {
@@ -110,19 +113,21 @@ std::vector<ImportedFile> read(const ImportCommandOptions& options, const std::v
 }
 
 void name_files(std::vector<ImportedFile>& imports, const ImportCommandOptions& options) {
-  FileNames robots, configurations;
+  FileNames robots, configurations, recordings;
   configurations.of("import");
   for (ImportedFile& file : imports) {
     std::vector<std::string>& names = file.import.report.robots;
     for (std::size_t i = 0; i < file.import.robots.size(); ++i) {
       names[i] = robots.of(names[i]);
       file.import.robots[i].name = names[i];
+      if (file.import.motion) continue;
       file.robot_files.push_back((fs::path(options.output) / (names[i] + "." + options.format)).string());
     }
-    if (file.import.robots.empty()) continue;
-    file.configuration_file =
-        (fs::path(options.output) / (configurations.of(fs::path(file.import.report.file).stem().string()) + ".toml"))
-            .string();
+    const std::string stem = fs::path(file.import.report.file).stem().string();
+    if (file.import.motion)
+      file.recording_file = (fs::path(options.output) / (recordings.of(stem) + ".h5")).string();
+    else if (!file.import.robots.empty())
+      file.configuration_file = (fs::path(options.output) / (configurations.of(stem) + ".toml")).string();
   }
 }
 
@@ -131,7 +136,7 @@ void name_files(std::vector<ImportedFile>& imports, const ImportCommandOptions& 
 std::optional<ImportedSettings> common_settings(const std::vector<ImportedFile>& imports) {
   std::vector<ImportedSettings> all;
   for (const ImportedFile& file : imports)
-    if (!file.import.robots.empty()) all.push_back(file.import.settings);
+    if (!file.robot_files.empty()) all.push_back(file.import.settings);
   if (all.size() < 2) return std::nullopt;
   ImportedSettings common = all.front();
   common.damping = common.drag_coefficient = 0;
@@ -164,6 +169,7 @@ void print_report(const ImportReport& report, bool brief) {
              count[ImportOutcome::ignored]);
   fmt::print("  scale: 1 m there is {:.4g} m here, 1 s there is {:.4g} s here\n", report.length_scale,
              report.time_scale);
+  for (const std::string& note : report.decisive) fmt::print("  {}\n", printable(note));
   for (const std::string& note : report.notes) fmt::print("  note: {}\n", printable(note));
   if (brief) return;
   for (const ImportedElement& element : report.elements)
@@ -187,6 +193,8 @@ nlohmann::ordered_json json_of(const ImportedFile& file) {
   json["configuration"] = text_or_null(file.configuration_file);
   json["length_scale"] = report.length_scale;
   json["time_scale"] = report.time_scale;
+  json["recording"] = text_or_null(file.recording_file);
+  json["decisive"] = report.decisive;
   json["notes"] = report.notes;
   json["elements"] = std::move(elements);
   return json;
@@ -207,7 +215,8 @@ void print_reports(const std::vector<ImportedFile>& imports, const std::string& 
   for (const ImportedFile& file : imports) {
     print_report(file.import.report, options.brief);
     for (const std::string& robot : file.robot_files) fmt::print("  wrote {}\n", printable(robot, 10000));
-    if (!file.configuration_file.empty()) fmt::print("  wrote {}\n", printable(file.configuration_file, 10000));
+    for (const std::string& other : {file.configuration_file, file.recording_file})
+      if (!other.empty()) fmt::print("  wrote {}\n", printable(other, 10000));
   }
   if (!common.empty()) fmt::print("for all robots: {}\n", printable(common, 10000));
 }
@@ -231,6 +240,7 @@ std::size_t add_outputs(OutputFiles& outputs, const std::vector<ImportedFile>& i
       progress.update(static_cast<std::int64_t>(++done));
     }
     if (!file.configuration_file.empty()) outputs.add_stream("-o", file.configuration_file, options.output);
+    if (!file.recording_file.empty()) outputs.add_stream("-o", file.recording_file, options.output);
   }
   if (!common.empty()) outputs.add_stream("-o", common, options.output);
   outputs.check();
@@ -246,6 +256,46 @@ void write_robots(const std::vector<ImportedFile>& imports, std::size_t count) {
       save_robot(file.robot_files[i], file.import.robots[i]);
       progress.update(++written);
     }
+}
+
+// A recording of a motion that another program simulated.
+void write_motion(const Import& import, const std::string& path) {
+  const ImportedMotion& motion = *import.motion;
+  std::vector<const Robot*> robots;
+  std::vector<Material> materials;
+  for (const Robot& robot : import.robots) {
+    robots.push_back(&robot);
+    materials.insert(materials.end(), robot.materials.begin(), robot.materials.end());
+    materials.resize(robots.size() * max_materials);
+  }
+  const double length = motion.times.back() - motion.times.front();
+  const double interval = motion.times.size() > 1 ? length / static_cast<double>(motion.times.size() - 1) : 1e-3;
+  Configuration configuration{.dt = std::min(interval, 1e-3),
+                              .environment = environment_named(import.settings.environment)};
+  const auto step_at = [&](double time) { return std::llround((time - motion.times.front()) / configuration.dt); };
+  TrajectoryWriter writer(path,
+                          {.configuration = configuration,
+                           .device_name = import.report.format,
+                           .every = std::max<std::int64_t>(1, std::llround(interval / configuration.dt)),
+                           .expected_frames = static_cast<std::int64_t>(motion.times.size()),
+                           .watch = shown_work()},
+                          robots, materials, "-o");
+  std::int64_t last = -1;
+  for (std::size_t frame = 0; frame < motion.times.size(); ++frame) {
+    last = std::max<std::int64_t>(last + 1, step_at(motion.times[frame]));
+    const TrajectoryWriter::Frame into = writer.add(last, motion.times[frame] - motion.times.front());
+    std::ranges::copy(motion.positions[frame], into.positions.begin());
+    // Of the way since the frame before, or to the next one.
+    const std::size_t from = frame > 0 ? frame - 1 : 0,
+                      to = std::min(std::max<std::size_t>(frame, 1), motion.times.size() - 1);
+    const double span = motion.times[to] - motion.times[from];
+    for (std::size_t mass = 0; mass < into.velocities.size(); ++mass)
+      into.velocities[mass] =
+          span > 0 ? static_cast<float>(1 / span) * (motion.positions[to][mass] - motion.positions[from][mass])
+                   : Vec3{};
+    writer.commit();
+  }
+  writer.finish({});
 }
 
 int import_files(ImportCommandOptions options) {
@@ -267,17 +317,21 @@ int import_files(ImportCommandOptions options) {
     return print_dry_run(
         "import",
         {{"files", fmt::to_string(imports.size())}, {"robots", fmt::to_string(robots)}, {"write", options.output}});
-  outputs.make_folders();
+  const bool nothing =
+      std::ranges::all_of(imports, [](const ImportedFile& file) { return file.import.robots.empty(); });
+  if (!nothing) outputs.make_folders();
   write_robots(imports, robots);
   for (const ImportedFile& file : imports) {
     if (!file.configuration_file.empty())
       write_results(file.configuration_file, to_toml(file.import.settings, file.import.report));
-    if (file.robot_files.empty())
-      warn(fmt::format("{}: no robot in it; the report says why", printable(file.import.report.file)));
+    if (!file.recording_file.empty()) write_motion(file.import, file.recording_file);
+    if (file.import.robots.empty())
+      warn(fmt::format("{}: no robot in it: {}", printable(file.import.report.file), file.import.report.notes.front()));
   }
   if (!common.empty()) write_results(common, common_toml(*settings, imports));
   print_reports(imports, common, options);
-  return complete ? 0 : 1;
+  if (nothing) warn("nothing was imported");
+  return complete && !nothing ? 0 : 1;
 }
 
 }  // namespace

@@ -130,7 +130,9 @@ void read_file(const fs::path& file, bool alone, Opened& opened, Messages& messa
         robots.push_back({robot, load_robot(robot)});
         continue;
       }
-      for (Robot& imported : import_file(robot, *format).robots) robots.push_back({"", std::move(imported)});
+      Import import = import_file(robot, *format);
+      if (import.motion) throw InputError(robot, "a motion to play; import it first");
+      for (Robot& imported : import.robots) robots.push_back({"", std::move(imported)});
     }
     for (OpenedRobot& robot : robots) {
       const Physics physics = physics_of(robot.robot);

@@ -50,6 +50,10 @@ std::vector<Robot> robots_in(const fs::path& file) {
   if (!format) return {load_robot(file)};
   Import import = import_file(file, *format);
   if (import.robots.empty()) throw InputError(file.string(), "holds no robot: " + import.report.notes.front());
+  if (import.motion)
+    throw InputError(file.string(),
+                     "a motion to play; mercury import makes it a recording, for view, render and export");
+  for (const std::string& note : import.report.decisive) say(fmt::format("{}: {}", printable(file.string()), note));
   say(fmt::format("{}: imported without its world ({}, dt {:.3g} s); mercury import writes it, and a report",
                   printable(file.string()), import.settings.environment, import.settings.dt));
   return std::move(import.robots);

@@ -70,8 +70,26 @@ render::Body BodyShape::body() const {
           .spring_materials = spring_materials_};
 }
 
+namespace {
+
+// The material that a material is drawn as: itself, but a passive one that has the name of an actuator is drawn as that
+// actuator's muscle. So the skin of a voxel whose edges alone are muscles shows them.
+std::vector<MaterialId> drawn_materials(const Robot& robot) {
+  std::vector<MaterialId> drawn(max_materials);
+  for (std::size_t id = 0; id < drawn.size(); ++id) drawn[id] = static_cast<MaterialId>(id);
+  for (const Actuator& actuator : robot.actuators)
+    for (std::size_t id = 1; id < robot.material_names.size(); ++id)
+      if (robot.material_names[id] == actuator.name && robot.materials[id].amplitude == 0 &&
+          !actuator.materials.empty())
+        drawn[id] = actuator.materials.front();
+  return drawn;
+}
+
+}  // namespace
+
 std::vector<MaterialId> face_materials(const Robot& robot) {
   const SpringsByMass springs(robot);
+  const std::vector<MaterialId> drawn = drawn_materials(robot);
   std::vector<MaterialId> materials;
   materials.reserve(robot.faces.size());
   for (const Face& face : robot.faces) {
@@ -80,7 +98,7 @@ std::vector<MaterialId> face_materials(const Robot& robot) {
       const Spring* spring = springs.between(a, b);
       if (spring && (!longest || spring->rest_length > longest->rest_length)) longest = spring;
     }
-    materials.push_back(longest ? longest->material : air);
+    materials.push_back(longest ? drawn[longest->material] : air);
   }
   return materials;
 }

@@ -24,7 +24,8 @@ class BodyShape {
 };
 
 // The material of each face: that of the spring along its longest edge with a spring. In a voxel robot this is the
-// diagonal of the voxel's side, which belongs only to that voxel. Air if no edge has a spring.
+// diagonal of the voxel's side, which belongs only to that voxel. Air if no edge has a spring. A passive material with
+// the name of an actuator counts as its muscle.
 std::vector<MaterialId> face_materials(const Robot& robot);
 
 // The color of each material of a table, by id. `defaults`: it is the default table, where a pair of materials has a

@@ -9,10 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "mercury/error.h"
 #include "robots/file/document.h"
+#include "robots/importers/numpy_file.h"
 #include "robots/importers/report_builder.h"
 #include "robots/importers/scaling.h"
 
@@ -54,18 +56,23 @@ struct Object {
   std::array<std::size_t, type_count> count{};
   std::size_t gaps = 0;  // neighbors that are not connected
   bool is_robot() const { return count[horizontal] + count[vertical] > 0; }
-  bool is_held() const { return !is_robot() && count[fixed] > 0; }
+  bool is_terrain() const {
+    return count[fixed] > 0 && count[rigid] + count[soft] + count[horizontal] + count[vertical] == 0;
+  }
 };
 
 class EvogymImport {
  public:
   EvogymImport(std::string_view text, std::string name, const ImportOptions& options)
-      : name_(std::move(name)), options_(options), world_(parsed(text)) {
+      : EvogymImport(parsed(text), "world of EvoGym", std::move(name), options) {}
+
+  EvogymImport(Json world, const char* format, std::string name, const ImportOptions& options)
+      : name_(std::move(name)), options_(options), world_(std::move(world)) {
     time_ = std::sqrt(evogym_gravity / earth_gravity);
+    import_.report.format = format;
   }
 
   Import run() {
-    import_.report.format = "world of EvoGym";
     import_.report.time_scale = time_;
     import_.settings = {.environment = "land",
                         .gravity = -earth_gravity,
@@ -195,11 +202,9 @@ class EvogymImport {
     if (voxels == 0) {
       outcome = ignored;
       became = "has no voxel that is not empty";
-    } else if (object.is_held()) {
+    } else if (object.is_terrain()) {
       outcome = ignored;
-      became = object.count[fixed] == data["types"].size()
-                   ? "fixed terrain: the floor of Mercury is flat, and nothing else stands on it"
-                   : "held by fixed voxels, which Mercury has not";
+      became = "fixed terrain: the floor of Mercury is flat, and nothing else stands on it";
     } else {
       const std::size_t before = import_.robots.size();
       try {
@@ -211,7 +216,7 @@ class EvogymImport {
                                                    : fmt::format("{} robots", import_.robots.size() - before);
     }
     add(place + "/indices", data["indices"], outcome, outcome == ignored ? became : became + ": its grid");
-    add(place + "/types", data["types"], outcome == mapped && object.count[fixed] > 0 ? approximated : outcome,
+    add(place + "/types", data["types"], outcome,
         outcome == ignored ? became : fmt::format("{}: {}", became, types_text(object)));
     for (const auto& [key, value] : data.items()) {
       if (key == "neighbors")
@@ -232,7 +237,7 @@ class EvogymImport {
     for (std::size_t type = rigid; type < type_count; ++type)
       if (object.count[type] > 0)
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", object.count[type], type_names[type]);
-    if (object.count[fixed] > 0) text += " (as rigid)";
+    if (object.count[fixed] > 0) text += " (their masses are fixed)";
     return text;
   }
 
@@ -258,6 +263,11 @@ class EvogymImport {
     object.body.names.assign(type_names.begin() + 1, type_names.end());
     for (std::size_t type = rigid; type < type_count; ++type)
       object.body.substances.push_back({.stiffness = spring(stiffnesses[type].edge)});
+    if (object.count[fixed] > 0) {
+      for (const std::uint32_t cell : object.body.cells) object.body.held.push_back(cell == fixed);
+      import_.report.decisive.push_back(
+          fmt::format("{}: held in its place, by fixed masses: {} voxels", name, object.count[fixed]));
+    }
     if (!object.is_robot()) {
       for (std::uint32_t& cell : object.body.cells) cell = cell == fixed ? std::uint32_t{rigid} : cell;
       add_bodies(object.body, name, provenance(), options_, import_);
@@ -267,6 +277,7 @@ class EvogymImport {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const std::string own = i == 0 ? name : fmt::format("{}-{}", name, i + 1);
       import_.robots.push_back(robot_of(bodies[i], own));
+      fix_masses(import_.robots.back(), bodies[i]);
       import_.report.robots.push_back(own);
     }
   }
@@ -278,12 +289,26 @@ class EvogymImport {
   }
 
   // Springs along the axis of an actuator are muscles of their own; all others do not move. A spring that two actuators
-  // share follows the one whose index is lower; EvoGym takes the mean.
+  // share follows the one whose index is lower; EvoGym takes the mean. Passive springs of an actuator's voxel alone
+  // have its name, and so its color, as long as the table has room for them.
   Robot robot_of(const VoxelBody& body, const std::string& name) {
+    try {
+      return robot_of(body, name, true);
+    } catch (const TooManyMaterials&) {
+      return robot_of(body, name, false);
+    }
+  }
+
+  struct TooManyMaterials : InputError {
+    using InputError::InputError;
+  };
+
+  Robot robot_of(const VoxelBody& body, const std::string& name, bool named_passive) {
     Robot robot = bare_robot(body, name);
     const SpringVoxels voxels(robot, body);
     std::map<std::size_t, std::size_t> actuators;  // by cell without its place along y: index in robot.actuators
-    std::map<std::pair<std::size_t, float>, MaterialId> materials;  // by actuator + 1 (0 = none), stiffness
+    // By actuator + 1 (0 = none), whether it moves, stiffness.
+    std::map<std::tuple<std::size_t, bool, float>, MaterialId> materials;
     robot.materials.assign(1, Material{});
     robot.material_names.assign(1, "air");
     for (std::size_t cell = 0; cell < body.cells.size(); ++cell)
@@ -313,21 +338,30 @@ class EvogymImport {
         actuator = actuator == 0 ? number : std::min(actuator, number);
       }
       const auto own = static_cast<float>(spring(stiffness));
-      const auto [known, is_new] = materials.try_emplace({actuator, own}, MaterialId{0});
+      const bool moves = actuator > 0;
+      if (!moves && named_passive && is_of_one_actuator(body, shared))
+        actuator = actuators.at(flat(body, shared[0])) + 1;
+      const auto [known, is_new] = materials.try_emplace({actuator, moves, own}, MaterialId{0});
       if (is_new) {
         if (robot.materials.size() == max_materials)
-          throw InputError(fmt::format("{} needs more than 255 materials", name));
+          throw TooManyMaterials(fmt::format("{} needs more than 255 materials", name));
         known->second = static_cast<MaterialId>(robot.materials.size());
-        robot.materials.push_back(actuator == 0 ? Material{.stiffness = own}
-                                                : muscle(own, body, actuators, actuator - 1));
+        robot.materials.push_back(moves ? muscle(own, body, actuators, actuator - 1) : Material{.stiffness = own});
         robot.material_names.push_back(actuator == 0 ? "passive" : robot.actuators[actuator - 1].name);
-        if (actuator > 0) robot.actuators[actuator - 1].materials.push_back(known->second);
+        if (moves) robot.actuators[actuator - 1].materials.push_back(known->second);
       }
       one.material = known->second;
     }
     std::erase_if(robot.actuators, [](const Actuator& actuator) { return actuator.materials.empty(); });
     robot.origin = import_origin(body, provenance());
     return robot;
+  }
+
+  static bool is_of_one_actuator(const VoxelBody& body, const std::vector<std::size_t>& voxels) {
+    return std::ranges::all_of(voxels, [&](std::size_t cell) {
+      const std::uint32_t type = body.cells[cell];
+      return (type == horizontal || type == vertical) && flat(body, cell) == flat(body, voxels[0]);
+    });
   }
 
   static std::size_t flat(const VoxelBody& body, std::size_t cell) {
@@ -352,8 +386,9 @@ class EvogymImport {
       notes.push_back("no robot and no movable object: the world is terrain alone");
       return;
     }
-    notes.push_back(
-        fmt::format("gravity ({} there), stiffness, drag and friction are constants of EvoGym's program, in no file",
+    import_.report.decisive.push_back(
+        fmt::format("assumed: gravity ({} m/s2 there), a flat floor, stiffness, drag and friction, which are constants "
+                    "of EvoGym's program, in no file",
                     evogym_gravity));
     notes.push_back(fmt::format("the world is flat: robots are {} voxel{} thick and can tip over (--depth)",
                                 options_.depth, options_.depth == 1 ? "" : "s"));
@@ -380,7 +415,69 @@ bool looks_like_evogym(std::string_view text) {
   return !has("mercury-robot") && (has("\"grid_width\"") || (has("\"objects\"") && has("\"indices\"")));
 }
 
+// A body as EvoGym's examples save it: an array of types, the upper row first, and pairs of connected voxels, which
+// count through the rows (World.from_array). Both become an object of a world that just holds it.
+Import import_body(std::string_view text, std::string_view, const std::string& name, const ImportOptions& options) {
+  const std::vector<NumpyArray> arrays = numpy_arrays(text);
+  if (arrays.empty() || arrays[0].shape.size() != 2 || arrays[0].values.empty())
+    throw InputError(arrays.empty() ? "/" : "/" + arrays[0].name, "a body of EvoGym is a table of types of voxels");
+  const NumpyArray& body = arrays[0];
+  const auto rows = static_cast<std::int64_t>(body.shape[0]), columns = static_cast<std::int64_t>(body.shape[1]);
+  const auto upright = [&](double voxel) {
+    const auto index = static_cast<std::int64_t>(voxel);
+    return (rows - 1 - index / columns) * columns + index % columns;
+  };
+  Json indices = Json::array(), types = Json::array(), neighbors = Json::object();
+  for (std::size_t i = 0; i < body.values.size(); ++i) {
+    const double type = body.values[i];
+    if (!(type >= 0 && type < static_cast<double>(type_count)) || type != std::floor(type))
+      throw InputError(fmt::format("/{}/{}", body.name, i), "is no type of voxel; give 0 (empty) to 5 (fixed)");
+    if (type == 0) continue;
+    indices.push_back(upright(static_cast<double>(i)));
+    types.push_back(static_cast<int>(type));
+  }
+  if (indices.empty()) throw InputError("/" + body.name, "the body has no voxels");
+  Json object{{"indices", std::move(indices)}, {"types", std::move(types)}};
+  if (arrays.size() > 1) {
+    const NumpyArray& pairs = arrays[1];
+    const std::size_t count = pairs.shape.size() == 2 && pairs.shape[0] == 2 ? pairs.shape[1] : 0;
+    if (pairs.values.size() != 2 * count) throw InputError("/" + pairs.name, "pairs of voxels are a table of two rows");
+    for (std::size_t i = 0; i < count; ++i) {
+      const double a = pairs.values[i], b = pairs.values[count + i], end = static_cast<double>(body.values.size());
+      if (!(a >= 0 && a < end && b >= 0 && b < end))
+        throw InputError(fmt::format("/{}/{}", pairs.name, i), "names a voxel that the body does not have");
+      neighbors[std::to_string(upright(a))].push_back(upright(b));
+    }
+    object["neighbors"] = std::move(neighbors);
+  }
+  Json world{{"grid_width", columns}, {"grid_height", rows}, {"objects", {{"robot", std::move(object)}}}};
+  Import import = EvogymImport(std::move(world), "body of EvoGym", name, options).run();
+  // Elements of the file instead of those of the world that was made of it.
+  std::vector<ImportedElement> elements;
+  for (ImportedElement& element : import.report.elements) {
+    const bool is_body = element.place.ends_with("/types"), is_pairs = element.place.ends_with("/neighbors");
+    if (!is_body && !is_pairs) continue;
+    const NumpyArray& array = arrays[is_body ? 0 : 1];
+    elements.push_back(
+        {"/" + array.name, fmt::format("{} values", array.values.size()), element.outcome, element.reason});
+  }
+  for (std::size_t i = 2; i < arrays.size(); ++i)
+    elements.push_back({"/" + arrays[i].name, fmt::format("{} values", arrays[i].values.size()), ignored, "unknown"});
+  import.report.elements = std::move(elements);
+  return import;
+}
+
+// Archives begin with "PK"; those of NumPy name an array first.
+bool looks_like_arrays(std::string_view text) {
+  return text.starts_with("PK") && text.substr(0, 200).find(".npy") != std::string_view::npos;
+}
+
 }  // namespace
+
+ImportFormat evogym_body_format() {
+  return {
+      .name = "npz", .extensions = ".npz", .programs = "EvoGym", .recognizes = looks_like_arrays, .read = import_body};
+}
 
 ImportFormat evogym_format() {
   return {.name = "evogym",

@@ -10,6 +10,7 @@
 #include "mercury/error.h"
 #include "robots/file/whole_file.h"
 #include "robots/importers/report_builder.h"
+#include "robots/importers/xml_document.h"
 
 namespace mercury {
 
@@ -17,6 +18,8 @@ ImportFormat vxa_format();
 ImportFormat vxd_format();
 ImportFormat rsc_format();
 ImportFormat evogym_format();
+ImportFormat evogym_body_format();
+ImportFormat history_format();
 
 namespace {
 
@@ -29,7 +32,8 @@ std::string small_letters(std::string text) {
 
 // All formats. Each is described beside its reader.
 const std::vector<ImportFormat>& formats() {
-  static const std::vector<ImportFormat> all{vxa_format(), vxd_format(), rsc_format(), evogym_format()};
+  static const std::vector<ImportFormat> all{vxa_format(), vxd_format(),    history_format(),
+                                             rsc_format(), evogym_format(), evogym_body_format()};
   return all;
 }
 
@@ -187,12 +191,28 @@ void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance
     Rounding rounding;
     import.robots.push_back(
         voxel_body_robot(bodies[i], own, provenance, static_cast<std::size_t>(options.most_materials), rounding));
+    fix_masses(import.robots.back(), bodies[i]);
     import.report.robots.push_back(own);
     if (!rounding.is_exact()) import.report.notes.push_back(fmt::format("{}: {}", own, text_of(rounding)));
   }
   if (bodies.size() > 1)
     import.report.notes.push_back(fmt::format(
         "{} separate bodies became a robot each; robots of Mercury do not touch each other", bodies.size()));
+}
+
+std::vector<std::string_view> list_values(std::string_view text) {
+  std::vector<std::string_view> values;
+  const bool commas = text.find(',') != std::string_view::npos;
+  constexpr std::string_view spaces = " \t\r\n";
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = commas ? text.find(',', begin) : text.find_first_of(spaces, begin);
+    end = std::min(end, text.size());
+    const std::string_view value = trimmed(text.substr(begin, end - begin));
+    begin = end + 1;
+    if (value.empty() && (!commas || begin >= text.size())) continue;  // between spaces, or after a last comma
+    values.push_back(value);
+  }
+  return values;
 }
 
 }  // namespace mercury

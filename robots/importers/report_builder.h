@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mercury/import.h"
@@ -17,6 +18,9 @@ class XmlDocument;
 // notes.
 void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
                 const ImportOptions& options, Import& import);
+
+// The values of a list, separated by commas, or else by white space. A value may be empty between two commas.
+std::vector<std::string_view> list_values(std::string_view text);
 
 // The environment on the floor with this stiffness scale, as in water it is 1.
 inline constexpr double land_stiffness_scale = 200;

@@ -160,6 +160,11 @@ class RscImport {
       if (!world) continue;
       for (const pugi::xml_node& root : world->tree().children()) read_simulator(root.child("Simulator"), *world);
     }
+    if (!says_gravity_ || !says_floor_)
+      import_.report.decisive.push_back(fmt::format("assumed: {}, which no file of this robot says",
+                                                    says_floor_     ? "gravity of 9.81 m/s2"
+                                                    : says_gravity_ ? "a floor"
+                                                                    : "gravity of 9.81 m/s2 and a floor"));
     if (settings.environment != "land") settings.stiffness_scale = 1;
     settings.contact_stiffness = scaling_->calibration.contact_stiffness / settings.stiffness_scale;
   }
@@ -167,6 +172,8 @@ class RscImport {
   void read_simulator(const pugi::xml_node& simulator, XmlDocument& document) {
     const pugi::xml_node gravity = simulator.child("Gravity"), damping = simulator.child("Damping");
     if (const std::optional<double> value = number_in(gravity, "GravAcc")) import_.settings.gravity = *value;
+    says_gravity_ = says_gravity_ || gravity.child("GravAcc");
+    says_floor_ = says_floor_ || gravity.child("FloorEnabled");
     document.mark(gravity.child("GravAcc"), mapped, "gravity of the configuration");
     if (const std::optional<bool> floor = switch_in(gravity, "FloorEnabled"))
       import_.settings.environment = *floor ? "land" : "ocean-simple";
@@ -186,11 +193,7 @@ class RscImport {
       const std::string text = text_of(layer);
       ++layers;
       const std::size_t before = values.size();
-      for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string_view word = trimmed(std::string_view(text).substr(begin, end - begin));
-        begin = end + 1;
-        if (word.empty() && begin >= text.size()) break;
+      for (const std::string_view word : list_values(text)) {
         const std::optional<double> value = number_from(word);
         if (!value || *value != std::floor(*value) || std::abs(*value) > 1e6)
           refuse(layer, fmt::format("value {} is not a whole number", values.size() - before + 1));
@@ -223,7 +226,8 @@ class RscImport {
                    .nz = size_in(node, "Z_Voxels", document),
                    .cells = {},
                    .substances = {},
-                   .names = {}};
+                   .names = {},
+                   .held = {}};
     if (static_cast<double>(grid.nx) * grid.ny * grid.nz > static_cast<double>(most_imported_cells))
       refuse(node, fmt::format("has too many voxels; at most {} are accepted", most_imported_cells));
     const std::vector<int> materials = values_of(node, "MaterialID", grid),
@@ -304,7 +308,7 @@ class RscImport {
   std::map<int, RscMaterial> palette_;
   double damping_ = 0;
   double friction_ = 0, root_modulus_ = 0, voxels_ = 0;  // sums over the voxels, and their number
-  bool has_note_ = false;
+  bool has_note_ = false, says_gravity_ = false, says_floor_ = false;
 };
 
 }  // namespace

@@ -116,8 +116,13 @@ VoxelBody with_fewer_substances(const VoxelBody& body, std::size_t most, Roundin
     }
   const SubstanceGroups groups = grouped(substances, most);
   rounding = groups.rounding;
-  VoxelBody fewer{
-      .nx = body.nx, .ny = body.ny, .nz = body.nz, .cells = body.cells, .substances = groups.substances, .names = {}};
+  VoxelBody fewer{.nx = body.nx,
+                  .ny = body.ny,
+                  .nz = body.nz,
+                  .cells = body.cells,
+                  .substances = groups.substances,
+                  .names = {},
+                  .held = {}};
   fewer.names.resize(groups.substances.size());
   std::vector<std::uint32_t> group_of_substance(body.substances.size(), 0);
   for (std::size_t i = substances.size(); i-- > 0;) {
@@ -162,7 +167,7 @@ VoxelBody body_of_import(const Json& origin) {
 }
 
 VoxelBody body_of_grid(const VoxelGrid& grid, const Robot& robot) {
-  VoxelBody body{.nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .cells = {}, .substances = {}, .names = {}};
+  VoxelBody body{.nx = grid.nx, .ny = grid.ny, .nz = grid.nz, .cells = {}, .substances = {}, .names = {}, .held = {}};
   body.cells.assign(grid.cells.begin(), grid.cells.end());
   const auto table = materials_of(robot);
   std::size_t last = *std::ranges::max_element(body.cells);
@@ -192,12 +197,18 @@ VoxelBody cut_out(const VoxelBody& all, const std::vector<std::size_t>& members)
                  .nz = highest[2] - lowest[2] + 1,
                  .cells = {},
                  .substances = all.substances,
-                 .names = all.names};
+                 .names = all.names,
+                 .held = {}};
   body.cells.assign(
       static_cast<std::size_t>(body.nx) * static_cast<std::size_t>(body.ny) * static_cast<std::size_t>(body.nz), 0);
   for (const std::size_t cell : members) {
     const std::array<int, 3> at = place(cell);
-    body.cells[body.index(at[0] - lowest[0], at[1] - lowest[1], at[2] - lowest[2])] = all.cells[cell];
+    const std::size_t own = body.index(at[0] - lowest[0], at[1] - lowest[1], at[2] - lowest[2]);
+    body.cells[own] = all.cells[cell];
+    if (!all.held.empty()) {
+      body.held.resize(body.cells.size());
+      body.held[own] = all.held[cell];
+    }
   }
   return body;
 }
@@ -241,6 +252,21 @@ std::vector<VoxelBody> separate_bodies(const VoxelBody& all) {
     if (cells > 2 * most_imported_cells) throw InputError("the voxels form separate bodies that reach too far");
   }
   return separate;
+}
+
+void fix_masses(Robot& robot, const VoxelBody& body) {
+  if (std::ranges::find(body.held, true) == body.held.end()) return;
+  const SpringVoxels lattice(robot, body);
+  for (std::size_t mass = 0; mass < robot.masses.size(); ++mass) {
+    const auto [x, y, z] = lattice.corner(static_cast<std::uint16_t>(mass));
+    bool is_held = false;
+    for (int i = 0; i < 8; ++i) {
+      const int cx = x - (i & 1), cy = y - (i >> 1 & 1), cz = z - (i >> 2);
+      if (cx < 0 || cy < 0 || cz < 0 || cx >= body.nx || cy >= body.ny || cz >= body.nz) continue;
+      is_held = is_held || body.held[body.index(cx, cy, cz)];
+    }
+    if (is_held) robot.fixed.push_back(static_cast<std::uint16_t>(mass));
+  }
 }
 
 Robot bare_robot(const VoxelBody& body, const std::string& name) {

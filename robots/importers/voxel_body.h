@@ -15,7 +15,7 @@
 namespace mercury {
 
 inline constexpr double imported_edge = 0.1;                              // of a voxel [m]
-inline constexpr std::size_t most_bodies = 100;                           // of one file
+inline constexpr std::size_t most_bodies = 10'000;                        // of one file
 inline constexpr std::size_t most_imported_cells = std::size_t{1} << 22;  // a robot has at most 65,535 masses
 
 struct VoxelBody {
@@ -23,6 +23,7 @@ struct VoxelBody {
   std::vector<std::uint32_t> cells;   // x fastest, then y; 0 = air, else 1 + index in `substances`
   std::vector<Substance> substances;  // of voxels [N/m of a spring]
   std::vector<std::string> names;     // of the substances
+  std::vector<bool> held;             // per cell: its corners never move; empty = none
 
   std::size_t index(int x, int y, int z) const {
     return static_cast<std::size_t>(x) +
@@ -62,13 +63,16 @@ class SpringVoxels {
   std::vector<std::size_t> of(const Spring& spring) const;
   // Between which corners of the grid it runs, as a step: (1, 0, 0) along x.
   std::array<int, 3> direction(const Spring& spring) const;
+  std::array<int, 3> corner(std::uint16_t mass) const;  // of the grid
 
  private:
-  std::array<int, 3> corner(std::uint16_t mass) const;
   const Robot& robot_;
   const VoxelBody& body_;
   float edge_;
 };
+
+// The corners of held voxels become fixed masses of the body's robot.
+void fix_masses(Robot& robot, const VoxelBody& body);
 
 // Masses, springs and faces of the body, all springs of tissue. The origin has no grid.
 Robot bare_robot(const VoxelBody& body, const std::string& name);

@@ -15,8 +15,7 @@ struct KnownElement {
   std::string_view reason;  // why it is ignored
 };
 
-constexpr std::string_view not_fixed =
-    "Mercury has no fixed or driven masses: voxels that are held or pulled move freely";
+constexpr std::string_view not_fixed = "of a region; only where regions hold voxels along all axes is kept";
 constexpr std::string_view no_growth = "robots of Mercury do not grow or develop";
 constexpr std::string_view no_brain = "a controller of evosoro; muscles follow their sine";
 constexpr std::string_view no_signals = "electrical signals have no counterpart";

@@ -25,7 +25,7 @@ class VxaImport {
       : document_(document), model_(read_vxa(document, is_voxcraft)), name_(std::move(name)), options_(options) {
     for (const std::uint8_t cell : model_.cells)
       if (cell > 0) ++voxels_;
-    if (voxels_ == 0) throw InputError("/VXA/VXC/Structure", "all voxels are empty");
+    if (voxels_ == 0) return;
     density_ = mean([&](std::size_t cell) { return material_of_cell(cell).density; });
     for (std::size_t cell = 0; cell < model_.cells.size(); ++cell)
       if (model_.cells[cell] > 0) stiffest_ = std::max(stiffest_, modulus_of_cell(cell));
@@ -39,6 +39,12 @@ class VxaImport {
   Import run() {
     Import import;
     import.report.format = model_.is_voxcraft ? "VXA of voxcraft-sim" : "VXA of VoxCAD or evosoro";
+    import.report.decisive = model_.decisive;
+    if (voxels_ == 0) {
+      import.report.notes.emplace_back("it has no voxels: a base, for .vxd files to say them");
+      import.report.elements = document_.elements(known_vxa_element);
+      return import;
+    }
     import.report.length_scale = scaling_->calibration.length_scale;
     import.report.time_scale = scaling_->calibration.time_scale;
     import.settings = settings();
@@ -125,7 +131,13 @@ class VxaImport {
 
   // The grid. Where all voxels of a material have one substance, substances have the numbers of the palette.
   VoxelBody body(ImportReport& report) {
-    VoxelBody body{.nx = model_.nx, .ny = model_.ny, .nz = model_.nz, .cells = {}, .substances = {}, .names = {}};
+    VoxelBody body{.nx = model_.nx,
+                   .ny = model_.ny,
+                   .nz = model_.nz,
+                   .cells = {},
+                   .substances = {},
+                   .names = {},
+                   .held = model_.held};
     for (const VxaMaterial& material : model_.materials) {
       body.substances.emplace_back();
       body.names.push_back(material.name);

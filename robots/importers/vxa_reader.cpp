@@ -2,13 +2,17 @@
 #include "robots/importers/vxa_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <set>
 #include <string>
 
 #include "mercury/error.h"
 #include "robots/importers/encodings.h"
+#include "robots/importers/report_builder.h"
 #include "robots/importers/voxel_body.h"
 
 namespace mercury {
@@ -34,8 +38,10 @@ class VxaReader {
     read_simulator(simulator);
     read_environment(environment);
     read_lattice(vxc.child("Lattice"));
-    read_palette(vxc.child("Palette"), vxc);
-    read_structure(vxc.child("Structure"), vxc, environment);
+    read_palette(vxc.child("Palette"));
+    read_structure(vxc.child("Structure"), environment);
+    read_regions(environment);
+    add_decisive_notes(simulator, environment, vxc.child("Structure"));
     return std::move(model_);
   }
 
@@ -171,8 +177,7 @@ class VxaReader {
         mark(lattice, child, ignored, "the lattice of Mercury is simple cubic");
   }
 
-  void read_palette(const pugi::xml_node& palette, const pugi::xml_node& vxc) {
-    if (!palette) refuse(vxc, "has no element Palette");
+  void read_palette(const pugi::xml_node& palette) {
     for (const pugi::xml_node& node : palette.children("Material")) {
       document_.mark(node.attribute("ID"), ignored, "materials count from 1 in their order, as their programs do it");
       const pugi::xml_node mechanical = node.child("Mechanical");
@@ -184,6 +189,7 @@ class VxaReader {
       material.phase = number_in(mechanical, "MaterialTempPhase").value_or(0);
       material.friction = number_in(mechanical, "uDynamic").value_or(0);
       if (material.friction < 0) refuse(mechanical.child("uDynamic"), "give 0 or more");
+      material.held = number_in(mechanical, "Fixed").value_or(0) != 0;
       if (material.name.empty()) material.name = fmt::format("material {}", model_.materials.size() + 1);
       model_.materials.push_back(std::move(material));
     }
@@ -212,8 +218,9 @@ class VxaReader {
     return size;
   }
 
-  void read_structure(const pugi::xml_node& structure, const pugi::xml_node& vxc, const pugi::xml_node& environment) {
-    if (!structure) refuse(vxc, "has no element Structure");
+  // A base for .vxd files has no structure, or an empty one.
+  void read_structure(const pugi::xml_node& structure, const pugi::xml_node& environment) {
+    if (!structure || !structure.child("Data")) return;
     model_.nx = size_in(structure, "X_Voxels");
     model_.ny = size_in(structure, "Y_Voxels");
     model_.nz = size_in(structure, "Z_Voxels");
@@ -227,12 +234,10 @@ class VxaReader {
     model_.amplitude_factor = values_of(structure.child("TempAmpDamp"), mapped, "factor of the amplitude");
     model_.period = values_of(structure.child("TempPeriod"), mapped, "frequency of each voxel");
     read_growth(structure, environment);
+    leave_out_unknown_materials();
     std::array<bool, 256> used{};
     for (std::size_t i = 0; i < model_.cells.size(); ++i) {
       const std::size_t material = model_.cells[i];
-      if (material > model_.materials.size())
-        refuse(structure.child("Data"),
-               fmt::format("voxel {} has material {}, the palette has {}", i, material, model_.materials.size()));
       used[material] = true;
       if (material > 0 && !model_.elastic_modulus.empty() && !(model_.elastic_modulus[i] > 0))
         refuse(structure.child("Stiffness"),
@@ -243,6 +248,116 @@ class VxaReader {
     for (std::size_t material = 1; material < used.size(); ++material)
       if (used[material]) mark_used(material, model_.elastic_modulus.empty());
     mark_materials(used);
+  }
+
+  // voxcraft-sim says "No such material" of them, and has none either.
+  void leave_out_unknown_materials() {
+    std::set<int> unknown;
+    std::size_t voxels = 0;
+    for (std::uint8_t& material : model_.cells) {
+      if (material <= model_.materials.size()) continue;
+      unknown.insert(material);
+      ++voxels;
+      material = 0;
+    }
+    if (voxels > 0)
+      model_.decisive.push_back(
+          fmt::format("left out: {} voxel{} of material {}, which the palette of {} does not have", voxels,
+                      voxels == 1 ? "" : "s", fmt::join(unknown, ", "), model_.materials.size()));
+  }
+
+  // Regions hold or push the voxels that they touch, in shares of the lattice (CVX_FRegion). A newer file has
+  // Boundary_Conditions, an older one Fixed_Regions and Forced_Regions.
+  void read_regions(const pugi::xml_node& environment) {
+    bool is_partial = false, is_pushed = false;
+    const auto read = [&](const char* parent) {
+      for (const pugi::xml_node& region : environment.child(parent).children("FRegion")) {
+        constexpr int translations = 7;
+        const int held = whole_number_in(region, "DofFixed")
+                             .value_or(switch_in(region, "Fixed").value_or(false) ? translations : 0) &
+                         translations;
+        for (const char* push :
+             {"ForceX", "ForceY", "ForceZ", "TorqueX", "TorqueY", "TorqueZ", "DisplaceX", "DisplaceY", "DisplaceZ"})
+          is_pushed = is_pushed || number_in(region, push).value_or(0) != 0;
+        is_partial = is_partial || (held != 0 && held != translations);
+        if (held == translations) hold(region);
+      }
+    };
+    read("Boundary_Conditions");
+    if (!environment.child("Boundary_Conditions"))
+      for (const char* parent : {"Fixed_Regions", "Forced_Regions"}) read(parent);
+    for (std::size_t i = 0; i < model_.cells.size(); ++i)
+      if (model_.cells[i] > 0 && model_.materials[model_.cells[i] - 1u].held) hold(i);
+    if (!model_.held.empty())
+      model_.decisive.push_back(fmt::format("held in its place, by fixed masses: {} of {} voxels",
+                                            std::ranges::count(model_.held, true),
+                                            std::ranges::count_if(model_.cells, [](auto cell) { return cell > 0; })));
+    if (is_partial) model_.decisive.push_back("not kept: regions that hold voxels along some axes only");
+    if (is_pushed) model_.decisive.push_back("not kept: regions that push or move voxels");
+  }
+
+  void hold(std::size_t cell) {
+    model_.held.resize(model_.cells.size());
+    model_.held[cell] = true;
+  }
+
+  // The voxels that a box or a sphere touches, as IsTouching() of these programs says: a voxel reaches half an edge
+  // around its middle, of a sphere half a diagonal. A cylinder or mesh touches what has its middle in its box.
+  void hold(const pugi::xml_node& region) {
+    enum { box, cylinder, sphere };
+    const int kind = whole_number_in(region, "PrimType").value_or(box);
+    const std::array<double, 3> size{double(model_.nx), double(model_.ny), double(model_.nz)};
+    std::array<double, 3> low{}, extent{};
+    constexpr std::array<const char*, 3> places{"X", "Y", "Z"}, lengths{"dX", "dY", "dZ"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = size[axis] * number_in(region, places[axis]).value_or(0);  // in voxels from here on
+      extent[axis] = size[axis] * number_in(region, lengths[axis]).value_or(0);
+      document_.mark(region.child(places[axis]), mapped, "where voxels are held");
+      document_.mark(region.child(lengths[axis]), mapped, "where voxels are held");
+    }
+    const double radius = *std::ranges::max_element(size) * number_in(region, "Radius").value_or(0);
+    if (kind == sphere) document_.mark(region.child("Radius"), mapped, "where voxels are held");
+    document_.mark(region.child("PrimType"), kind == box || kind == sphere ? mapped : approximated,
+                   "where voxels are held");
+    for (const char* child : {"DofFixed", "Fixed"})
+      document_.mark(region.child(child), mapped, "the masses of these voxels are fixed");
+    for (std::size_t i = 0; i < model_.cells.size(); ++i) {
+      if (model_.cells[i] == 0) continue;
+      const auto nx = static_cast<std::size_t>(model_.nx), ny = static_cast<std::size_t>(model_.ny);
+      const std::array<double, 3> middle{double(i % nx) + 0.5, double(i / nx % ny) + 0.5, double(i / nx / ny) + 0.5};
+      bool touches = true;
+      double square = 0;
+      const double reach = kind == box ? 0.5 : 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        touches = touches && middle[axis] + reach > low[axis] && middle[axis] - reach < low[axis] + extent[axis];
+        square += (middle[axis] - low[axis]) * (middle[axis] - low[axis]);
+      }
+      if (kind == sphere ? std::sqrt(square) < radius + std::sqrt(0.75) : touches) hold(i);
+    }
+  }
+
+  // What decides how the robot moves, and is not kept.
+  void add_decisive_notes(const pugi::xml_node& simulator, const pugi::xml_node& environment,
+                          const pugi::xml_node& structure) {
+    const auto filled = [](const pugi::xml_node& node) {
+      return !text_of(node).empty() && text_of(node).find_first_of("123456789") != std::string::npos;
+    };
+    bool has_cilia = switch_in(simulator, "EnableCilia").value_or(false);
+    bool has_force = false;
+    for (const VxaMaterial& material : model_.materials)
+      has_force = has_force || number_in(material.element.child("Mechanical"), "Cilia").value_or(0) != 0;
+    for (const pugi::xml_node& layer : structure.child("BaseCiliaForce").children("Layer"))
+      has_force = has_force || filled(layer);
+    has_cilia = has_cilia && has_force;
+    if (has_cilia)
+      model_.decisive.push_back(
+          "not kept: cilia, which drive voxels of this file and have no counterpart; it will not move as there");
+    if (switch_in(environment, "StickyFloor").value_or(false))
+      model_.decisive.push_back("not kept: voxels stick to the floor there; here it has friction alone");
+    if (simulator.child("AttachDetach") && switch_in(simulator.child("AttachDetach"), "EnableAttach").value_or(false))
+      model_.decisive.push_back("not kept: voxels that touch stick together there");
+    if (!environment.child("Gravity") && !model_.in_fluid)
+      model_.decisive.push_back("assumed: gravity of 9.81 m/s2 and a floor, which the file does not say");
   }
 
   void mark_materials(const std::array<bool, 256>& used) {
@@ -262,6 +377,8 @@ class VxaReader {
            model_.temperature_varies ? "amplitude of muscles, times the amplitude of the temperature"
                                      : "nothing moves: the temperature does not vary");
       mark(mechanical, "uDynamic", approximated, "friction, the mean over the voxels");
+      mark(mechanical, "Fixed", mapped,
+           model_.materials[i].held ? "the masses of these voxels are fixed" : "no voxel is held");
       if (uses_material_phase())
         mark(mechanical, "MaterialTempPhase", mapped, "phase of muscles");
       else
@@ -320,14 +437,11 @@ class VxaReader {
     for (const pugi::xml_node& layer : layers_of(parent)) {
       const std::string text = text_of(layer);
       std::size_t count = 0;
-      for (std::size_t begin = 0; begin < text.size(); ++count) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string_view word = trimmed(std::string_view(text).substr(begin, end - begin));
+      for (const std::string_view word : list_values(text)) {
         const std::optional<double> value = number_from(word);
-        begin = end + 1;
-        if (word.empty() && begin >= text.size()) break;  // after a last comma
-        if (!value) refuse(layer, fmt::format("value {} is not a number", count + 1));
+        if (!value) refuse(layer, fmt::format("value {} is not a number", ++count));
         values.push_back(*value);
+        ++count;
       }
       if (count != layer_size())
         refuse(layer, fmt::format("has {} values, X_Voxels times Y_Voxels is {}", count, layer_size()));

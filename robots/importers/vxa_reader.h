@@ -20,6 +20,7 @@ struct VxaMaterial {
   double expansion = 0;        // CTE [1/degree]
   double phase = 0;            // MaterialTempPhase [rad]
   double friction = 0;         // uDynamic [1]
+  bool held = false;           // Fixed of voxcraft-sim
 };
 
 struct VxaModel {
@@ -38,6 +39,7 @@ struct VxaModel {
   std::vector<double> amplitude_factor;  // TempAmpDamp [1]
   std::vector<double> period;            // in place of TempPeriod [s]
   std::vector<double> size;              // InitialVoxelSize, as a factor [1]
+  std::vector<bool> held;                // by a region or its material; empty = none
 
   bool gravity_enabled = true, floor_enabled = true, self_collision = false;
   double gravity = -9.81;  // [m/s2]
@@ -48,6 +50,7 @@ struct VxaModel {
   double drag_coefficient = 0;                  // AggregateDragCoefficient, rho C_D / 2 [kg/m3]
   double slow_damping = 0;                      // SlowDampingZ [1]
   std::optional<double> stop_time, start_time;  // [s]
+  std::vector<std::string> decisive, notes;     // of the report
 };
 
 // Reads the document and marks what it used. Throws InputError with the place in the document.

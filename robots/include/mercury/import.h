@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots from files of other simulators (docs/import.md): VXA, VXD and VXC of VoxCAD, evosoro and voxcraft-sim, RSC of
-// RISE, worlds and robots of EvoGym; and voxel robots as VXA.
+// Robots from files of other simulators (docs/import.md): VXA, VXD and VXC of VoxCAD, evosoro and voxcraft-sim, and
+// recorded motions of the latter, RSC of RISE, worlds and robots of EvoGym; and voxel robots as VXA.
 #pragma once
 
 #include <filesystem>
@@ -41,8 +41,15 @@ struct ImportedSettings {
 // The settings as the text of a configuration file (--config).
 std::string to_toml(const ImportedSettings& settings, const ImportReport& report);
 
+// What a file recorded of its robots' motion.
+struct ImportedMotion {
+  std::vector<double> times;                 // of the frames, rising [s]
+  std::vector<std::vector<Vec3>> positions;  // per frame: of all masses, robot after robot [m]
+};
+
 struct Import {
   std::vector<Robot> robots;
+  std::optional<ImportedMotion> motion;  // of a file that holds one; the robots' materials are then unknown
   ImportedSettings settings;
   ImportReport report;
 };

@@ -28,7 +28,9 @@ struct ImportReport {
   double length_scale = 1;                // meters here per meter in the file
   double time_scale = 1;                  // seconds here per second in the file
   std::vector<ImportedElement> elements;  // all of them, in the order of the file
-  std::vector<std::string> notes;         // whatever belongs to no single element, such as rounded materials
+  // What belongs to no single element. First what decides how the robot moves: what holds or drives it there and not
+  // here, and what is assumed. Then the rest, such as rounded materials.
+  std::vector<std::string> decisive, notes;
 };
 
 }  // namespace mercury

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <filesystem>
+
 #include "mercury/robot_file.h"
 #include "mercury/voxel.h"
 #include "tests/app/program.h"
@@ -61,6 +64,37 @@ TEST_F(ImportCommand, ReportsAsJson) {
   }
 }
 
+TEST_F(ImportCommand, SaysWhenNothingWasImported) {
+  write("terrain.json", terrain_);
+  write("base.vxa", "<VXA Version=\"1.0\"><VXC/></VXA>");
+  const Outcome nothing = mercury({"import", path("terrain.json"), path("base.vxa"), "-o", path("robots"), "--brief"});
+  EXPECT_EQ(nothing.status, 1);
+  EXPECT_THAT(nothing.messages, HasSubstr("base.vxa: no robot in it: it has no voxels"));
+  EXPECT_THAT(nothing.messages, testing::EndsWith("mercury: nothing was imported\n"));
+  EXPECT_FALSE(std::filesystem::exists(path("robots")));
+  const Outcome some = mercury({"import", path("crawler.vxa"), path("base.vxa"), "-o", path("robots"), "--brief"});
+  EXPECT_EQ(some.status, 0);
+  EXPECT_THAT(some.messages, HasSubstr("no robot in it"));
+}
+
+TEST_F(ImportCommand, AHistoryBecomesARecordingThatPlays) {
+  std::string text = "{{{setting}}}<rescale>0.001</rescale>\n{{{setting}}}<voxel_size>0.01</voxel_size>\n";
+  for (int i = 0; i < 5; ++i)
+    text += fmt::format("<<<Step{} Time:{}>>>{},0,0,0,0,0,0,-5,-5,-5,5,5,5,1,0,;<<<>>>\n", 10 * i, 0.01 * i, i);
+  write("bot.history", text);
+  const Outcome outcome = mercury({"import", path("bot.history"), "-o", path("motions"), "--brief"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(listing("motions"), ElementsAre("bot.h5"));
+  EXPECT_THAT(outcome.output, HasSubstr("a motion to play, not a robot to simulate"));
+  const Outcome info = mercury({"info", path("motions/bot.h5"), "--json"});
+  ASSERT_EQ(info.status, 0) << info.messages;
+  // 1 mm per 0.01 s, ten times as large and the square root of that as slow.
+  const Outcome page = mercury({"export", path("motions/bot.h5"), "-o", path("bot.html")});
+  ASSERT_EQ(page.status, 0) << page.messages;
+  EXPECT_THAT(read("bot.html"), HasSubstr(fmt::format("0.04 m in {:.3g} s", 0.04 * std::sqrt(10.0))));
+  EXPECT_EQ(mercury({"run", path("bot.history")}).status, 2);
+}
+
 TEST_F(ImportCommand, FoldersGiveAllRobotsAndOneConfiguration) {
   std::filesystem::create_directories(path("run"));
   write("run/base.vxa", VxaParts{}.text());
@@ -87,7 +121,7 @@ TEST_F(ImportCommand, FilesOfOneNameDoNotReplaceEachOther) {
 TEST_F(ImportCommand, TerrainAloneIsReported) {
   write("world.json", terrain_);
   const Outcome outcome = mercury({"import", path("world.json"), "-o", path("robots")});
-  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.messages, HasSubstr("no robot in it"));
   EXPECT_THAT(outcome.output, HasSubstr("fixed terrain"));
 }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "mercury/voxel.h"
+#include "robots/importers/encodings.h"
 #include "tests/robots/importers/documents.h"
 
 namespace mercury {
@@ -16,6 +17,23 @@ const std::string world = R"({"grid_width": 8, "grid_height": 4, "objects": {
             "neighbors": {"9": [10, 17], "10": [9, 11], "11": [10, 19], "17": [9], "19": [11]}},
   "box": {"indices": [14], "types": [2], "neighbors": {"14": []}},
   "ground": {"indices": [0, 1, 2, 3, 4, 5, 6, 7], "types": [5, 5, 5, 5, 5, 5, 5, 5], "color": "green"}}})";
+
+const std::string stored_body =
+    "UEsDBBQAAAAAAAAAIQD9KqnUsAAAALAAAAAJABQAYXJyXzAubnB5AQAQALAAAAAAAAAAsAAAAAAAAACTTlVNUFkBAHYAeydkZXNjcic6ICc8Zjgn"
+    "LCAnZm9ydHJhbl9vcmRlcic6IEZhbHNlLCAnc2hhcGUnOiAoMiwgMyksIH0gICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAg"
+    "ICAgICAgICAgICAgICAgICAgCgAAAAAAAPA/AAAAAAAAAAAAAAAAAAAIQAAAAAAAAAhAAAAAAAAAAEAAAAAAAAAQQFBLAwQUAAAAAAAAACEAu9ry"
+    "ocAAAADAAAAACQAUAGFycl8xLm5weQEAEADAAAAAAAAAAMAAAAAAAAAAk05VTVBZAQB2AHsnZGVzY3InOiAnPGk4JywgJ2ZvcnRyYW5fb3JkZXIn"
+    "OiBUcnVlLCAnc2hhcGUnOiAoMiwgNCksIH0gICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAgICAg"
+    "IAoAAAAAAAAAAAMAAAAAAAAAAgAAAAAAAAAFAAAAAAAAAAMAAAAAAAAABAAAAAAAAAAEAAAAAAAAAAUAAAAAAAAAUEsBAhQDFAAAAAAAAAAhAP0q"
+    "qdSwAAAAsAAAAAkAAAAAAAAAAAAAAIABAAAAAGFycl8wLm5weVBLAQIUAxQAAAAAAAAAIQC72vKhwAAAAMAAAAAJAAAAAAAAAAAAAACAAesAAABh"
+    "cnJfMS5ucHlQSwUGAAAAAAIAAgBuAAAA5gEAAAAA";
+const std::string compressed_body =
+    "UEsDBBQAAAAIAAAAIQD9KqnUVgAAALAAAAAJABQAYXJyXzAubnB5AQAQALAAAAAAAAAAVgAAAAAAAACb7BfqGxDJyFDGUK2eklqcXKRupaBuk2ah"
+    "rqOgnpZfVFKUmBefX5SSChJ3S8wpTgWKF2ckFqQC+RpGOgrGmjoKtQpkAy4GMPhgz4ACOBxQaQYoLeAAAFBLAwQUAAAACAAAACEAu9ryoVUAAADA"
+    "AAAACQAUAGFycl8xLm5weQEAEADAAAAAAAAAAFUAAAAAAAAAm+wX6hsQychQxlCtnpJanFykbqWgbpNpoa6joJ6WX1RSlJgXn1+UkgoSDykqTQUK"
+    "F2ckFqQCuRpGOgommjoKtQrkAy4GKGCG0kxQmhVNnAWNhskDAFBLAQIUAxQAAAAIAAAAIQD9KqnUVgAAALAAAAAJAAAAAAAAAAAAAACAAQAAAABh"
+    "cnJfMC5ucHlQSwECFAMUAAAACAAAACEAu9ryoVUAAADAAAAACQAAAAAAAAAAAAAAgAGRAAAAYXJyXzEubnB5UEsFBgAAAAACAAIAbgAAACEBAAAA"
+    "AA==";
 
 Import evogym(const ImportOptions& options = {}) { return import_text(world, "evogym", "world", options); }
 
@@ -89,6 +107,64 @@ TEST(Evogym, MissingConnectionsAreReported) {
   text.replace(text.find("\"9\": [10, 17], \"10\": [9, 11]"), 28, "\"9\": [17], \"10\": [11]");
   const Import import = import_text(text, "evogym", "world");
   EXPECT_EQ(element_at(import.report, "/objects/robot/neighbors")->outcome, ImportOutcome::approximated);
+}
+
+TEST(Evogym, FixedVoxelsHoldARobot) {
+  std::string text = world;
+  text.replace(text.find("[3, 2, 4, 1, 3]"), 15, "[5, 2, 4, 1, 3]");
+  const Import import = import_text(text, "evogym", "world");
+  const Robot& robot = import.robots[1];
+  // The corners of the voxel at the lower left.
+  EXPECT_EQ(robot.fixed.size(), 8u);
+  for (std::size_t mass = 0; mass < robot.masses.size(); ++mass)
+    EXPECT_EQ(std::ranges::count(robot.fixed, mass), robot.masses[mass].x < 0 && robot.masses[mass].z < 0.05f ? 1 : 0);
+  EXPECT_NE(import.report.decisive.at(0).find("held in its place"), std::string::npos);
+}
+
+// Diagonals do not move, and belong to one voxel: they have the name of its actuator, which colors the skin.
+TEST(Evogym, DiagonalsHaveTheNameOfTheirActuator) {
+  const Robot robot = evogym().robots[1];
+  std::size_t named = 0;
+  for (const Spring& spring : robot.springs) {
+    const Material& material = robot.materials[spring.material];
+    const Vec3 &a = robot.masses[spring.a], &b = robot.masses[spring.b];
+    const bool is_face_diagonal = a.y == b.y && a.x != b.x && a.z != b.z;
+    if (!is_face_diagonal) continue;
+    EXPECT_EQ(material.amplitude, 0);
+    const float x = (a.x + b.x) / 2, z = (a.z + b.z) / 2;
+    const std::string expected = z < 0 ? (x < -0.05f  ? "horizontal 0,0"
+                                          : x > 0.05f ? "vertical 2,0"
+                                                      : "passive")
+                                       : (x > 0.05f ? "horizontal 2,1" : "passive");
+    EXPECT_EQ(robot.material_names[spring.material], expected);
+    named += expected == "passive" ? 0 : 1;
+  }
+  EXPECT_EQ(named, 3u * 2 * 2);
+}
+
+// numpy.savez(file, [[1, 0, 3], [3, 2, 4]], pairs) of NumPy 1.26.4; the same compressed.
+TEST(Evogym, BodiesOfNumpyAreWorldsOfOneObject) {
+  const Robot from_world = evogym().robots[1];
+  for (const auto& file : {stored_body, compressed_body}) {
+    const Import import = import_text(base64_decoded(file), "npz", "world");
+    ASSERT_EQ(import.robots.size(), 1u);
+    EXPECT_EQ(import.robots[0].springs, from_world.springs);
+    EXPECT_EQ(import.robots[0].materials, from_world.materials);
+    EXPECT_EQ(element_at(import.report, "/arr_0")->outcome, ImportOutcome::mapped);
+    EXPECT_EQ(element_at(import.report, "/arr_1")->outcome, ImportOutcome::mapped);
+  }
+}
+
+TEST(BadEvogym, ArchivesThatAreNone) {
+  const std::string file = base64_decoded(stored_body);
+  EXPECT_EQ(refusal_of("PK, but no archive", "npz"), "not an archive of NumPy (.npz), or damaged");
+  for (std::size_t end = 0; end < file.size(); end += 7)
+    EXPECT_NE(refusal_of(std::string_view(file).substr(0, end), "npz"), "no error") << end;
+  for (std::size_t place = 0; place < file.size(); ++place) {  // no crash
+    std::string damaged = file;
+    damaged[place] = static_cast<char>(damaged[place] ^ 0x5a);
+    (void)refusal_of(damaged, "npz");
+  }
 }
 
 TEST(Evogym, TerrainAloneGivesNoRobot) {

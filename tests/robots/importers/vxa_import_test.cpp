@@ -209,6 +209,88 @@ TEST(Vxa, WorldsBecomeEnvironments) {
   EXPECT_EQ(import_of(nothing).settings.gravity, 0);
 }
 
+TEST(Vxa, VoxelsOfMaterialsThatThePaletteLacksAreLeftOutAndSaidSo) {
+  VxaParts parts;
+  parts.data = "<Layer>12</Layer><Layer>17</Layer>";
+  const Import import = import_of(parts);
+  EXPECT_EQ(voxel_grid_of(import.robots.front())->cells, (std::vector<MaterialId>{1, 2, 1, 0}));
+  ASSERT_EQ(import.report.decisive.size(), 1u);
+  EXPECT_EQ(import.report.decisive.front(), "left out: 1 voxel of material 7, which the palette of 3 does not have");
+}
+
+TEST(Vxa, ABaseWithoutVoxelsGivesNoRobotAndSaysWhy) {
+  VxaParts parts;
+  parts.data = "<Layer>00</Layer><Layer>00</Layer>";
+  const std::string without_structure =
+      "<VXA Version=\"1.0\"><VXC><Lattice><Lattice_Dim>0.01</Lattice_Dim></Lattice></VXC></VXA>";
+  for (const std::string& text : {parts.text(), without_structure}) {
+    const Import import = import_text(text, "vxa", "base");
+    EXPECT_TRUE(import.robots.empty());
+    ASSERT_FALSE(import.report.notes.empty());
+    EXPECT_EQ(import.report.notes.front(), "it has no voxels: a base, for .vxd files to say them");
+    EXPECT_FALSE(import.report.elements.empty());
+  }
+}
+
+TEST(Vxa, ListsMayBeSeparatedBySpaces) {
+  VxaParts commas, spaces;
+  commas.layers = "<PhaseOffset><Layer>0,0.25</Layer><Layer>0.5,0.75</Layer></PhaseOffset>";
+  spaces.layers = "<PhaseOffset><Layer> 0 0.25\n</Layer><Layer>0.5\t 0.75</Layer></PhaseOffset>";
+  EXPECT_EQ(import_of(spaces).robots, import_of(commas).robots);
+}
+
+TEST(Vxa, ManyBodiesBecomeRobots) {
+  VxaParts parts;
+  parts.size = "<X_Voxels>41</X_Voxels><Y_Voxels>21</Y_Voxels><Z_Voxels>1</Z_Voxels>";
+  std::string rows;
+  for (int y = 0; y < 21; ++y)
+    for (int x = 0; x < 41; ++x) rows += x % 2 == 0 && y % 2 == 0 ? '1' : '0';
+  parts.data = "<Layer>" + rows + "</Layer>";
+  EXPECT_EQ(import_of(parts).robots.size(), 21u * 11);
+}
+
+// The points of the voxels that a region touches, here a slab at the lower end of x, are fixed.
+TEST(Vxa, HeldRegionsBecomeFixedMasses) {
+  const auto region = [](const char* what, double x) {
+    return "<FRegion><PrimType>0</PrimType><X>" + std::to_string(x) +
+           "</X><Y>0</Y><Z>0</Z><dX>0.01</dX><dY>1</dY><dZ>1</dZ>" + what + "</FRegion>";
+  };
+  VxaParts parts;
+  parts.data = "<Layer>12</Layer><Layer>13</Layer>";
+  for (const std::string& held :
+       {"<Fixed_Regions><NumFixed>1</NumFixed>" + region("<Fixed>1</Fixed>", 0) + "</Fixed_Regions>",
+        "<Boundary_Conditions><NumBCs>1</NumBCs>" + region("<DofFixed>63</DofFixed>", 0) + "</Boundary_Conditions>"}) {
+    parts.environment = held;
+    const Import import = import_of(parts);
+    const Robot& robot = import.robots.front();
+    EXPECT_EQ(robot.fixed.size(), 2u * 2 * 3);  // two voxels of 2 x 1 x 2, with their common side
+    for (std::size_t mass = 0; mass < robot.masses.size(); ++mass)
+      EXPECT_EQ(std::ranges::count(robot.fixed, mass), robot.masses[mass].x < 0.05f ? 1 : 0);
+    ASSERT_EQ(import.report.decisive.size(), 1u);
+    EXPECT_EQ(import.report.decisive.front(), "held in its place, by fixed masses: 2 of 4 voxels");
+  }
+  parts.environment = "<Boundary_Conditions><NumBCs>2</NumBCs>" + region("<DofFixed>1</DofFixed>", 0) +
+                      region("<DofFixed>0</DofFixed><ForceX>1</ForceX>", 0.99) + "</Boundary_Conditions>";
+  const Import import = import_of(parts);
+  EXPECT_TRUE(import.robots.front().fixed.empty());
+  EXPECT_EQ(import.report.decisive, (std::vector<std::string>{"not kept: regions that hold voxels along some axes only",
+                                                              "not kept: regions that push or move voxels"}));
+}
+
+TEST(Vxa, WhatDecidesTheMotionComesFirst) {
+  VxaParts cilia;
+  cilia.simulator = "<EnableCilia>1</EnableCilia>";
+  cilia.layers = "<BaseCiliaForce><Layer>0,1,0,0,0,0</Layer><Layer>0,0,0,0,0,0</Layer></BaseCiliaForce>";
+  EXPECT_NE(import_of(cilia).report.decisive.at(0).find("not kept: cilia"), std::string::npos);
+  cilia.simulator = "<EnableCilia>0</EnableCilia>";
+  EXPECT_TRUE(import_of(cilia).report.decisive.empty());
+  std::string text = VxaParts{}.text();
+  const std::size_t begin = text.find("<Gravity>"), end = text.find("</Gravity>") + 10;
+  text.erase(begin, end - begin);
+  EXPECT_EQ(import_text(text, "vxa", "test").report.decisive.at(0),
+            "assumed: gravity of 9.81 m/s2 and a floor, which the file does not say");
+}
+
 TEST(Vxa, TheReportHasEveryElement) {
   VxaParts parts;
   parts.environment =
