@@ -24,7 +24,49 @@ std::array<float, 3> lab(std::array<float, 3> c) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// Colors for people without medium-wave cones (Machado, Oliveira and Fernandes 2009, severity 1).
+// The difference CIEDE2000 of two colors in Lab (Sharma, Wu and Dalal 2005).
+double ciede2000(std::array<float, 3> first, std::array<float, 3> second) {
+  constexpr double degree = std::numbers::pi / 180;
+  const auto power7 = [](double x) { return std::pow(x, 7); };
+  const double mean_chroma = (std::hypot(first[1], first[2]) + std::hypot(second[1], second[2])) / 2;
+  const double g = 0.5 * (1 - std::sqrt(power7(mean_chroma) / (power7(mean_chroma) + power7(25))));
+  const double a1 = (1 + g) * first[1], a2 = (1 + g) * second[1];
+  const double c1 = std::hypot(a1, first[2]), c2 = std::hypot(a2, second[2]);
+  const auto hue = [&](double a, double b) { return std::fmod(std::atan2(b, a) / degree + 360, 360); };
+  const double h1 = hue(a1, first[2]), h2 = hue(a2, second[2]);
+  double dh = h2 - h1;
+  if (dh > 180) dh -= 360;
+  if (dh < -180) dh += 360;
+  const double dl = second[0] - first[0], dc = c2 - c1, dbig = 2 * std::sqrt(c1 * c2) * std::sin(dh / 2 * degree);
+  const double l = (first[0] + second[0]) / 2, c = (c1 + c2) / 2;
+  double h = (h1 + h2) / 2;
+  if (std::abs(h1 - h2) > 180) h += h1 + h2 < 360 ? 180 : -180;
+  const double t = 1 - 0.17 * std::cos((h - 30) * degree) + 0.24 * std::cos(2 * h * degree) +
+                   0.32 * std::cos((3 * h + 6) * degree) - 0.2 * std::cos((4 * h - 63) * degree);
+  const double turn = 30 * std::exp(-std::pow((h - 275) / 25, 2)),
+               rc = 2 * std::sqrt(power7(c) / (power7(c) + power7(25)));
+  const double sl = 1 + 0.015 * std::pow(l - 50, 2) / std::sqrt(20 + std::pow(l - 50, 2)), sc = 1 + 0.045 * c,
+               sh = 1 + 0.015 * c * t;
+  return std::sqrt(std::pow(dl / sl, 2) + std::pow(dc / sc, 2) + std::pow(dbig / sh, 2) -
+                   std::sin(2 * turn * degree) * rc * dc / sc * dbig / sh);
+}
+
+// Pairs of Sharma, Wu and Dalal's table.
+TEST(Ciede2000, IsThePublishedOne) {
+  EXPECT_NEAR(ciede2000({50, 2.6772f, -79.7751f}, {50, 0, -82.7485f}), 2.0425, 1e-3);
+  EXPECT_NEAR(ciede2000({50, 2.5f, 0}, {61, -5, 29}), 22.8977, 1e-3);
+  EXPECT_NEAR(ciede2000({2.0776f, 0.0795f, -1.1350f}, {0.9033f, -0.0636f, -0.5514f}), 0.9082, 1e-3);
+}
+
+// Colors for people without long-wave cones (Machado, Oliveira and Fernandes 2009, severity 1).
+std::array<float, 3> protanope(Color color) {
+  const auto c = linear_of(color);
+  return {std::max(0.0f, 0.152286f * c[0] + 1.052583f * c[1] - 0.204868f * c[2]),
+          std::max(0.0f, 0.114503f * c[0] + 0.786281f * c[1] + 0.099216f * c[2]),
+          std::max(0.0f, -0.003882f * c[0] - 0.048116f * c[1] + 1.051998f * c[2])};
+}
+
+// Colors for people without medium-wave cones, likewise.
 std::array<float, 3> deuteranope(Color color) {
   const auto c = linear_of(color);
   return {std::max(0.0f, 0.367322f * c[0] + 0.860646f * c[1] - 0.227968f * c[2]),
@@ -90,6 +132,24 @@ TEST(MuscleColor, PhasesDifferWithAndWithoutGreenCones) {
       EXPECT_GT(distance(lab(linear_of(first)), lab(linear_of(second))), 30);
       EXPECT_GT(distance(lab(deuteranope(first)), lab(deuteranope(second))), 14);
     }
+}
+
+// Also phases in between: every 15 degrees, all pairs that are 45 degrees apart or more.
+TEST(MuscleColor, PhasesAnEighthOfATurnApartDifferForAllKindsOfColorVision) {
+  using Vision = std::array<float, 3> (*)(Color);
+  const auto difference = [](Vision seen, int a, int b, float speed) {
+    const auto at = [&](int degrees) {
+      return lab(seen(muscle_color(float(degrees) * std::numbers::pi_v<float> / 180, speed)));
+    };
+    return ciede2000(at(a), at(b));
+  };
+  for (const float speed : {0.0f, 0.5f, 1.0f})
+    for (int a = 0; a < 360; a += 15)
+      for (int b = a + 45; b <= a + 180; b += 15) {
+        EXPECT_GT(difference(linear_of, a, b, speed), 17) << a << ' ' << b << ' ' << speed;
+        EXPECT_GT(difference(deuteranope, a, b, speed), 13) << a << ' ' << b << ' ' << speed;
+        EXPECT_GT(difference(protanope, a, b, speed), 13) << a << ' ' << b << ' ' << speed;
+      }
 }
 
 TEST(MuscleColor, FasterIsDarker) {
