@@ -96,6 +96,8 @@ struct Legend {
   std::string unit;            // "m/s"; empty = none
   std::optional<Scale> scale;  // a bar with numbers
   std::vector<std::pair<Color, std::string>> swatches;
+  // Colors of muscles by their phase: dots on a circle, phase 0 at the right, rising counter-clockwise. Empty = none.
+  std::vector<Color> wheel;
   // How many values are in each part of the scale, from its low end to its high one, as shares of the largest; drawn
   // beside the bar. Empty = not drawn.
   std::vector<float> histogram;

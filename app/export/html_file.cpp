@@ -260,15 +260,12 @@ class PageRobotWriter {
     return shortest(largest);
   }
 
-  // Colors and names: of the base materials in a robot with the default table.
   ordered_json legend() const {
-    ordered_json lines = ordered_json::array();
-    if (robot_.materials.empty()) {
-      for (const auto& [color, name] : swatches_of(shape_->materials)) lines.push_back({hex(color), name});
-      return lines;
-    }
-    for (const ordered_json& material : materials_) lines.push_back({material["css"], material["name"]});
-    return lines;
+    const render::Legend legend = material_legend(std::array{&robot_}, std::array{shape_});
+    ordered_json lines = ordered_json::array(), wheel = ordered_json::array();
+    for (const auto& [color, name] : legend.swatches) lines.push_back({color.a > 0 ? hex(color) : "transparent", name});
+    for (const render::Color color : legend.wheel) wheel.push_back(hex(color));
+    return {{"swatches", lines}, {"wheel", wheel}};
   }
 
   // As Simulation::hash(): of positions and velocities at the last frame.

@@ -19,6 +19,7 @@
 #include "app/live/command_text.h"
 #include "app/live/drawn_scene.h"
 #include "app/live/group_video.h"
+#include "app/live/live_run.h"
 #include "app/live/physics.h"
 #include "app/live/picking.h"
 #include "app/live/robot_saving.h"
@@ -245,9 +246,15 @@ class LiveScene {
   std::optional<CameraPlan> take_camera();
   // Writes a robot's current pose for other programs; the file's extension says the format (app/export).
   SaveResult export_pose(RobotId robot, const std::filesystem::path& path, bool overwrite = false);
-  // The same for its motion from time 0 to `seconds`, which is simulated in the background. Returns once it has
-  // begun, with the file; a message says when it is there.
-  SaveResult export_motion(RobotId robot, const std::filesystem::path& path, double seconds, bool overwrite = false);
+  // The same for the motion of robots from time 0 to `seconds`, which is simulated in the background: of one, or of as
+  // many as the format holds. Returns once it has begun, with the file; a message says when it is there.
+  SaveResult export_motion(const std::vector<RobotId>& robots, const std::filesystem::path& path, double seconds,
+                           bool overwrite = false);
+  // Runs `mercury export` with these words in the background, which writes a page of a run to `path`. `program` is this
+  // one, except in tests.
+  SaveResult export_run(const std::filesystem::path& run, const std::vector<std::string>& words,
+                        const std::filesystem::path& path, bool overwrite = false,
+                        const std::filesystem::path& program = this_program());
   // The command line `mercury view ...` or `mercury render ... -o scene.mp4` that makes this scene, and what it cannot
   // express.
   CommandText command(const std::string& subcommand = "view") const;

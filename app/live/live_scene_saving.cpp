@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <map>
+#include <thread>
 #include <utility>
 
+#include "app/base/child_process.h"
 #include "app/base/csv.h"
 #include "app/export/export.h"
 #include "app/export/simulated_motion.h"
@@ -55,16 +58,48 @@ void require_going(const WorkControl& control) {
   if (control.canceled()) throw Canceled();
 }
 
-// Simulates the robot from time 0. Returns the number of frames.
-std::int64_t record(const Exported& exported, const Configuration& configuration, const fs::path& path, double seconds,
-                    WorkControl& control) {
-  Simulation simulation(configuration, std::vector{exported.robot});
-  for (std::size_t id = 1; id < exported.materials.size(); ++id)
-    simulation.set_material(0, static_cast<MaterialId>(id), exported.materials[id]);
+// Simulates the robots from time 0. Returns the number of frames.
+std::int64_t record(const std::vector<Exported>& exported, const Configuration& configuration, const fs::path& path,
+                    double seconds, WorkControl& control) {
+  std::vector<Robot> robots;
+  for (const Exported& one : exported) robots.push_back(one.robot);
+  Simulation simulation(configuration, robots);
+  for (std::size_t robot = 0; robot < exported.size(); ++robot)
+    for (std::size_t id = 1; id < exported[robot].materials.size(); ++id)
+      simulation.set_material(robot, static_cast<MaterialId>(id), exported[robot].materials[id]);
   return record_motion(simulation, seconds, path, std::nullopt, [&](std::int64_t frames) {
     require_going(control);
     control.progress(frames);
   });
+}
+
+void write_motions(const ExportFormat& format, const std::vector<Exported>& exported,
+                   const Configuration& configuration, const fs::path& recorded, const fs::path& path,
+                   Messages& messages, const FrameWatch& watch) {
+  const auto recording = std::make_shared<TrajectoryReader>(recorded);
+  std::vector<RecordedMotion> motions;
+  for (std::size_t robot = 0; robot < exported.size(); ++robot) {
+    motions.emplace_back(recording, robot);
+    if (!motions.back().problem().empty()) messages.add(Severity::warning, motions.back().problem());
+  }
+  if (format.motions)
+    format.motions(motions, path, {.watch = watch});
+  else
+    format.motion(exported.front().in(configuration.environment), motions.front(), path, {.watch = watch});
+}
+
+// Runs a program to its end, or until the work is canceled. Returns why it failed, in one line; empty = it did not.
+std::string run_to_end(const fs::path& program, const std::vector<std::string>& words, const WorkControl& control) {
+  ChildProcess process(program.string(), words);
+  while (process.running()) {
+    if (control.canceled()) throw Canceled();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  if (process.finish() == 0) return {};
+  std::string line = process.messages();
+  while (line.ends_with('\n')) line.pop_back();
+  line.erase(0, line.rfind('\n') + 1);
+  return line.starts_with("mercury: ") ? line.substr(9) : "mercury export failed: " + line;
 }
 
 }  // namespace
@@ -238,37 +273,66 @@ SaveResult LiveScene::export_pose(RobotId robot, const fs::path& path, bool over
   }
 }
 
-SaveResult LiveScene::export_motion(RobotId robot, const fs::path& path, double seconds, bool overwrite) {
-  const DocumentRobot* found = parts_->document.find(robot);
-  if (!found) return not_saved("the robot is no longer there");
+SaveResult LiveScene::export_motion(const std::vector<RobotId>& robots, const fs::path& path, double seconds,
+                                    bool overwrite) {
   const Configuration configuration = parts_->document.configuration;
   if (!(seconds > 0 && seconds / configuration.dt < 1e9)) return not_saved("give a number of seconds above 0");
   try {
     const ExportFormat& format = format_for(path, "");
-    const auto exported = std::make_shared<const Exported>(found->body);
-    require_motion(format, exported->robot, false);
+    std::vector<Exported> exported;
+    for (const RobotId robot : robots)
+      if (const DocumentRobot* found = parts_->document.find(robot)) exported.emplace_back(found->body);
+    if (exported.empty()) return not_saved("the robot is no longer there");
+    for (const Exported& one : exported) require_motion(format, one.robot, false);
+    if (exported.size() > 1 && !format.motions)
+      return not_saved(fmt::format("a {} file holds one robot; select one, or give {}", format.name,
+                                   format_names([](const ExportFormat& other) { return other.motions != nullptr; })));
     if (const auto files = existing_outputs(format, path); !overwrite && !files.empty())
       return {SaveResult::Outcome::exists, files, ""};
     make_folder_of(path);
     const auto frames = motion_frames(configuration, seconds);
-    parts_->background.begin(
-        "exporting " + path.filename().string(), 2 * frames,
-        [&messages = parts_->messages, &format, exported, configuration, path, seconds](WorkControl& control) {
-          try {
-            const TemporaryRecording recording(path);
-            const std::int64_t recorded = record(*exported, configuration, recording.path(), seconds, control);
-            RecordedMotion motion(std::make_shared<TrajectoryReader>(recording.path()), 0);
-            if (!motion.problem().empty()) messages.add(Severity::warning, motion.problem());
-            const auto watch = [&](std::size_t done, std::size_t) {
-              require_going(control);
-              control.progress(recorded + static_cast<std::int64_t>(done));
-            };
-            format.motion(exported->in(configuration.environment), motion, path, {.watch = watch});
-            messages.add(Severity::note, "exported " + path.string());
-          } catch (const Canceled&) {
-          }
-          return Background::Finish([] {});
-        });
+    const auto all = static_cast<std::int64_t>(exported.size()) * frames;
+    parts_->background.begin("exporting " + path.filename().string(), frames + all,
+                             [&messages = parts_->messages, &format, exported = std::move(exported), configuration,
+                              path, seconds](WorkControl& control) {
+                               try {
+                                 const TemporaryRecording recording(path);
+                                 const std::int64_t recorded =
+                                     record(exported, configuration, recording.path(), seconds, control);
+                                 write_motions(format, exported, configuration, recording.path(), path, messages,
+                                               [&](std::size_t done, std::size_t) {
+                                                 require_going(control);
+                                                 control.progress(recorded + static_cast<std::int64_t>(done));
+                                               });
+                                 messages.add(Severity::note, "exported " + path.string());
+                               } catch (const Canceled&) {
+                               }
+                               return Background::Finish([] {});
+                             });
+    return {SaveResult::Outcome::saved, {path}, ""};
+  } catch (const std::exception& error) {
+    return not_saved(error.what());
+  }
+}
+
+SaveResult LiveScene::export_run(const fs::path& run, const std::vector<std::string>& words, const fs::path& path,
+                                 bool overwrite, const fs::path& program) {
+  try {
+    if (!overwrite && fs::exists(fs::symlink_status(path))) return {SaveResult::Outcome::exists, {path}, ""};
+    std::vector<std::string> all{"export", run.string(), "--output=" + path.string(), "--force", "--quiet"};
+    all.insert(all.end(), words.begin(), words.end());
+    parts_->background.begin("exporting " + path.filename().string(), 0,
+                             [&messages = parts_->messages, program, all, path](const WorkControl& control) {
+                               try {
+                                 const std::string failure = run_to_end(program, all, control);
+                                 if (failure.empty())
+                                   messages.add(Severity::note, "exported " + path.string());
+                                 else
+                                   messages.add(Severity::error, failure);
+                               } catch (const Canceled&) {
+                               }
+                               return Background::Finish([] {});
+                             });
     return {SaveResult::Outcome::saved, {path}, ""};
   } catch (const std::exception& error) {
     return not_saved(error.what());

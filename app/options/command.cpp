@@ -203,6 +203,7 @@ bool Command::is_given(const std::string& option) const {
 CommandTree::CommandTree(const std::string& name, const std::string& help)
     : app_(std::make_unique<CLI::App>(help, name)) {
   app_->set_help_flag("-h,--help", "Print help: -h the most used options, --help all");
+  app_->require_subcommand(0, 1);  // after a command, its name and those of others are words: folders, robots
 }
 
 CommandTree::~CommandTree() = default;

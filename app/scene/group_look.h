@@ -2,13 +2,12 @@
 // What is around robots, and the legend of their materials.
 #pragma once
 
-#include <array>
-#include <string>
-#include <utility>
-#include <vector>
+#include <memory>
+#include <span>
 
+#include "app/scene/robot_shape.h"
 #include "mercury/environment.h"
-#include "mercury/material.h"
+#include "mercury/robot.h"
 #include "render/scene.h"
 
 namespace mercury {
@@ -16,8 +15,10 @@ namespace mercury {
 // Land is ground without water.
 render::Surroundings surroundings_of(const Environment& environment);
 
-// The legend of robots with the default materials: the base materials of those that they have (`springs_of`, by id),
-// alone or in pairs.
-std::vector<std::pair<render::Color, std::string>> swatches_of(const std::array<bool, max_materials>& springs_of);
+// The legend of the materials of springs. Robots with the default materials have the base materials of theirs, alone or
+// in pairs; others those of their own tables by name, each with its middle color. Where names do not say which muscles
+// differ, because several phases share one or because there are very many, muscles are a wheel of phases instead.
+render::Legend material_legend(std::span<const Robot* const> robots,
+                               std::span<const std::shared_ptr<const RobotShape>> shapes);
 
 }  // namespace mercury

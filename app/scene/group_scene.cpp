@@ -29,18 +29,6 @@ float sand_below(std::span<const render::Bounds> robots) {
   return group.empty() ? 0 : group.low.z - 0.5f * (group.high.z - group.low.z) - 2 * tallest;
 }
 
-// The legend of materials: the base materials of the group's springs, alone or in pairs, for robots with the default
-// table.
-std::vector<std::pair<render::Color, std::string>> swatches_of(const Group& group) {
-  std::array<bool, max_materials> springs_of{};  // by id
-  for (std::size_t i = 0; i < group.robots.size(); ++i) {
-    if (!group.robots[i]->materials.empty()) continue;
-    for (std::size_t id = 0; id < springs_of.size(); ++id)
-      springs_of[id] = springs_of[id] || group.shapes[i]->materials[id];
-  }
-  return mercury::swatches_of(springs_of);
-}
-
 // Between marks on trails and in lanes: a round length of about one robot.
 float mark_distance_for(std::span<const Room> rooms) {
   float sum = 0;
@@ -65,7 +53,7 @@ GroupScene::GroupScene(const Group& given, std::vector<render::Vector3> offsets,
   Group group = given;
   if (group.shapes.empty())
     for (const Robot* robot : group.robots) group.shapes.push_back(shape_of(*robot));
-  swatches_ = swatches_of(group);
+  materials_legend_ = material_legend(group.robots, group.shapes);
   for (std::size_t i = 0; i < group.robots.size(); ++i)
     add(*group.robots[i], group.materials[i], *group.shapes[i], offsets.at(i));
   bodies_ = group.bodies ? group.bodies : bodies_of(group.shapes);

@@ -140,7 +140,7 @@ class GroupScene {
   std::vector<render::Patch> patches_;
   std::vector<render::Tile> tiles_;
   std::vector<render::Text> texts_, shown_texts_;
-  std::vector<std::pair<render::Color, std::string>> swatches_;  // the legend of materials
+  render::Legend materials_legend_;
   SceneDetails details_;
   render::Scene scene_;
 };

@@ -212,9 +212,7 @@ void GroupScene::color(double time, SceneDetails details) {
   scene_.caption += note;
   if (settings_.board) scene_.legend = settings_.board->legend;
   if (settings_.board || !settings_.shown.legend) return;
-  scene_.legend = settings_.color->has_values()
-                      ? scale_.legend()
-                      : render::Legend{.title = std::string(settings_.color->key), .swatches = swatches_};
+  scene_.legend = settings_.color->has_values() ? scale_.legend() : materials_legend_;
 }
 
 }  // namespace mercury

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Sequence
 
 from . import _mercury
-from ._mercury import Batch, InputError, Recording, Robot
+from ._mercury import Batch, InputError, Recording, Result, Robot
 
 if TYPE_CHECKING:
     Environment = Any
@@ -52,16 +52,16 @@ class Page:
 
 
 def show(
-    what: Robot | Batch | Recording | Sequence[Robot],
+    what: Robot | Batch | Recording | Result | Sequence[Robot] | Sequence[Result],
     *,
     seconds: float | None = None,
     environment: Environment = None,
     height: int = 480,
 ) -> Page:
-    """Plays robots, a batch or a recording in a web page, which a notebook shows; save() and open() it elsewhere.
+    """Plays robots, a batch, a recording or results in a web page, which a notebook shows; save() and open() it elsewhere.
 
     Robots are simulated for `seconds` (default 10) in `environment`, or in the one that they are made for. A batch goes
-    on from where it is, for the page alone. `height` is that of the page in a notebook [pixels].
+    on from where it is, for the page alone. A Result of evaluate() is tried again, exactly as it was. `height` is that of the page in a notebook [pixels].
 
     Raises InputError for what cannot be used.
     """
@@ -80,13 +80,14 @@ def _robot_html(robot: Robot) -> str | None:
         return None
 
 
-def _recording_html(recording: Recording) -> str | None:
+def _motion_html(what: Recording | Result) -> str | None:
     try:
-        return show(recording)._repr_html_()
+        return show(what)._repr_html_()
     except InputError:
         return None
 
 
 if isinstance(Recording, type):  # else this build exports nothing
     setattr(Robot, "_repr_html_", _robot_html)
-    setattr(Recording, "_repr_html_", _recording_html)
+    setattr(Recording, "_repr_html_", _motion_html)
+    setattr(Result, "_repr_html_", _motion_html)

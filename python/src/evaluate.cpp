@@ -82,7 +82,7 @@ class Results {
   std::optional<Result> wait();
 
   const std::size_t trials_;
-  std::shared_ptr<const Configuration> configuration_;
+  std::shared_ptr<const EvaluationRequest> request_;
   bool hashes_, states_;
   std::vector<Evaluation> collected_;  // trials of the next robot
   nb::object source_, iterator_;
@@ -110,9 +110,8 @@ class Results::Use {
 };
 
 Results::Results(const EvaluationRequest& request, nb::object source, const TrialSettings& trials, std::uint64_t seed)
-    : trials_(static_cast<std::size_t>(trials.trials)),
-      configuration_(std::make_shared<Configuration>(request.configuration)), hashes_(request.hashes),
-      states_(request.states), source_(std::move(source)) {
+    : trials_(static_cast<std::size_t>(trials.trials)), request_(std::make_shared<EvaluationRequest>(request)),
+      hashes_(request.hashes), states_(request.states), source_(std::move(source)) {
   EvaluationRequest complete = request;
   RobotSource robots;
   std::size_t count = Evaluator::unknown_count;
@@ -191,7 +190,7 @@ std::optional<Result> Results::wait() {
   collected_.push_back(*std::move(evaluation));
   if (collected_.size() < trials_) return std::nullopt;
   for (Evaluation& trial : collected_) trial.index /= trials_;
-  Result result{std::move(collected_.front()), {}, configuration_, hashes_, states_};
+  Result result{std::move(collected_.front()), {}, request_, hashes_, states_, 0};
   result.more.assign(std::make_move_iterator(collected_.begin() + 1), std::make_move_iterator(collected_.end()));
   collected_.clear();
   return result;

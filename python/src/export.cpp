@@ -15,6 +15,7 @@
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
 #include "python/src/gil.h"
+#include "python/src/result.h"
 #include "python/src/values.h"
 
 namespace mercury::python {
@@ -57,6 +58,8 @@ struct Request {
     outputs.make_folders();
   }
 };
+
+constexpr double usual_seconds = 10;  // of robots that are simulated
 
 void refuse_choices(const Request& request) {
   if (request.still || request.range.from || request.range.to || request.range.every != 1 || !request.robot.is_none())
@@ -144,8 +147,7 @@ void export_recording(const TrajectoryReader& given, const Request& request) {
   });
 }
 
-void export_simulated(Simulation& simulation, const ExportFormat& format, const Request& request) {
-  const double seconds = request.seconds.value_or(10);
+void export_simulated(Simulation& simulation, const ExportFormat& format, const Request& request, double seconds) {
   if (!(seconds > 0 && seconds / simulation.configuration().dt < 1e9))
     throw ParameterError("seconds", "give a number of seconds above 0");
   for (std::size_t i = 0; i < simulation.size(); ++i) require_motion(format, simulation.robot(i), request.springs);
@@ -176,7 +178,7 @@ void export_batch(const Batch& batch, const Request& request) {
     copy.emplace(simulation.configuration(), robots);
     copy->restore(simulation.save());
   });
-  export_simulated(*copy, format, request);
+  export_simulated(*copy, format, request, request.seconds.value_or(usual_seconds));
 }
 
 void export_robots(const SharedRobots& robots, const Request& request) {
@@ -191,7 +193,49 @@ void export_robots(const SharedRobots& robots, const Request& request) {
   const Environment environment =
       request.environment.is_none() ? exported_robot(*robots.front()).environment : environment_of(request.environment);
   Simulation simulation(Configuration{.environment = environment}, robots);
-  export_simulated(simulation, format, request);
+  export_simulated(simulation, format, request, request.seconds.value_or(usual_seconds));
+}
+
+// Tries the robots of results again, as they were tried: the same start, time and numbers.
+void export_results(const std::vector<const Result*>& results, const Request& request) {
+  refuse_choices(request);
+  if (request.seconds || !request.environment.is_none())
+    throw ParameterError(request.seconds ? "seconds" : "environment", "a Result has its own");
+  const ExportFormat& format = format_for(request.path, request.format);
+  const Result& first = *results.front();
+  SharedRobots robots;
+  for (const Result* result : results) {
+    const std::string which = "result " + std::to_string(result->evaluation.index);
+    if (!result->was_stepped()) throw InputError(which + ": its robot was not stepped: " + result->evaluation.failure);
+    if (result->request != first.request || result->evaluation.steps != first.evaluation.steps)
+      throw InputError(which + ": it is of another call of evaluate(), or of a trial of another length, than result " +
+                       std::to_string(first.evaluation.index) + "; export them one by one");
+    robots.push_back(result->evaluation.robot);
+  }
+  Simulation simulation(first.request->configuration, robots);
+  if (first.request->start) {
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      std::vector<Vec3> own = robots[i]->masses;
+      first.request->start(results[i]->trial, *robots[i], own);
+      positions.insert(positions.end(), own.begin(), own.end());
+    }
+    simulation.reset_to(positions);
+  }
+  const auto steps = static_cast<double>(first.request->settling + first.evaluation.steps);
+  export_simulated(simulation, format, request, steps * first.request->configuration.dt);
+}
+
+// Nothing if `what` is neither a Result nor a sequence of Results.
+std::vector<const Result*> results_of(nb::handle what) {
+  std::vector<const Result*> results;
+  if (nb::isinstance<Result>(what)) results.push_back(nb::cast<const Result*>(what));
+  if (!nb::isinstance<nb::list>(what) && !nb::isinstance<nb::tuple>(what)) return results;
+  for (const nb::handle one : nb::borrow<nb::sequence>(what)) {
+    if (!nb::isinstance<Result>(one)) return {};
+    results.push_back(nb::cast<const Result*>(one));
+  }
+  return results;
 }
 
 void export_any(nb::handle what, nb::handle path, nb::handle format, nb::handle robot, nb::handle still,
@@ -210,11 +254,13 @@ void export_any(nb::handle what, nb::handle path, nb::handle format, nb::handle 
   try {
     if (nb::isinstance<TrajectoryReader>(what))
       return export_recording(nb::cast<const TrajectoryReader&>(what), request);
+    if (const auto results = results_of(what); !results.empty()) return export_results(results, request);
     if (nb::isinstance<Batch>(what)) return export_batch(nb::cast<const Batch&>(what), request);
     SharedRobot shared;
     const bool is_robot = nb::try_cast(what, shared);
     if (!is_robot && (!PySequence_Check(what.ptr()) || nb::isinstance<nb::str>(what)))
-      refuse_type("what", "a Robot, a Batch, a Recording or a sequence of Robots", what);
+      refuse_type("what", "a Robot, a Batch, a Recording, a Result of evaluate(), or a sequence of Robots or Results",
+                  what);
     return export_robots(python::robots_of(what), request);
   } catch (const ParameterError& error) {
     rethrow_as_argument(error);
@@ -234,7 +280,8 @@ void bind_export(nb::module_& module) {
       "frame] and `every` choose frames, and `still` [s] is the moment of a pose. `springs` writes the springs as "
       "lines, "
       "too. Without `seconds`, robots are simulated for 10 s where the format holds motions alone, in `environment` or "
-      "that which they are made for. A Batch goes on from where it is, and stays there. A web page (html) holds "
+      "that which they are made for. A Batch goes on from where it is, and stays there. A Result of evaluate() is "
+      "tried again, as it was. A web page (html) holds "
       "several "
       "robots, also all of a recording, a batch or a sequence. Files are replaced, whole or not at all. Raises "
       "InputError for what the format cannot hold.";
@@ -243,7 +290,8 @@ void bind_export(nb::module_& module) {
              nb::arg("still").none() = nb::none(), nb::arg("start").none() = nb::none(),
              nb::arg("end").none() = nb::none(), nb::arg("every").none() = 1, nb::arg("springs").none() = false,
              nb::arg("seconds").none() = nb::none(), nb::arg("environment").none() = nb::none(),
-             nb::sig("def export(what: Robot | Batch | Recording | collections.abc.Sequence[Robot], path: str | "
+             nb::sig("def export(what: Robot | Batch | Recording | Result | collections.abc.Sequence[Robot] | "
+                     "collections.abc.Sequence[Result], path: str | "
                      "os.PathLike[str], format: str | None = None, *, "
                      "robot: str | int | None = None, still: float | None = None, start: float | None = None, "
                      "end: float | None = None, every: int = 1, springs: bool = False, seconds: float | None = None, "

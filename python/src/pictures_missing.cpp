@@ -26,7 +26,10 @@ void bind_pictures(nb::module_& module) {
   module.def("_end_drawing", [] {});
 }
 
-void bind_recording(nb::module_& module) { module.def("Recording", &refuse_recording); }
+void bind_recording(nb::module_& module) {
+  module.def("Recording", &refuse_recording);
+  module.def("Recorder", &refuse_recording);
+}
 void bind_export(nb::module_& module) { module.def("export", &refuse_export); }
 
 }  // namespace mercury::python

@@ -4,11 +4,17 @@
 
 #include <nanobind/stl/string.h>
 
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/base/output_files.h"
+#include "app/recording/recorder.h"
+#include "mercury/error.h"
+#include "python/src/batch.h"
 #include "python/src/bindings.h"
 #include "python/src/owned_array.h"
 #include "python/src/values.h"
@@ -56,9 +62,87 @@ nb::object per_frame(const TrajectoryReader& recording, Of of) {
   return owned_array(std::move(values), {count});
 }
 
+// Records a batch that Python steps.
+class BatchRecorder {
+ public:
+  BatchRecorder(nb::object batch, const std::filesystem::path& path, std::int64_t every)
+      : batch_(std::move(batch)), every_(every) {
+    OutputFiles outputs(true, false);
+    outputs.add_file("path", path.string());
+    outputs.check();
+    outputs.make_folders();
+    of_batch().use([&](const Simulation& simulation) {
+      robots_ = simulation.size();
+      recorder_.emplace(simulation, path, RecordingOptions{.every = every});
+    });
+  }
+
+  void frame() {
+    require_open();
+    of_batch().use([&](const Simulation& simulation) {
+      if (simulation.size() != robots_) throw InputError("robots came or went; a recording has the same all the time");
+      const std::int64_t next = recorder_->next_step();
+      if (simulation.steps() != next)
+        throw InputError("a frame is due at step " + std::to_string(next) + " and the batch is at step " +
+                         std::to_string(simulation.steps()) + "; step it " + std::to_string(every_) +
+                         " steps per frame (every)");
+      recorder_->observe();
+    });
+  }
+
+  void close() {
+    if (!recorder_) return;
+    of_batch().use([&](const Simulation&) { recorder_->finish(); });
+    recorder_.reset();
+  }
+
+  std::int64_t frames() const { return recorder_ ? recorder_->frames() : 0; }
+
+ private:
+  const Batch& of_batch() const { return nb::cast<const Batch&>(batch_); }
+  void require_open() const {
+    if (!recorder_) throw InputError("the recording is closed");
+  }
+
+  nb::object batch_;
+  std::int64_t every_;
+  std::size_t robots_ = 0;
+  std::optional<Recorder> recorder_;
+};
+
+constexpr const char* recorder_description =
+    "Records a batch that you step yourself, as `mercury run --record` does.\n\n"
+    "    with mercurysim.Recorder(batch, \"episode.h5\", every=20) as recorder:\n"
+    "        for _ in range(100):\n"
+    "            batch.step(20)\n"
+    "            recorder.frame()\n"
+    "    mercurysim.show(mercurysim.Recording(\"episode.h5\"))\n\n"
+    "The first frame is the batch as it is when the recording begins; frame() adds one, `every` time steps later. The "
+    "file is there once the recorder is closed, and replaces one of that name. Raises InputError for frames at other "
+    "steps, and after robots came or went.";
+
+void bind_recorder(nb::module_& module) {
+  nb::class_<BatchRecorder>(module, "Recorder", recorder_description)
+      .def(
+          "__init__",
+          [](BatchRecorder* self, nb::handle_t<Batch> batch, nb::handle path, nb::handle every) {
+            new (self) BatchRecorder(nb::borrow(batch), path_from("path", path), whole_from("every", every, 1));
+          },
+          nb::arg("batch"), nb::arg("path"), nb::arg("every"),
+          nb::sig("def __init__(self, batch: Batch, path: str | os.PathLike[str], every: int) -> None"))
+      .def("frame", &BatchRecorder::frame, "Adds the batch as it is now.")
+      .def("close", &BatchRecorder::close, "Completes the file.")
+      .def_prop_ro("frames", &BatchRecorder::frames, "Number of frames so far.")
+      .def("__enter__", [](nb::handle_t<BatchRecorder> self) { return nb::borrow(self); })
+      .def(
+          "__exit__", [](BatchRecorder& self, const nb::args&) { self.close(); }, nb::arg("error"),
+          nb::sig("def __exit__(self, *error: object) -> None"));
+}
+
 }  // namespace
 
 void bind_recording(nb::module_& module) {
+  bind_recorder(module);
   nb::class_<TrajectoryReader>(module, "Recording", description)
       .def(
           "__init__",

@@ -17,7 +17,7 @@
 namespace mercury::python {
 namespace {
 
-bool was_stepped(const Result& self) { return self.evaluation.robot && self.evaluation.failure.empty(); }
+bool was_stepped(const Result& self) { return self.was_stepped(); }
 
 // value(evaluation) of each trial.
 template <class Value>
@@ -34,7 +34,7 @@ bool has_exploded(const Result& self) {
 
 std::vector<double> values_of(const Result& self, const Quantity& quantity) {
   return of_trials(self, [&](const Evaluation& trial) {
-    return quantity.value({*trial.robot, trial, *self.configuration});
+    return quantity.value({*trial.robot, trial, self.request->configuration});
   });
 }
 
@@ -58,8 +58,9 @@ nb::dict all_quantities(const Result& self) {
 
 nb::list trials(const Result& self) {
   nb::list all;
+  std::size_t number = self.trial;
   const auto add = [&](const Evaluation& trial) {
-    all.append(nb::cast(Result{trial, {}, self.configuration, self.has_hash, self.has_state}));
+    all.append(nb::cast(Result{trial, {}, self.request, self.has_hash, self.has_state, number++}));
   };
   add(self.evaluation);
   for (const Evaluation& trial : self.more) add(trial);

@@ -73,7 +73,7 @@ def test_what_cannot_be_used_is_one_line(recording, robots, tmp_path):
     refused("robot: no robot is named \"7\"", recording, tmp_path / "a.glb", robot=7)
     refused("start: 3 is not accepted; the recording has 0 to 0.2 s", recording, tmp_path / "a.glb", robot=0, start=3)
     refused("format: stl holds one pose", recording, tmp_path / "a.stl", robot=0)
-    with pytest.raises(TypeError, match="what: must be a Robot, a Batch, a Recording or a sequence of Robots, not int"):
+    with pytest.raises(TypeError, match="what: must be a Robot, a Batch, a Recording, a Result of evaluate\\(\\), or a sequence .*, not int"):
         mercurysim.export(7, tmp_path / "a.stl")
     assert [path.name for path in tmp_path.iterdir() if path.suffix not in (".h5", ".json")] == []
 
@@ -102,3 +102,40 @@ def test_show_is_a_page_of_all_robots_and_leaves_a_batch_alone(robots, recording
     for shown in (robots[0], recording):
         assert "srcdoc=" in shown._repr_html_()
     assert len(page_of(mercurysim.show(recording).text)["robots"]) == 2
+
+
+@pytest.mark.parametrize("trials", (1, 2))
+def test_results_are_tried_again_as_they_were(robots, tmp_path, trials):
+    options = dict(seconds=0.099, dt=1e-3, environment="land", settle=0.03, trials=trials, hashes=True, device="cpu")
+    results = list(mercurysim.evaluate(robots, **options))
+    page = page_of(mercurysim.show(results).text)
+    for result, robot in zip(results, page["robots"]):
+        facts = dict(robot["facts"])
+        assert facts["final state"] == f"{result.hash:016x} at 0.099 s"  # to the bit, the jitter of a trial included
+    assert "srcdoc=" in results[0]._repr_html_()
+    last = results[0].trials[-1]
+    assert dict(page_of(mercurysim.show(last).text)["robots"][0]["facts"])["final state"].startswith(f"{last.hash:016x}")
+    with pytest.raises(mercurysim.InputError, match="seconds: a Result has its own"):
+        mercurysim.show(results, seconds=1)
+    other = next(mercurysim.evaluate(robots, seconds=0.1, device="cpu"))
+    with pytest.raises(mercurysim.InputError, match="result 0: it is of another call of evaluate"):
+        mercurysim.export([results[0], other], tmp_path / "a.html")
+
+
+def test_a_batch_is_recorded_while_a_program_drives_it(robots, tmp_path):
+    batch = mercurysim.Batch(robots, device="cpu")
+    drive = np.asarray(batch.actuation.drive)
+    with mercurysim.Recorder(batch, tmp_path / "new/driven.h5", every=20) as recorder:
+        for step in range(5):
+            drive[:] = np.sin(step)
+            batch.step(20)
+            recorder.frame()
+        assert recorder.frames == 6
+        batch.step(7)
+        with pytest.raises(mercurysim.InputError, match="a frame is due at step 120 and the batch is at step 107"):
+            recorder.frame()
+    recording = mercurysim.Recording(tmp_path / "new/driven.h5")
+    assert np.array_equal(recording.steps, 20 * np.arange(6))
+    assert len(page_of(mercurysim.show(recording).text)["robots"]) == 2
+    with pytest.raises(mercurysim.InputError, match="the recording is closed"):
+        recorder.frame()

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <numbers>
 #include <string>
 
 #include "render/text/font.h"
@@ -32,6 +33,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 
 constexpr float small = 0.82f;           // size of second lines
 constexpr float histogram_width = 2.2f;  // [sizes of text]
+constexpr float wheel_radius = 2.2f;     // to the middle of the ring [sizes of text]
 
 }  // namespace
 
@@ -150,6 +152,23 @@ void Overlay::draw_scale(const Legend& legend, std::span<const Tick> ticks, floa
   }
 }
 
+void Overlay::draw_wheel(std::span<const Color> colors, float x, float y) {
+  const float size = text_size_, radius = wheel_radius * size;
+  // Dots that overlap a little make a ring.
+  const float dot = 2.5f * std::numbers::pi_v<float> * radius / float(colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    const float angle = 2 * std::numbers::pi_v<float> * float(i) / float(colors.size());
+    box({x + radius * std::cos(angle) - 0.5f * dot, y - radius * std::sin(angle) - 0.5f * dot, dot, dot}, 0.5f * dot,
+        colors[i], 1);
+  }
+  const float number = 0.8f * size;
+  text("phase", x, y - 0.5f * number, number, 0.5f);
+  text("0°", x + radius + 0.7f * size, y - 0.5f * number, number);
+  text("90°", x, y - radius - 0.7f * size - number, number, 0.5f);
+  text("180°", x - radius - 0.7f * size, y - 0.5f * number, number, 1);
+  text("270°", x, y + radius + 0.6f * size, number, 0.5f);
+}
+
 void Overlay::legend(const Legend& legend) {
   const float size = text_size_, pad = 0.7f * size;
   const std::string title = legend.title + (legend.unit.empty() ? "" : " [" + legend.unit + "]");
@@ -161,7 +180,9 @@ void Overlay::legend(const Legend& legend) {
     widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
   const float bar = legend.scale ? std::round(std::clamp(0.36f * height_, 6 * size, 16 * size)) : 0;
   const float rows = 1.25f * size * float(legend.swatches.size());
-  const float down = 1.5f * size + (bar > 0 ? bar + 0.6f * size : 0) + rows;
+  const float wheel = legend.wheel.empty() ? 0 : 2 * wheel_radius + 2.6f;  // with its numbers [sizes of text]
+  if (wheel > 0) widest = std::max(widest, (2 * wheel_radius + 4.2f) * size);
+  const float down = 1.5f * size + (bar > 0 ? bar + 0.6f * size : 0) + wheel * size + rows;
   const Rectangle panel{width_ - widest - 3 * pad, 0.5f * (height_ - down) - pad, widest + 2 * pad, down + 1.6f * pad};
   backing(panel, 0.55f);
   const float left = panel.x + pad;
@@ -172,9 +193,14 @@ void Overlay::legend(const Legend& legend) {
     draw_scale(legend, ticks, left, y + 0.3f * size, bar);
     y += bar + 0.6f * size;
   }
+  if (wheel > 0) {
+    draw_wheel(legend.wheel, left + 0.5f * widest, y + 0.5f * wheel * size);
+    y += wheel * size;
+  }
   for (const auto& [color, name] : legend.swatches) {
-    box({left - 1, y + 0.12f * size - 1, 0.95f * size + 2, 0.95f * size + 2}, 0.2f * size + 1, style_.text, 0.35f);
-    box({left, y + 0.12f * size, 0.95f * size, 0.95f * size}, 0.2f * size, color, 1);
+    if (color.a > 0)
+      box({left - 1, y + 0.12f * size - 1, 0.95f * size + 2, 0.95f * size + 2}, 0.2f * size + 1, style_.text, 0.35f);
+    if (color.a > 0) box({left, y + 0.12f * size, 0.95f * size, 0.95f * size}, 0.2f * size, color, 1);
     text(name, left + 1.5f * size, y + 0.1f * size, 0.9f * size);
     y += 1.25f * size;
   }

@@ -61,6 +61,7 @@ class Overlay {
  private:
   void backing(const Rectangle& area, float opacity);
   void draw_scale(const Legend& legend, std::span<const Tick> ticks, float left, float top, float height);
+  void draw_wheel(std::span<const Color> colors, float x, float y);
   void label(const Rectangle& area, std::span<const std::string_view> lines);
 
   float width_, height_, text_size_;

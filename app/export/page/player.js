@@ -342,8 +342,16 @@ class Player {
     legend.replaceChildren();
     if (!this.group) return;
     if (this.color === "material") {
-      const names = new Map();
-      for (const robot of this.group.robots) for (const [css, name] of robot.legend) names.set(name, css);
+      const names = new Map(), wheels = this.group.robots.map((robot) => robot.legend.wheel).filter((wheel) => wheel.length);
+      for (const robot of this.group.robots) for (const [css, name] of robot.legend.swatches) names.set(name, css);
+      // Phases rise counter-clockwise from the right, as in pictures; a conic gradient turns the other way.
+      if (wheels.length) {
+        const colors = [...wheels[0], wheels[0][0]].reverse();
+        legend.append(make("div", { class: "wheel" },
+          make("i", { style: `background:conic-gradient(from 90deg,${colors.join()})` }), make("b", {}, "phase"),
+          ...[["0°", 100, 50], ["90°", 50, 0], ["180°", 0, 50], ["270°", 50, 100]].map(([text, left, top]) =>
+            make("span", { style: `left:${left}%;top:${top}%` }, text))));
+      }
       if (names.size > 22) return;
       for (const [name, css] of names)
         legend.append(make("div", { class: "swatch" }, make("i", { style: `background:${css}` }), name));

@@ -91,6 +91,8 @@ void save_csv(PanelContext& context, const std::string& what, std::function<std:
 void export_pose(PanelContext& context);
 // Its motion from time 0: asks for how long, and where.
 void export_motion(PanelContext& context);
+// Asks for the file of a web page of the open run.
+void export_run(PanelContext& context);
 
 // On the evolution that the window has open (evolution_commands.cpp).
 

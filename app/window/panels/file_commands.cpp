@@ -121,11 +121,12 @@ std::optional<RobotId> robot_to_export(PanelContext& context) {
   return robots.front();
 }
 
-// Asks for a file of one of the formats for which `condition` holds.
-void ask_file(PanelContext& context, RobotId robot, const char* what, bool (*condition)(const ExportFormat&),
+// Asks for a file of one of the formats for which `condition` holds. `whose`: "the pose of eel"; `name`: of the file.
+void ask_file(PanelContext& context, const std::string& whose, const std::string& name,
+              const std::function<bool(const ExportFormat&)>& condition,
               std::function<void(const fs::path&)> on_accept) {
   FileRequest request{.kind = FileRequest::Kind::save,
-                      .title = fmt::format("Export the {} of {}", what, name_of_robot(context.scene, robot)),
+                      .title = "Export " + whose,
                       .button = "Export",
                       .extensions = {},
                       .folder = context.preferences.save_folder,
@@ -136,14 +137,16 @@ void ask_file(PanelContext& context, RobotId robot, const char* what, bool (*con
     request.extensions.emplace_back(format.extension);
     request.formats.push_back(format.title.data());  // a literal
   }
-  request.name = file_name_of(name_of_robot(context.scene, robot)) + request.extensions.front();
+  request.name = file_name_of(name) + request.extensions.front();
   context.dialogs.ask_files(std::move(request), [on_accept = std::move(on_accept)](const FileChoice& answer) {
     on_accept(answer.paths.front());
   });
 }
 
-void begin_motion(PanelContext& context, RobotId robot, const fs::path& path, double seconds, bool overwrite) {
-  const SaveResult result = context.scene.export_motion(robot, path, seconds, overwrite);
+// Begins work that writes a file, and asks before it replaces one.
+void begin_export(PanelContext& context, const fs::path& path, const std::function<SaveResult(bool overwrite)>& begin,
+                  bool overwrite = false) {
+  const SaveResult result = begin(overwrite);
   if (result.outcome == SaveResult::Outcome::failed) {
     context.toasts.show(Tone::error, result.message);
     context.dialogs.reopen_file_dialog(result.message);
@@ -154,12 +157,11 @@ void begin_motion(PanelContext& context, RobotId robot, const fs::path& path, do
     return;
   }
   context.log.write("asks", {{"what", "overwrite"}});
-  context.dialogs.ask(
-      {.title = "Replace?",
-       .text = result.files.front().string() + " exists already.",
-       .button = "Replace",
-       .on_accept = [&context, robot, path, seconds] { begin_motion(context, robot, path, seconds, true); },
-       .on_cancel = [&context] { context.dialogs.reopen_file_dialog(); }});
+  context.dialogs.ask({.title = "Replace?",
+                       .text = result.files.front().string() + " exists already.",
+                       .button = "Replace",
+                       .on_accept = [&context, path, begin] { begin_export(context, path, begin, true); },
+                       .on_cancel = [&context] { context.dialogs.reopen_file_dialog(); }});
 }
 
 std::optional<double> seconds_from(const std::string& text) {
@@ -285,7 +287,8 @@ void save_csv(PanelContext& context, const std::string& what, std::function<std:
 void export_pose(PanelContext& context) {
   const std::optional<RobotId> robot = robot_to_export(context);
   if (!robot) return;
-  ask_file(context, *robot, "pose", holds_pose, [&context, id = *robot](const fs::path& path) {
+  const std::string name = name_of_robot(context.scene, *robot);
+  ask_file(context, "the pose of " + name, name, holds_pose, [&context, id = *robot](const fs::path& path) {
     save_with_confirmation(context, "pose", [&context, id, path](bool overwrite) {
       return context.scene.export_pose(id, path, overwrite);
     });
@@ -293,21 +296,58 @@ void export_pose(PanelContext& context) {
 }
 
 void export_motion(PanelContext& context) {
-  const std::optional<RobotId> robot = robot_to_export(context);
-  if (!robot) return;
-  context.dialogs.ask_text("Export the motion",
-                           fmt::format("How many seconds of {}, from time 0? They are simulated in the background.",
-                                       name_of_robot(context.scene, *robot)),
-                           "5", "Next", [&context, id = *robot](const std::string& text) {
-                             const std::optional<double> seconds = seconds_from(text);
-                             if (!seconds)
-                               return context.toasts.show(Tone::error,
-                                                          "\"" + text + "\" is no number of seconds above 0");
-                             ask_file(context, id, "motion", holds_simulated_motion,
-                                      [&context, id, length = *seconds](const fs::path& path) {
-                                        begin_motion(context, id, path, length, false);
-                                      });
-                           });
+  const std::vector<RobotId> robots = selected_or_all(context.scene);
+  if (robots.empty()) {
+    context.toasts.show(Tone::info, "there is no robot to export");
+    return;
+  }
+  const bool alone = robots.size() == 1;
+  const std::string name = alone ? name_of_robot(context.scene, robots.front()) : "robots";
+  const std::string who = alone ? name : fmt::format("{} robots", robots.size());
+  context.dialogs.ask_text(
+      "Export the motion",
+      fmt::format("How many seconds of {}, from time 0? They are simulated in the background.", who), "5", "Next",
+      [&context, robots, alone, name, who](const std::string& text) {
+        const std::optional<double> seconds = seconds_from(text);
+        if (!seconds) return context.toasts.show(Tone::error, "\"" + text + "\" is no number of seconds above 0");
+        const auto holds = [alone](const ExportFormat& format) {
+          return holds_simulated_motion(format) && (alone || format.motions);
+        };
+        ask_file(context, "the motion of " + who, name, holds,
+                 [&context, robots, length = *seconds](const fs::path& path) {
+                   begin_export(context, path, [&context, robots, path, length](bool overwrite) {
+                     return context.scene.export_motion(robots, path, length, overwrite);
+                   });
+                 });
+      });
+}
+
+void export_run(PanelContext& context) {
+  if (!context.run.is_open()) return;
+  struct PageOfRun {
+    const char* title;
+    std::vector<std::string> words;
+  };
+  static const std::vector<PageOfRun> pages{
+      {"Its best robots", {}}, {"The ancestors of the best", {"--lineage=best"}}, {"Its map of elites", {"--map"}}};
+  FileRequest request{.kind = FileRequest::Kind::save,
+                      .title = "Export " + context.run.name() + " as a web page",
+                      .button = "Export",
+                      .extensions = {},
+                      .folder = context.preferences.save_folder,
+                      .name = file_name_of(context.run.name()) + ".html",
+                      .formats = {}};
+  for (const PageOfRun& page : pages) {
+    request.extensions.emplace_back(".html");
+    request.formats.push_back(page.title);
+  }
+  context.dialogs.ask_files(std::move(request), [&context, run = context.run.folder()](const FileChoice& answer) {
+    const fs::path path = answer.paths.front();
+    const std::vector<std::string> words = pages.at(static_cast<std::size_t>(answer.format)).words;
+    begin_export(context, path, [&context, run, words, path](bool overwrite) {
+      return context.scene.export_run(run, words, path, overwrite);
+    });
+  });
 }
 
 }  // namespace mercury::window

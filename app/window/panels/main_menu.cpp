@@ -65,6 +65,8 @@ void Panels::draw_file_menu() {
     context_.log.item("menu.export_pose");
     if (ImGui::MenuItem("Export the motion...", nullptr, false, robots)) export_motion(context_);
     context_.log.item("menu.export_motion");
+    if (ImGui::MenuItem("Export the run...", nullptr, false, context_.run.is_open())) export_run(context_);
+    context_.log.item("menu.export_run");
     menu_item("Save a screenshot", Action::screenshot);
     if (ImGui::MenuItem("Copy as command")) copy_as_command(context_, "view");
     if (ImGui::MenuItem("Copy as command for a video")) copy_as_command(context_, "render");

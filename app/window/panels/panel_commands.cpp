@@ -246,6 +246,8 @@ std::vector<PaletteEntry> Panels::palette_entries() {
   entries.push_back({"open a run of an evolution", "File", "", [this] { choose_run(context_); }});
   entries.push_back({"export the pose for other programs", "File", "", [this] { export_pose(context_); }});
   entries.push_back({"export the motion for other programs", "File", "", [this] { export_motion(context_); }});
+  if (context_.run.is_open())
+    entries.push_back({"export the run as a web page", "File", "", [this] { export_run(context_); }});
   entries.push_back({"copy as command", "File", "", [this] { copy_as_command(context_, "view"); }});
   entries.push_back({"copy as command for a video", "File", "", [this] { copy_as_command(context_, "render"); }});
   entries.push_back({"change keys", "Help", "", [this] { show_keys_file(); }});

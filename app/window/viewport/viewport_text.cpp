@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -118,17 +120,43 @@ float width_of(const render::Legend& legend, const std::vector<render::Tick>& ti
   for (const auto& [color, name] : legend.swatches)
     width = std::max(width, 1.4f * text + ImGui::CalcTextSize(name.c_str()).x);
   const float graph = legend.histogram.empty() ? 0 : graph_width * text;
+  if (!legend.wheel.empty()) width = std::max(width, 9 * text);
   for (const render::Tick& tick : ticks)
     width = std::max(width, graph + 1.5f * text + ImGui::CalcTextSize(tick.text.c_str()).x);
   return width;
 }
 
-void draw_swatches(const render::Legend& legend, ImVec2 low) {
+constexpr float lines_of_wheel = 6.5f;
+
+void draw_wheel(std::span<const render::Color> colors, ImVec2 center) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float text = ImGui::GetFontSize(), radius = 2.2f * text;
+  const auto at = [&](float angle, float far) {
+    return ImVec2{center.x + far * std::cos(angle), center.y - far * std::sin(angle)};
+  };
+  const float turn = 2 * std::numbers::pi_v<float>, step = turn / static_cast<float>(colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i)
+    list.AddCircleFilled(at(step * static_cast<float>(i), radius), 0.62f * step * radius, packed(colors[i]));
+  for (const auto& [angle, number] : {std::pair{0.0f, "0°"}, {0.25f, "90°"}, {0.5f, "180°"}, {0.75f, "270°"}}) {
+    const ImVec2 middle = at(angle * turn, radius + (angle == 0.25f || angle == 0.75f ? 1.0f : 1.5f) * text);
+    const ImVec2 size = ImGui::CalcTextSize(number);
+    list.AddText({middle.x - 0.5f * size.x, middle.y - 0.5f * size.y}, text_color(), number);
+  }
+  const ImVec2 size = ImGui::CalcTextSize("phase");
+  list.AddText({center.x - 0.5f * size.x, center.y - 0.5f * size.y}, text_color(), "phase");
+}
+
+void draw_swatches(const render::Legend& legend, ImVec2 low, float width) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float text = ImGui::GetFontSize();
   float y = low.y + 1.35f * text;
+  if (!legend.wheel.empty()) {
+    draw_wheel(legend.wheel, {low.x + 0.5f * width, y + 0.5f * lines_of_wheel * text});
+    y += lines_of_wheel * text;
+  }
   for (const auto& [color, name] : legend.swatches) {
-    list.AddRectFilled({low.x, y + 0.05f * text}, {low.x + text, y + 1.05f * text}, packed(color), 0.2f * text);
+    if (color.a > 0)
+      list.AddRectFilled({low.x, y + 0.05f * text}, {low.x + text, y + 1.05f * text}, packed(color), 0.2f * text);
     list.AddText({low.x + 1.4f * text, y}, text_color(), name.c_str());
     y += 1.35f * text;
   }
@@ -244,7 +272,9 @@ bool LegendView::draw(const std::optional<render::Legend>& legend, const Viewpor
   const std::vector<render::Tick> ticks =
       legend->scale ? render::ticks_of(*legend->scale) : std::vector<render::Tick>();
   const float width = width_of(*legend, ticks);
-  const float lines = legend->scale ? rows : static_cast<float>(legend->swatches.size());
+  const float lines = legend->scale ? rows
+                                    : static_cast<float>(legend->swatches.size()) +
+                                          (legend->wheel.empty() ? 0 : lines_of_wheel * text / step);
   const ImVec2 low{area.high.x - width - 1.6f * text, area.low.y + 1.2f * text};
   const ImVec2 box_low{low.x - 0.6f * text, low.y - 0.5f * text};
   const ImVec2 box_high{low.x + width + 0.6f * text, low.y + (lines + 1) * step + 0.4f * text};
@@ -272,7 +302,7 @@ bool LegendView::draw(const std::optional<render::Legend>& legend, const Viewpor
                           .axis = held_.value_or(*legend->scale)},
                          view, log);
   } else {
-    draw_swatches(*legend, low);
+    draw_swatches(*legend, low, width);
   }
   ImGui::End();
   ImGui::PopStyleVar();

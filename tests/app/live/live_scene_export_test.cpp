@@ -62,14 +62,14 @@ TEST_F(LiveExport, ReplacesFilesOnlyOnRequestAndSaysWhatCannotBeUsed) {
   EXPECT_TRUE(scene_.export_pose(robot_, path("robot.obj"), true).ok());
   EXPECT_THAT(scene_.export_pose(robot_, path("robot.gif")).message, HasSubstr("give obj, "));
   EXPECT_THAT(scene_.export_pose(robot_, path("robot.pc2")).message, HasSubstr("pc2 holds a motion"));
-  EXPECT_THAT(scene_.export_motion(robot_, path("robot.stl"), 1).message, HasSubstr("stl holds one pose"));
-  EXPECT_THAT(scene_.export_motion(robot_, path("robot.usda"), 0).message, HasSubstr("above 0"));
+  EXPECT_THAT(scene_.export_motion({robot_}, path("robot.stl"), 1).message, HasSubstr("stl holds one pose"));
+  EXPECT_THAT(scene_.export_motion({robot_}, path("robot.usda"), 0).message, HasSubstr("above 0"));
   EXPECT_THAT(scene_.export_pose(robot_ + 100, path("robot.stl")).message, HasSubstr("no longer there"));
 }
 
 TEST_F(LiveExport, MotionIsThatOfASimulationFromTimeZero) {
   scene_.step(30);  // the motion begins at 0 whatever the window shows
-  ASSERT_TRUE(scene_.export_motion(robot_, path("swim.pc2"), 0.2).ok());
+  ASSERT_TRUE(scene_.export_motion({robot_}, path("swim.pc2"), 0.2).ok());
   EXPECT_EQ(last_message(), "exported " + path("swim.pc2"));
   EXPECT_THAT(listing(), ElementsAre("swim.mtl", "swim.obj", "swim.pc2"));  // and no recording
   std::vector<std::uint16_t> skin;
@@ -91,15 +91,39 @@ TEST_F(LiveExport, MotionIsThatOfASimulationFromTimeZero) {
   }
 }
 
+TEST_F(LiveExport, AWebPageHoldsAllRobots) {
+  const std::vector<RobotId> both = test::ids_of(scene_);
+  EXPECT_THAT(scene_.export_motion(both, path("both.pc2"), 0.2).message, HasSubstr("a pc2 file holds one robot"));
+  ASSERT_TRUE(scene_.export_motion(both, path("both.html"), 0.2).ok());
+  EXPECT_EQ(last_message(), "exported " + path("both.html"));
+  const std::string page = read("both.html");
+  for (const RobotId robot : both)
+    EXPECT_THAT(page, HasSubstr("\"name\":\"" + scene_.document().find(robot)->body.name + "\""));
+}
+
+TEST_F(LiveExport, ARunIsExportedByTheProgram) {
+  write("program",
+        "#!/bin/sh\nfor word; do case $word in --output=*) echo \"$@\" > \"${word#--output=}\";; esac; done\n");
+  std::filesystem::permissions(path("program"), std::filesystem::perms::owner_all);
+  ASSERT_TRUE(scene_.export_run(path("run"), {"--map"}, path("map.html"), false, path("program")).ok());
+  EXPECT_EQ(last_message(), "exported " + path("map.html"));
+  EXPECT_EQ(read("map.html"), "export " + path("run") + " --output=" + path("map.html") + " --force --quiet --map\n");
+  EXPECT_EQ(scene_.export_run(path("run"), {}, path("map.html"), false, path("program")).outcome,
+            SaveResult::Outcome::exists);
+  write("program", "#!/bin/sh\necho 'mercury: run: there is no run' >&2; exit 2\n");
+  ASSERT_TRUE(scene_.export_run(path("run"), {}, path("other.html"), false, path("program")).ok());
+  EXPECT_EQ(last_message(), "run: there is no run");
+}
+
 TEST_F(LiveExport, CanceledMotionLeavesNothingBehind) {
-  ASSERT_TRUE(scene_.export_motion(robot_, path("swim.usda"), 1000).ok());
+  ASSERT_TRUE(scene_.export_motion({robot_}, path("swim.usda"), 1000).ok());
   scene_.cancel_work(scene_.work().front().id);
   EXPECT_EQ(last_message(), "");
   EXPECT_TRUE(listing().empty());
 }
 
 TEST_F(LiveExport, FailedMotionIsReported) {
-  ASSERT_TRUE(scene_.export_motion(robot_, path("swim.glb"), 9).ok());
+  ASSERT_TRUE(scene_.export_motion({robot_}, path("swim.glb"), 9).ok());
   EXPECT_THAT(last_message(), HasSubstr("are too many for a .glb file"));
   EXPECT_TRUE(listing().empty());
 }

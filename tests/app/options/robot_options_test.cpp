@@ -26,6 +26,22 @@ class RobotOptionsTest : public FolderTest {
   RobotOptions options_;
 };
 
+// A folder may be named like a command.
+TEST(CommandTree, WordsAfterACommandAreNoCommands) {
+  CommandTree tree("mercury", "");
+  std::vector<std::string> words, other;
+  std::string chosen;
+  const Command first = tree.root().add_command("export", "");
+  first.add_list("ROBOTS", words, "");
+  first.when_chosen([&] { chosen += "export"; });
+  const Command second = tree.root().add_command("run", "");
+  second.add_list("ROBOTS", other, "");
+  second.when_chosen([&] { chosen += "run"; });
+  tree.parse({"export", "run", "export"});
+  EXPECT_EQ(words, (std::vector<std::string>{"run", "export"}));
+  EXPECT_EQ(chosen, "export");
+}
+
 TEST_F(RobotOptionsTest, SequenceMakesTheRobotsThatLoadReturns) {
   Robot robot{.name = "pair", .masses = {{0, 0, 0}, {1, 0, 0}}, .origin = R"({"environment":"land"})"};
   robot.springs.push_back({.a = 0, .b = 1, .material = 1, .rest_length = 1});

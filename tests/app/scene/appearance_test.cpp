@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <span>
+#include <string>
 
+#include "app/scene/group_look.h"
 #include "mercury/voxel.h"
 
 namespace mercury::test {
@@ -27,6 +31,56 @@ TEST(FaceMaterials, EachSideOfAVoxelHasItsVoxelsMaterial) {
     const float middle = (robot.masses[face.a].x + robot.masses[face.b].x + robot.masses[face.c].x) / 3;
     EXPECT_EQ(materials[i], middle < 0 ? bone : 3) << i;
   }
+}
+
+// The diagonals of a voxel whose edges alone are muscles have the name of its actuator.
+TEST(FaceMaterials, PassiveMaterialsOfAnActuatorsNameShowItsMuscle) {
+  Robot robot{
+      .materials = {{}, {.stiffness = 50, .amplitude = 0.1f, .frequency = 1}, {.stiffness = 40}, {.stiffness = 40}},
+      .material_names = {"air", "left", "left", "passive"},
+      .masses = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}},
+      .springs = {{0, 1, 1, 1}, {1, 2, 2, 1.414f}, {0, 2, 3, 1}, {1, 3, 3, 1}},
+      .faces = {{0, 1, 2}, {1, 3, 2}}};
+  EXPECT_EQ(face_materials(robot), (std::vector<MaterialId>{2, 2}));
+  robot.actuators = {{"left", {1}}};
+  EXPECT_EQ(face_materials(robot), (std::vector<MaterialId>{1, 1}));
+}
+
+// Of one robot with these materials, each of which has a spring.
+render::Legend legend_of(std::vector<Material> materials, std::vector<std::string> names) {
+  Robot robot{.materials = std::move(materials), .material_names = std::move(names)};
+  for (std::size_t id = 1; id < robot.materials.size(); ++id) {
+    const auto first = static_cast<std::uint16_t>(robot.masses.size());
+    robot.masses.insert(robot.masses.end(), {{0, 0, 0}, {1, 0, 0}});
+    robot.springs.push_back({first, static_cast<std::uint16_t>(first + 1), static_cast<MaterialId>(id), 1});
+  }
+  const Robot* const pointer = &robot;
+  const std::shared_ptr<const RobotShape> shape = shape_of(robot);
+  return material_legend(std::span(&pointer, 1), std::span(&shape, 1));
+}
+
+TEST(MaterialLegend, NamesMaterialsOfARobotsOwnTable) {
+  const Material soft{.stiffness = 40}, muscle{.stiffness = 50, .amplitude = 0.1f, .frequency = 1, .phase = 1};
+  const render::Legend legend = legend_of({{}, muscle, soft, soft}, {"air", "flexor", "skin", "skin"});
+  EXPECT_TRUE(legend.wheel.empty());
+  ASSERT_EQ(legend.swatches.size(), 2u);
+  EXPECT_EQ(legend.swatches[0], std::pair(render::muscle_color(1, 0.5f), std::string("flexor")));
+  EXPECT_EQ(legend.swatches[1].second, "skin");
+}
+
+TEST(MaterialLegend, MusclesOfOneNameAndManyPhasesAreAWheel) {
+  const auto muscle = [](float phase) {
+    return Material{.stiffness = 50, .amplitude = 0.1f, .frequency = 1, .phase = phase};
+  };
+  const float turn = 2 * std::acos(-1.0f);
+  // Phases a turn apart are the same.
+  EXPECT_TRUE(legend_of({{}, muscle(1), muscle(1 - turn)}, {"air", "muscle", "muscle"}).wheel.empty());
+  const render::Legend legend = legend_of({{}, muscle(1), muscle(2)}, {"air", "muscle", "muscle"});
+  EXPECT_TRUE(legend.swatches.empty());
+  ASSERT_EQ(legend.wheel.size() % 4, 0u);
+  for (std::size_t quarter = 0; quarter < 4; ++quarter)
+    EXPECT_EQ(legend.wheel[quarter * legend.wheel.size() / 4],
+              render::muscle_color(static_cast<float>(quarter) * turn / 4, 0.5f));
 }
 
 TEST(FaceMaterials, FaceWithoutSpringsIsAir) {

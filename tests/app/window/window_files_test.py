@@ -83,6 +83,8 @@ class FilesTest(WindowCase):
         faces = len(json.loads((SAMPLES / "eel.json").read_text())["faces"])
         self.assertEqual((self.folder / "eel.stl").stat().st_size, 84 + 50 * faces)
 
+        window.click("robot.0")
+        window.frame(lambda frame: frame["selected"] == 1)
         since = window.mark()
         window.click("menu.File")
         window.click("menu.export_motion")
@@ -91,6 +93,19 @@ class FilesTest(WindowCase):
         window.dialog(str(self.folder / "eel.usda"))
         window.wait("message", since, lambda event: "exported " in event["text"])
         self.assertTrue((self.folder / "eel.usda").read_text().startswith("#usda 1.0"))
+
+        window.key("Escape")  # nothing is selected: all robots, in a page
+        window.frame(lambda frame: frame["selected"] == 0)
+        since = window.mark()
+        window.click("menu.File")
+        window.click("menu.export_motion")
+        window.dialog("0.1")
+        window.place("files.place")
+        window.dialog(str(self.folder / "both.html"))
+        window.wait("message", since, lambda event: "exported " in event["text"])
+        page = (self.folder / "both.html").read_text()
+        self.assertIn('"name":"eel"', page)
+        self.assertIn('"name":"fish"', page)
         self.finish(window)
 
     def test_a_scene_is_saved_and_comes_back(self):
