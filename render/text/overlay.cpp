@@ -180,7 +180,7 @@ void Overlay::legend(const Legend& legend) {
     widest = std::max(widest, 1.5f * size + text_width(name, 0.9f * size));
   const float bar = legend.scale ? std::round(std::clamp(0.36f * height_, 6 * size, 16 * size)) : 0;
   const float rows = 1.25f * size * float(legend.swatches.size());
-  const float wheel = legend.wheel.empty() ? 0 : 2 * wheel_radius + 2.6f;  // with its numbers [sizes of text]
+  const float wheel = legend.wheel.empty() ? 0 : 2 * wheel_radius + 3.4f;  // with its numbers [sizes of text]
   if (wheel > 0) widest = std::max(widest, (2 * wheel_radius + 4.2f) * size);
   const float down = 1.5f * size + (bar > 0 ? bar + 0.6f * size : 0) + wheel * size + rows;
   const Rectangle panel{width_ - widest - 3 * pad, 0.5f * (height_ - down) - pad, widest + 2 * pad, down + 1.6f * pad};

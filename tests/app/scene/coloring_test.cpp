@@ -323,7 +323,7 @@ TEST(Arrows, AreAsLongAndDenseAsTheUserWants) {
   for (const render::Arrow& arrow : strong) EXPECT_GE(arrow.vector.norm(), longest_left_out);
 }
 
-// The default muscles are coral, gold, teal and violet; none has the hue of a strong arrow. A weak arrow is paler.
+// The default muscles are red, yellow, teal and violet; none has the hue of a strong arrow. A weak arrow is paler.
 TEST(Arrows, TakeTheirColorFromTheirValue) {
   const Simulation simulation(cpu, std::vector<Robot>{plate()});
   Arrows arrows(simulation, {.drag = true});
