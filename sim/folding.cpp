@@ -95,8 +95,7 @@ BodyCells::BodyCells(const Robot& robot) {
     longest_ = std::max(longest_, rest_length);
   }
   std::ranges::sort(pairs);
-  const auto repeated = std::ranges::unique(pairs);
-  pairs.erase(repeated.begin(), repeated.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());  // clang 14 lacks ranges::unique
   first_neighbor_.assign(robot.masses.size() + 1, 0);
   for (const std::uint32_t pair : pairs) {
     ++first_neighbor_[(pair >> 16) + 1];
@@ -186,9 +185,9 @@ void BodyCells::find_touching() {
       touching_.insert(touching_.end(), neighbors_.begin() + first_neighbor_[corner],
                        neighbors_.begin() + first_neighbor_[corner + 1u]);
     }
-    const std::ranges::subrange added(touching_.begin() + first_touching_.back(), touching_.end());
-    std::ranges::sort(added);
-    touching_.erase(std::ranges::unique(added).begin(), touching_.end());
+    const auto added = touching_.begin() + first_touching_.back();
+    std::sort(added, touching_.end());
+    touching_.erase(std::unique(added, touching_.end()), touching_.end());
     first_touching_.push_back(static_cast<std::uint32_t>(touching_.size()));
   }
 }

@@ -62,8 +62,8 @@ Voxels voxels_of(const Robot& robot) {
     voxels.all.push_back(voxel);
   }
   std::ranges::sort(covered);
-  const auto repeated = std::ranges::unique(covered);
-  if (covered.size() - repeated.size() != materials.size()) voxels.all.clear();
+  covered.erase(std::unique(covered.begin(), covered.end()), covered.end());  // clang 14 lacks ranges::unique
+  if (covered.size() != materials.size()) voxels.all.clear();
   return voxels;
 }
 
