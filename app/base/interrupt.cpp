@@ -110,7 +110,10 @@ UnsavedResults::~UnsavedResults() {
 }
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& target)
-    : target_(follow_links(target)), path_(target_), replaces_(std::filesystem::exists(target_)) {
+    : UnfinishedFile(target, std::filesystem::exists(target)) {}
+
+UnfinishedFile::UnfinishedFile(const std::filesystem::path& target, bool replaces)
+    : target_(follow_links(target)), path_(target_), replaces_(replaces) {
   path_ += fmt::format(".{}-{}.part", getpid(), file_count.fetch_add(1));
   for (int slot = 0; slot < slots && slot_ < 0; ++slot) {
     const char* empty = nullptr;

@@ -49,6 +49,8 @@ class UnfinishedFile {
   // Chooses path(): in the folder of `target`, links followed, with its name and this process's id. Does not create the
   // file.
   explicit UnfinishedFile(const std::filesystem::path& target);
+  // The same for a beginning before this call. `replaces`: the target existed then.
+  UnfinishedFile(const std::filesystem::path& target, bool replaces);
   ~UnfinishedFile();  // removes the file unless keep() was called
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;

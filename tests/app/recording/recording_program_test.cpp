@@ -125,6 +125,22 @@ TEST_F(RunRecord, TwoRunsWithOneNewNameKeepBothRecordings) {
   EXPECT_EQ(TrajectoryReader(path("a-2.h5")).seed(), 2u);
 }
 
+TEST_F(RunRecord, TwoRunsWithOneNewNameKeepBothTables) {
+  const auto started = [&](const char* seed) {
+    return working_mercury({"run", "--random", "voxel", "--seed", seed, "--seconds", "1e6", "--csv", path("a.csv")});
+  };
+  const auto first = started("1"), second = started("2");
+  first->signal(SIGINT);
+  EXPECT_EQ(outcome_of(*first).status, 128 + SIGINT);
+  second->signal(SIGINT);
+  EXPECT_THAT(
+      outcome_of(*second).messages,
+      HasSubstr(path("a.csv") + " was written by another program in the meantime; this one is " + path("a-2.csv")));
+  EXPECT_THAT(listing(), ElementsAre("a-2.csv", "a.csv"));
+  EXPECT_THAT(read("a.csv"), HasSubstr("voxel-1-0"));
+  EXPECT_THAT(read("a-2.csv"), HasSubstr("voxel-2-0"));
+}
+
 TEST_F(RunRecord, ALimitOfTheSizeOfFilesIsReportedInOneLine) {
   const Outcome outcome = run_program("sh", {"-c",
                                              "ulimit -f 16; exec \"$0\" run --random voxel:4 --seconds 0.2 --every 1 "
