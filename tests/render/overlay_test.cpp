@@ -108,8 +108,12 @@ TEST(Overlay, BodiesBehindTheCameraOrHiddenHaveNoLabel) {
 
 TEST(Overlay, EverythingStaysInsideThePicture) {
   Overlay overlay = make_overlay();
-  overlay.legend(
-      {"strain", "1", Scale{-0.2f, 0.2f, Colormap::diverging}, {{rgb(0xff0000), "muscle 1"}}, {0.2f, 1, 0.5f}});
+  overlay.legend({.title = "strain",
+                  .unit = "1",
+                  .scale = Scale{-0.2f, 0.2f, Colormap::diverging},
+                  .swatches = {{rgb(0xff0000), "muscle 1"}},
+                  .wheel = {rgb(0xff0000), rgb(0x00ff00), rgb(0x0000ff)},
+                  .histogram = {0.2f, 1, 0.5f}});
   overlay.clock("12.3 s");
   overlay.caption("Mercury\n12 robots");
   overlay.length(Orbit{}.camera());
