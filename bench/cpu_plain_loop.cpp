@@ -18,6 +18,7 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
   points_ =
       real ? point_properties(robot, configuration.environment) : std::vector<PointProperties>(robot.masses.size());
   const InertiaRange inertia = inertia_range(points_);
+  highest_length_rate_ = highest_length_rate(measures_, materials);
   contact_distance_ = contact_distance(robot, measures_, configuration.environment);
   scale_ = fixed_point_scale(measures_, materials, configuration, contact_distance_, inertia);
   const Clock clock{.dt = configuration.dt};
@@ -69,8 +70,9 @@ bool PlainLoop::add_springs(const PerDistance& per_distance_of) {
     // Not without viscosity: an infinite velocity would make it NaN.
     const float approach =
         relaxation_times_[s] == 0 ? 0 : inner(d, state_.velocities[spring.b] - state_.velocities[spring.a]);
-    const float viscous = viscous_length(squared, approach, relaxation_times_[s], viscous_limit * measures_.longest);
-    const float per_distance = per_distance_of(squared, spring.rest_length * factor_[spring.material] - viscous, s);
+    const float length = viscous_length(spring.rest_length * factor_[spring.material], relaxation_times_[s],
+                                        length_rate(squared, approach, highest_length_rate_));
+    const float per_distance = per_distance_of(squared, length, s);
     const auto units = [&](float along) { return static_cast<std::uint32_t>(to_fixed_small(per_distance, along)); };
     const std::uint32_t fx = units(d.x), fy = units(d.y), fz = units(d.z);
     Sum &a = sums_[spring.a], &b = sums_[spring.b];
@@ -223,13 +225,13 @@ bool PlainLoop::end(std::size_t mass, Vec3 x, Vec3 v, const EnvironmentModel& mo
   return store_state(mass, x, v);
 }
 
-// The end of Algorithm 1, after the forces of the environment.
+// The end of Algorithm 1, after the forces of the environment: they lead to the velocities `driven`.
 template <class EnvironmentModel>
-bool PlainLoop::step_springs(const EnvironmentModel& model) {
+bool PlainLoop::step_springs(const std::vector<Vec3>& driven, const EnvironmentModel& model) {
   bool finite = true;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const Vec3 force = take(i, 1 / scale_.force);
-    const Vec3 v = accelerated(state_.velocities[i], points_[i].inverse_inertia * force, constants_);
+    const Vec3 v = accelerated(driven[i], points_[i].inverse_inertia * force, constants_);
     finite &= end(i, multiply_add(constants_.dt, v, state_.positions[i]), v, model);
   }
   return finite;
@@ -241,8 +243,9 @@ bool PlainLoop::step_force(const EnvironmentModel& model) {
   if (!add_environment(model)) return false;
   if constexpr (EnvironmentModel::real_bodies)
     if (model.sums_apart()) {
-      for (std::size_t i = 0; i < sums_.size(); ++i) state_.velocities[i] = accelerate(i, model);
-      return add_spring_forces() && step_springs(model);
+      std::vector<Vec3> driven;
+      for (std::size_t i = 0; i < sums_.size(); ++i) driven.push_back(accelerate(i, model));
+      return add_spring_forces() && step_springs(driven, model);
     }
   if (!add_spring_forces()) return false;
   bool finite = true;

@@ -57,7 +57,7 @@ class PlainLoop {
   template <class EnvironmentModel>
   bool end(std::size_t mass, Vec3 x, Vec3 v, const EnvironmentModel& model);
   template <class EnvironmentModel>
-  bool step_springs(const EnvironmentModel& model);
+  bool step_springs(const std::vector<Vec3>& driven, const EnvironmentModel& model);
   template <class EnvironmentModel>
   bool step_force(const EnvironmentModel& model);
   template <class EnvironmentModel>
@@ -73,7 +73,7 @@ class PlainLoop {
   FixedPointScale scale_;
   StepConstants constants_;
   std::vector<PointProperties> points_;  // by mass
-  float contact_stiffness_ = 0, contact_distance_ = 0;
+  float contact_stiffness_ = 0, contact_distance_ = 0, highest_length_rate_ = 0;
   State state_;
   std::vector<Sum> sums_;
   std::vector<float> valence_sums_, relaxation_times_;  // by spring: xpbd()'s valence_sum, tau

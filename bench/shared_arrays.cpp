@@ -122,7 +122,7 @@ void print_launch(const std::vector<Robot>& robots, bool same_materials) {
                               .tile_stride = cuda::tiles_for(robots[0].masses.size()),
                               .record_words = 1};
   const cuda::LaunchConfiguration launch = cuda::choose_launch_configuration(
-      Solver::force, Ocean{}, batch, same_materials, robots.size(), same_materials ? 8 : table_chunks(robots));
+      {.environment = Ocean{}}, batch, same_materials, false, robots.size(), same_materials ? 8 : table_chunks(robots));
   std::printf("%-22s %u robots per block, %u warps per robot, %u copies of %u materials, %zu bytes\n",
               same_materials ? "  one material table" : "  a table per robot", launch.robots_per_block,
               launch.warps_per_robot, 1u << launch.table_copy_bits, 32 * launch.table_chunks, launch.shared_bytes);

@@ -107,7 +107,7 @@ class CudaBackend final : public Backend {
   // Chooses how each class is launched.
   void choose_launches();
   AnyEnvironmentModel model_for(const LaunchConfiguration& launch) const {
-    return step_model_of(configuration_.environment, real_bodies_, launch);
+    return step_model_of(configuration_, real_bodies_, launch);
   }
   void number_masses(std::span<const Robot* const> robots);
   const RobotView* views() const;

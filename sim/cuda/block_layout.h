@@ -23,6 +23,7 @@
 // 2. A warp needs the parameters of 32 materials at once, which would often lie in the same banks. So the block keeps
 //    up to 16 copies of the material table, interleaved, and each lane reads a copy of its own: copy (lane mod
 //    copies). With 16 copies there are no conflicts, since a read of 8 bytes serves half a warp per pass.
+//    launch_configuration.cpp weighs them against memory to cache with.
 // 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory.
 // 4. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
 //    result.
@@ -67,10 +68,10 @@ struct BlockLayout {
 // Pairs of near masses that are listed. If there are more, every step searches the cell grid.
 inline constexpr std::uint32_t contact_list_size = 1023;
 
-// Pairs within this distance are listed [m]: half as far again as they touch, but if possible short of the neighbors in
-// a lattice, which springs join.
+// Pairs within this distance are listed [m]: half as far again as they touch, but short of the diagonals of a lattice's
+// faces, which springs join.
 inline float list_radius(float contact_distance, float shortest_rest_length) {
-  return std::max(1.25f * contact_distance, std::min(1.5f * contact_distance, 0.98f * shortest_rest_length));
+  return std::max(1.25f * contact_distance, std::min(1.54f * contact_distance, 1.386f * shortest_rest_length));
 }
 
 // Buckets of the cell grid that finds the contacts of a robot of this many tiles; 0 without contacts.
@@ -84,12 +85,15 @@ MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint
 }
 
 // Pairs that the grid finds, joined or not, are written down until there are this many per slot.
-inline constexpr std::uint32_t near_pairs_per_slot = 4;
+inline constexpr std::uint32_t near_pairs_per_slot = 9;
 
 // Bytes in device memory that ContactPass needs beside them.
 inline std::uint32_t contact_workspace_bytes(std::uint32_t tiles) {
   return tiles * lanes * (3 * sizeof(float) + near_pairs_per_slot * sizeof(std::uint32_t));
 }
+
+// Bytes in device memory for a velocity per slot.
+MERCURY_HOST_DEVICE std::uint32_t velocity_bytes(std::uint32_t tiles) { return tiles * lanes * 3 * sizeof(float); }
 
 // `tiles` = of the largest robot, `fields` = of a tile in working memory.
 MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, std::uint32_t tiles,

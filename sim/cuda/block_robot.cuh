@@ -12,7 +12,7 @@ class BlockRobot {
  public:
   static constexpr Solver solver = solver_;
   using Memory = Memory_;
-  static constexpr std::uint32_t fields = working_fields(solver, Memory::keeps_valence);
+  static constexpr std::uint32_t fields = working_fields(solver, Memory::keeps_valence, Memory::sums_water);
   static constexpr std::uint32_t tile_bytes = fields * field_bytes;
   using SpringRecord = std::conditional_t<record_words == 1, uint1, uint2>;  // .x = key, .y = rest length (layout.h)
 
@@ -43,6 +43,16 @@ class BlockRobot {
     return {context_.masses + tile * tile_bytes + context_.lane * 4};
   }
   __device__ Mass<Memory> mass_at(std::uint32_t slot) const { return {context_.masses + byte_offset(slot)}; }
+  // The mass at a corner of a face (layout.h).
+  __device__ Mass<Memory> corner(std::uint32_t address) const {
+    if constexpr (Memory::on_chip)
+      return {context_.masses + address * 4};
+    else
+      return mass_at(address);
+  }
+  __device__ static std::uint32_t slot_of_corner(std::uint32_t address) {
+    return slot_at_offset(address, Memory::on_chip ? fields : 0);
+  }
   __device__ static std::uint32_t byte_offset(std::uint32_t slot) {
     return slot / lanes * tile_bytes + slot % lanes * 4;
   }
@@ -66,10 +76,13 @@ class BlockRobot {
         arguments_.batch.valences + std::size_t{context_.robot} * arguments_.batch.tile_stride * lanes;
     return __ldg(valences + slot);
   }
-  // What this thread's sum in a tile starts with (springs.cuh).
-  __device__ int incoming_bias(std::uint32_t tile) const {
-    return -static_cast<int>(__ldg(arguments_.batch.incoming_counts + slot_in_batch(tile))) * rounding_magic_bits;
+  // The reactions that this thread's slot in a tile receives per step.
+  __device__ std::uint32_t incoming_count(std::uint32_t tile) const {
+    return __ldg(arguments_.batch.incoming_counts + slot_in_batch(tile));
   }
+  // What a sum that receives that many reactions starts with (springs.cuh).
+  __device__ static int bias_of(std::uint32_t incoming) { return -static_cast<int>(incoming) * rounding_magic_bits; }
+  __device__ int incoming_bias(std::uint32_t tile) const { return bias_of(incoming_count(tile)); }
 
   // Of this thread's mass in a tile.
   __device__ PointProperties point(std::uint32_t tile) const {
@@ -96,7 +109,7 @@ class BlockRobot {
   // What a spring record says. __byte_perm extracts a field in one instruction.
   __device__ Mass<Memory> partner_of(const SpringRecord& record) const {
     if constexpr (Memory::on_chip)
-      return {context_.masses + __byte_perm(record.x, 0, 0x4432) * 4};  // record.x >> 16
+      return {context_.masses + (record.x >> 14)};  // 4 (record.x >> 16), since the bits between are 0
     else
       return mass_at(record.x >> 16);
   }

@@ -14,8 +14,9 @@
 //    in a lattice. So it writes down all of them, and then each thread looks up the springs of one pair.
 // 2. The list can miss a pair only after one of its masses has moved half the margin. Each thread adds up the
 //    farthest that one of its masses moved per step, which costs nothing but is often too much: what swings comes back,
-//    and the whole robot travels. So when a sum reaches the limit, the true ways are computed, relative to the first
-//    mass, from the positions at which the masses were listed. They replace the sums if all are below half the limit.
+//    and the whole robot travels. So when a sum reaches the limit, the true ways are computed, relative to the mean way
+//    of some masses, from the positions at which the masses were listed. They replace the sums if all are below half
+//    the limit.
 // 3. If there are more pairs than the list holds, every step searches the grid.
 // 4. Both ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
 //    not change a bit.
@@ -127,20 +128,21 @@ class ContactPass {
       return 0.99f * (plain_list_radius - 1) / 2 * robot.header().contact_distance;
   }
 
-  // Of this thread's masses, relative to the first mass of the robot [m].
+  // Of this thread's masses, relative to the mean way of 32 masses from all over the robot [m].
   __device__ __noinline__ static float farthest_since_listed(const StepArguments& arguments, Context context) {
     const Robot robot(arguments, context);
     const float* const listed = listed_positions(robot);
-    const auto listed_at = [&](std::uint32_t slot) {
+    const auto way_of = [&](std::uint32_t slot) {
       const float* x = listed + 3 * slot;
-      return Vec3{x[0], x[1], x[2]};
+      return robot.mass_at(slot).vector(field_x) - Vec3{x[0], x[1], x[2]};
     };
-    const Vec3 first = robot.mass_at(0).vector(field_x) - listed_at(0);
+    Vec3 mean = (1.0f / lanes) * way_of(context.lane * robot.header().masses / lanes);
+    for (std::uint32_t half = lanes / 2; half > 0; half /= 2)
+      mean = mean + Vec3{__shfl_xor_sync(0xffffffffu, mean.x, half), __shfl_xor_sync(0xffffffffu, mean.y, half),
+                         __shfl_xor_sync(0xffffffffu, mean.z, half)};
     float squared = 0;
     for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile)
-      if (robot.has_mass(tile))
-        squared = fmaxf(squared,
-                        squared_length(robot.own_mass(tile).vector(field_x) - listed_at(robot.own_slot(tile)) - first));
+      if (robot.has_mass(tile)) squared = fmaxf(squared, squared_length(way_of(robot.own_slot(tile)) - mean));
     return sqrtf(squared);
   }
 
@@ -277,8 +279,8 @@ class ContactPass {
     if (!touches(robot, d)) return;
     const Vec3 units =
         repulsion(squared_length(d), robot.header().contact_distance, robot.stored_header().contact_units) * d;
-    robot.mass_at(i).add_to_sum(units);
-    robot.mass_at(j).add_to_sum(-units);
+    robot.mass_at(i).add_to_environment(units);
+    robot.mass_at(j).add_to_environment(-units);
   }
 
   __device__ static bool joined(const Robot& robot, std::uint32_t i, std::uint32_t j) {

@@ -8,58 +8,75 @@
 namespace mercury::cuda {
 
 // Each warp takes every `warps`th face tile, one pair per lane.
+template <bool prefetches>
 class FacePass {
  public:
   // Loads this thread's first pair early, so that add() need not wait for it.
   template <class Robot>
   __device__ void prefetch(const Robot& robot) {
-    if (first_pair(robot) < robot.header().face_pairs) first_ = load(robot, first_pair(robot));
+    if (prefetches && first_pair(robot) < robot.header().face_pairs) first_ = load(robot, first_pair(robot));
   }
 
   // After prefetch(). `units_per_newton` of the sums; `dither` is dither_of_step().
   template <class Robot, class EnvironmentModel>
   __device__ void add(const Robot& robot, const EnvironmentModel& model, float units_per_newton, std::uint32_t step,
                       std::uint32_t dither, Failure& failure) const {
-    ushort4 next = first_;
+    uint2 next = first_;
+    if (!prefetches && first_pair(robot) < robot.header().face_pairs) next = load(robot, first_pair(robot));
     for (std::uint32_t p = first_pair(robot); p < robot.header().face_pairs; p += robot.threads()) {
-      const ushort4 corners = next;
+      const Corners corners{next.x & 0xffff, next.x >> 16, next.y & 0xffff, next.y >> 16};
       if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
-      if (corners.x == corners.z) continue;  // padding; a single face may have a = b or a = d
+      if (corners.a == corners.c) continue;  // padding; a single face may have a = b or a = d
       if (!add_pair(robot, model, units_per_newton, corners, dither + dither_of_pair(p)))
         failure.report(step, phase_environment, lowest_mass(robot, corners));
     }
   }
 
  private:
+  // Their addresses (layout.h).
+  struct Corners {
+    std::uint32_t a, b, c, d;
+  };
+
   // The last warps begin, since the first ones are busy with the material table.
   template <class Robot>
   __device__ static std::uint32_t first_pair(const Robot& robot) {
     return (robot.warps() - 1 - robot.context().warp) * lanes + robot.context().lane;
   }
   template <class Robot>
-  __device__ static ushort4 load(const Robot& robot, std::uint32_t p) {
+  __device__ static uint2 load(const Robot& robot, std::uint32_t p) {
     const BatchView& batch = robot.arguments().batch;
     const FacePair* pairs = batch.face_pairs + std::size_t{robot.context().robot} * batch.face_stride;
-    return __ldg(reinterpret_cast<const ushort4*>(pairs + p));
+    return __ldg(reinterpret_cast<const uint2*>(pairs + p));
   }
 
   // Returns false if a force is too large for its fixed-point sum, or NaN.
   template <class Robot, class EnvironmentModel>
   __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, float units_per_newton,
-                                  ushort4 corners, std::uint32_t dither) {
-    const auto a = robot.mass_at(corners.x), b = robot.mass_at(corners.y), c = robot.mass_at(corners.z),
-               d = robot.mass_at(corners.w);
+                                  Corners corners, std::uint32_t dither) {
+    const auto a = robot.corner(corners.a), b = robot.corner(corners.b), c = robot.corner(corners.c),
+               d = robot.corner(corners.d);
     const Vec3 xa = a.vector(field_x), xb = b.vector(field_x), xc = c.vector(field_x), xd = d.vector(field_x);
     // 2 (xb - xa) x (xc - xa) = ((xb - xa) + (xb - xc)) x (xc - xa). To exchange a and c, or b and d, changes at most
     // the sign of the right side, and of no bit else. So no force depends on the vertex order.
     const Vec3 shared_edge = xc - xa;
-    const Vec3 first_normal = 0.25f * cross((xb - xa) + (xb - xc), shared_edge);
-    const Vec3 second_normal = 0.25f * cross((xd - xa) + (xd - xc), shared_edge);
+    const Vec3 first_normal = cross((xb - xa) + (xb - xc), shared_edge);
+    const Vec3 second_normal = cross((xd - xa) + (xd - xc), shared_edge);
     const Vec3 shared = a.vector(field_v) + c.vector(field_v);
-    const float third = 1.0f / 3.0f;
-    const float scale = third * units_per_newton;
-    Vec3 first = scale * model.on_face(first_normal, third * (shared + b.vector(field_v)));
-    Vec3 second = scale * model.on_face(second_normal, third * (shared + d.vector(field_v)));
+    Vec3 first, second;
+    if (model.sums_apart()) {
+      // These normals are twice as long as of_sums() expects them.
+      const FaceCoefficients<float> by = model.of_sums(0.5f * units_per_newton);
+      const Vec3 relative = shared - model.thrice_flow;
+      const Vec3 first_sum = relative + b.vector(field_v), second_sum = relative + d.vector(field_v);
+      first = model.on_face(first_normal, first_sum, inner(first_sum, first_sum), by);
+      second = model.on_face(second_normal, second_sum, inner(second_sum, second_sum), by);
+    } else {
+      const float third = 1.0f / 3.0f;
+      const float scale = third * units_per_newton;
+      first = scale * model.on_face(0.25f * first_normal, third * (shared + b.vector(field_v)));
+      second = scale * model.on_face(0.25f * second_normal, third * (shared + d.vector(field_v)));
+    }
     if (!fits(first) || !fits(second)) return false;
     if constexpr (EnvironmentModel::real_bodies) {
       first = dithered(first, dither, model.dither());
@@ -67,20 +84,20 @@ class FacePass {
     }
     const int x1 = round_to_int(first.x), y1 = round_to_int(first.y), z1 = round_to_int(first.z);
     const int x2 = round_to_int(second.x), y2 = round_to_int(second.y), z2 = round_to_int(second.z);
-    b.add_to_sum(x1, y1, z1);
-    d.add_to_sum(x2, y2, z2);
-    a.add_to_sum(x1 + x2, y1 + y2, z1 + z2);
-    c.add_to_sum(x1 + x2, y1 + y2, z1 + z2);
+    b.add_to_environment(x1, y1, z1);
+    d.add_to_environment(x2, y2, z2);
+    a.add_to_environment(x1 + x2, y1 + y2, z1 + z2);
+    c.add_to_environment(x1 + x2, y1 + y2, z1 + z2);
     return true;
   }
 
   template <class Robot>
-  __device__ static std::uint32_t lowest_mass(const Robot& robot, ushort4 corners) {
-    return min(min(robot.number_of(corners.x), robot.number_of(corners.y)),
-               min(robot.number_of(corners.z), robot.number_of(corners.w)));
+  __device__ static std::uint32_t lowest_mass(const Robot& robot, Corners corners) {
+    const auto number = [&](std::uint32_t corner) { return robot.number_of(Robot::slot_of_corner(corner)); };
+    return min(min(number(corners.a), number(corners.b)), min(number(corners.c), number(corners.d)));
   }
 
-  ushort4 first_{};
+  uint2 first_{};
 };
 
 }  // namespace mercury::cuda

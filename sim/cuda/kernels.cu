@@ -86,6 +86,13 @@ __global__ void readdress_kernel(std::uint32_t* records, std::size_t count, std:
   }
 }
 
+__global__ void readdress_corners_kernel(std::uint16_t* corners, std::size_t count, std::uint32_t old_fields,
+                                         std::uint32_t new_fields) {
+  for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count;
+       i += std::size_t{gridDim.x} * blockDim.x)
+    corners[i] = static_cast<std::uint16_t>(offset_of_slot(slot_at_offset(corners[i], old_fields), new_fields));
+}
+
 // One block per move.
 __global__ void move_kernel(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves) {
   const uint2 move = moves[blockIdx.x];
@@ -144,6 +151,14 @@ void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t
   const unsigned blocks = std::min(blocks_for(count), 65536u);
   readdress_kernel<<<blocks, many_threads, 0, stream>>>(records, count, record_words, old_fields, new_fields);
   check(cudaGetLastError(), "addressing the partners of springs");
+}
+
+void readdress_corners(std::span<FacePair> pairs, std::uint32_t old_fields, std::uint32_t new_fields,
+                       cudaStream_t stream) {
+  const std::size_t count = 4 * pairs.size();
+  const unsigned blocks = std::min(blocks_for(count), 65536u);
+  readdress_corners_kernel<<<blocks, many_threads, 0, stream>>>(&pairs.data()->a, count, old_fields, new_fields);
+  check(cudaGetLastError(), "addressing the corners of faces");
 }
 
 void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves, std::size_t count,

@@ -40,6 +40,9 @@ void put_masked_at_rest(const RobotView* robots, std::size_t count, const float*
 // Rewrites the partners of `count` records for tiles of another number of fields.
 void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_fields,
                         std::uint32_t new_fields, cudaStream_t stream);
+// The same for the corners of face pairs on the device.
+void readdress_corners(std::span<FacePair> pairs, std::uint32_t old_fields, std::uint32_t new_fields,
+                       cudaStream_t stream);
 
 // Copies chunks of words. `moves` is on the device: (from, to), of which no chunk is in two.
 void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves, std::size_t count,

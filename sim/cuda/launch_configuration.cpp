@@ -2,6 +2,8 @@
 #include "sim/cuda/launch_configuration.h"
 
 #include <algorithm>
+#include <utility>
+#include <variant>
 
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/device_limits.h"
@@ -13,13 +15,19 @@ namespace {
 // not even one copy does.
 bool fit(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fields, const DeviceLimits& limits,
          std::uint32_t blocks) {
-  for (const std::uint32_t bits : {4u, 3u, 2u, 1u, 0u}) {
+  const std::uint32_t whole = limits.shared_per_multiprocessor;
+  const auto fits = [&](std::uint32_t bits, std::uint32_t most) {
     launch.table_copy_bits = bits;
     launch.shared_bytes = block_layout(launch, tiles, fields).total;
-    if (launch.shared_bytes <= limits.shared_per_block &&
-        blocks * (launch.shared_bytes + limits.reserved_per_block) <= limits.shared_per_multiprocessor)
-      return true;
-  }
+    const std::size_t bytes = blocks * (launch.shared_bytes + limits.reserved_per_block);
+    if (launch.shared_bytes > limits.shared_per_block || bytes > most) return false;
+    if (launch.fits_cache) launch.shared_percent = std::min(100u, static_cast<std::uint32_t>(100 * bytes / whole) + 1);
+    return true;
+  };
+  // 8 copies and an eighth more to cache with are faster than 16 copies.
+  if (launch.fits_cache && (fits(4, whole / 8 * 7) || fits(3, whole / 8 * 7))) return true;
+  for (const std::uint32_t bits : {4u, 3u, 2u, 1u, 0u})
+    if (fits(bits, whole)) return true;
   return false;
 }
 
@@ -43,7 +51,12 @@ bool fit_one(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fie
 
 }  // namespace
 
-LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,
+bool sums_water(const Configuration& configuration) {
+  return configuration.solver == Solver::force &&
+         std::holds_alternative<ResistiveDrag>(configuration.environment.water);
+}
+
+LaunchConfiguration choose_launch_configuration(const Configuration& configuration, const BatchView& robots,
                                                 bool same_materials, bool viscous, std::size_t batch_size,
                                                 std::uint32_t table_chunks) {
   const DeviceLimits limits = device_limits();
@@ -53,20 +66,24 @@ LaunchConfiguration choose_launch_configuration(Solver solver, const Environment
   launch.viscous = viscous;
   launch.table_chunks = table_chunks;
   launch.record_words = robots.record_words;
-  launch.contact_buckets = contact_buckets(environment, tiles);
-  const std::uint32_t all_fields = working_fields(solver, true);
+  launch.fits_cache = robots.robot_count == batch_size;
+  launch.contact_buckets = contact_buckets(configuration.environment, tiles);
+  // With ground, the kernel is the general one (environments.h), which has no field_water.
+  launch.sums_water = sums_water(configuration) && !has_ground(configuration.environment);
+  const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip, launch.sums_water); };
   // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
-  if (batch_size > limits.multiprocessors && fit_several(launch, tiles, all_fields, limits, robots.robot_count))
+  if (batch_size > limits.multiprocessors && fit_several(launch, tiles, fields(), limits, robots.robot_count))
     return launch;
-  for (const bool contacts_on_chip : {true, false})
-    for (const bool valence_on_chip : {true, false}) {
-      launch.contacts_on_chip = contacts_on_chip;
-      launch.valence_on_chip = valence_on_chip;
-      if (fit_one(launch, tiles, working_fields(solver, valence_on_chip), limits)) return launch;
-    }
+  for (bool more = true; more; more = std::exchange(launch.sums_water, false))
+    for (const bool contacts_on_chip : {true, false})
+      for (const bool valence_on_chip : {true, false}) {
+        launch.contacts_on_chip = contacts_on_chip;
+        launch.valence_on_chip = valence_on_chip;
+        if (fit_one(launch, tiles, fields(), limits)) return launch;
+      }
   launch.on_chip = false;
   launch.valence_on_chip = true;
-  fit_one(launch, tiles, all_fields, limits);
+  fit_one(launch, tiles, fields(), limits);
   return launch;
 }
 

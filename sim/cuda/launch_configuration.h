@@ -20,11 +20,16 @@ struct LaunchConfiguration {
   bool shared_table = false;                           // all robots of the batch have the same materials
   bool on_chip = true;                                 // working memory in shared memory, else in the workspace
   bool valence_on_chip = true;                         // with field_valence, which XPBD reads
+  bool sums_water = false;                             // with field_water, which the force solver adds to
   std::uint32_t contact_buckets = 0;                   // a power of two, or 0 = no self-collision
   std::uint32_t record_words = 2;                      // of the batch
   bool viscous = false;                                // springs have relaxation times
   bool contacts_on_chip = true;                        // else after the working memory in the workspace
   std::size_t shared_bytes = 0;
+  // Of a multiprocessor's memory, what its blocks need; the rest caches what they read in every step. But kernels that
+  // share a multiprocessor must divide it alike, so a class beside others takes all. [%]
+  std::uint32_t shared_percent = 100;
+  bool fits_cache = false;  // whether shared_percent may be less
 };
 
 // The warps that the kernel's registers allow on a multiprocessor. They are best split into two blocks, so that one
@@ -46,9 +51,12 @@ constexpr std::uint32_t tiles_per_warp(std::uint32_t tiles) {
   return divide_up(tiles, even_warps(tiles, resident_warps / 2));
 }
 
+// Whether the forces of the environment are summed apart from those of springs (integration.h).
+bool sums_water(const Configuration& configuration);
+
 // The configuration that keeps most robots in flight on the current device, beside the rest of `batch_size` robots.
 // Springs name materials below 32 `table_chunks`.
-LaunchConfiguration choose_launch_configuration(Solver solver, const Environment& environment, const BatchView& robots,
+LaunchConfiguration choose_launch_configuration(const Configuration& configuration, const BatchView& robots,
                                                 bool same_materials, bool viscous, std::size_t batch_size,
                                                 std::uint32_t table_chunks = max_materials / lanes);
 

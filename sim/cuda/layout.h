@@ -9,13 +9,14 @@
 // Spring records stream through every step, so their size decides whether those of all robots in flight fit into the L2
 // cache. A record begins with a key:
 //
-//    31              16 15           8 7            0
-//   +------------------+--------------+--------------+
-//   |     partner      | length index |   material   |
-//   +------------------+--------------+--------------+
+//    31              16 15  14 13           8 7            0
+//   +------------------+------+--------------+--------------+
+//   |     partner      |  0   | length index |   material   |
+//   +------------------+------+--------------+--------------+
 //
-// 1. The partner is a slot, or the offset of a slot in working memory (offset_of_slot), which saves the conversion.
-// 2. If each robot of the class has at most 256 different rest lengths, the robots keep them in tables, the key has
+// 1. The partner is a slot, or the offset of a slot in working memory (offset_of_slot), which saves the conversion. So
+//    are the corners of a face pair. The two bits of 0 make an offset in bytes of one in words.
+// 2. If each robot of the class has at most 64 different rest lengths, the robots keep them in tables, the key has
 //    the index, and a record is one word, the key. In other classes a record is two words, the key (with length index
 //    0) and the rest length.
 #pragma once
@@ -34,7 +35,7 @@
 namespace mercury::cuda {
 
 // Rest lengths in a robot's table.
-inline constexpr std::uint32_t max_lengths = 256;
+inline constexpr std::uint32_t max_lengths = 64;
 
 // Rows of springs that a warp loads and computes together. After the rows of the last robot come as many unused ones,
 // since a warp reads ahead.
@@ -48,7 +49,7 @@ struct RobotHeader {
   float contact_distance;               // [m]; 0 = no contacts
   float contact_units;                  // k_c [units/m]
   float list_radius;                    // within which pairs are listed that may touch [m]
-  float viscous_limit;                  // of tau d|d|/dt [m]; 0 = no spring has a relaxation time
+  float highest_length_rate;            // [m/s]; 0 = no spring has a relaxation time
   float relaxation_time;                // tau of all springs [s]; negative = of each material
   double mass;                          // of all masses together [kg]
 };
@@ -82,7 +83,7 @@ struct BatchView {
   const std::uint32_t* springs;    // [robot][row][32][record_words]
   const float* lengths;            // [robot][max_lengths], if record_words is 1 [m]
   const std::uint32_t* row_start;  // [robot][tile + 1]
-  const FacePair* face_pairs;      // [robot][pair]
+  const FacePair* face_pairs;      // [robot][pair], with addresses of masses for their numbers
   const float* valences;           // [robot][slot]
   const std::uint16_t* masses;     // [robot][slot], the mass that stands there, by its number
   // [robot][slot]: the reactions that a slot receives per step, one for each entry of the schedule whose partner it is.

@@ -47,13 +47,13 @@ class MaterialTable {
 
   // Writes the length factors of this many steps after the launch's first.
   __device__ void update(const StepArguments& arguments, std::uint32_t step) {
-    for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
+    for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
       const std::uint32_t id = chunk * lanes + lane_;
       const MuscleSwing swing = swings_[id];
+      const MusclePhase phase = phases_[id];
       if (step > 0 && !__any_sync(0xffffffffu, swing.amplitude != 0)) continue;
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
-      // As muscle_factor() does it, but read in this order: XPBD's kernels then spill fewer registers.
-      const float sine = sine_of_phase(phase_at(phases_[id], now));
+      const float sine = sine_of_phase(phase_at(phase, now));
       spread(chunk, &Parameters::length_factor, length_factor(swing.amplitude, sine, swing.highest_sine));
     }
   }

@@ -105,7 +105,7 @@ void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMe
                      .contact_distance = 0,
                      .contact_units = 0,
                      .list_radius = 0,
-                     .viscous_limit = 0,
+                     .highest_length_rate = 0,
                      .relaxation_time = 0,
                      .mass = mass};
   const auto to = table(place);
@@ -140,7 +140,7 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
   device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
   statuses_.write(first_place, std::vector<DeviceStatus>(count, DeviceStatus{-1, no_mass}), stream);
   device_materials_.write(first_place, std::span(materials_).subspan(std::size_t{first_place} * max_materials), stream);
-  address_partners(first_place, 0, partner_fields_);
+  address_masses(first_place, 0, address_fields_);
 }
 
 void SizeClass::truncate(std::uint32_t first_place) {
@@ -188,23 +188,27 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   publish_points();
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;
   const bool viscous =
-      std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.viscous_limit > 0; });
-  launch_ = choose_launch_configuration(configuration.solver, configuration.environment, view(), same_materials,
-                                        viscous, batch_size, table_chunks_);
-  const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
-  const std::uint32_t old_fields = std::exchange(partner_fields_, launch_.on_chip ? fields : 0);
-  address_partners(0, old_fields, partner_fields_);
+      std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.highest_length_rate > 0; });
+  launch_ = choose_launch_configuration(configuration, view(), same_materials, viscous, batch_size, table_chunks_);
+  const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip, launch_.sums_water);
+  const std::uint32_t old_fields = std::exchange(address_fields_, launch_.on_chip ? fields : 0);
+  address_masses(0, old_fields, address_fields_);
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
+  if (sums_water(configuration) && !launch_.sums_water) workspace += velocity_bytes(sizes_.tiles);
   reserve_workspace(workspace);
 }
 
-void SizeClass::address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
-  const std::size_t count = (size() - first_place) * sizes_.springs() / sizes_.record_words;
-  if (old_fields == new_fields || count == 0) return;
-  readdress_partners(springs_.chunk(first_place), count, sizes_.record_words, old_fields, new_fields, urgent_->get());
+void SizeClass::address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
+  const std::size_t robots = size() - first_place;
+  if (old_fields == new_fields || robots == 0) return;
+  const std::size_t records = robots * sizes_.springs() / sizes_.record_words, pairs = robots * sizes_.face_pairs;
+  if (records > 0)
+    readdress_partners(springs_.chunk(first_place), records, sizes_.record_words, old_fields, new_fields,
+                       urgent_->get());
+  if (pairs > 0) readdress_corners({face_pairs_.chunk(first_place), pairs}, old_fields, new_fields, urgent_->get());
   urgent_->synchronize();
 }
 

@@ -114,9 +114,9 @@ class SizeClass {
   void publish_points();
   // To be called when tables from a place on have changed.
   void find_same_materials(std::uint32_t first_changed);
-  // Rewrites the partners of the spring records from `first_place` on: offsets in working memory with this many fields
-  // per tile, or slots (0).
-  void address_partners(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);
+  // Rewrites how spring records and face pairs from `first_place` on address masses: by offsets in working memory with
+  // this many fields per tile, or by slots (0).
+  void address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);
   void reserve_workspace(std::size_t bytes_per_robot);
   // Replaces the material that each spring record names; `ids` = [place][max_materials], the new id by the old one.
   void rename_materials(std::span<const MaterialId> ids);
@@ -136,7 +136,7 @@ class SizeClass {
   std::vector<std::uint64_t> first_mass_;  // as in set_first_masses()
   std::vector<Material> materials_;        // [place][max_materials]
   LaunchConfiguration launch_;
-  std::uint32_t partner_fields_ = 0;  // by which the partners of all spring records are addressed; 0 = slots
+  std::uint32_t address_fields_ = 0;  // by which spring records and face pairs address masses; 0 = slots
   std::uint32_t table_chunks_ = max_materials / lanes;  // LaunchConfiguration::table_chunks
   std::size_t workspace_stride_ = 0, perturbation_count_ = 0;
   bool same_materials_ = false;  // all robots have the same table

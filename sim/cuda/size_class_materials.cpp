@@ -24,7 +24,7 @@ void SizeClass::describe(std::uint32_t place, const Configuration& configuration
   const float contact_stiffness = contact_stiffness_of(environment, configuration.solver, configuration.dt,
                                                        stiffest_spring(measures, table(place)), inertia.lightest);
   header.relaxation_time = common_relaxation_time(measures, table(place)).value_or(-1);
-  header.viscous_limit = has_viscous_springs(measures, table(place)) ? viscous_limit * measures.longest : 0;
+  header.highest_length_rate = highest_length_rate(measures, table(place));
   const FixedPointScale scale = fixed_point_scale(measures, table(place), configuration, distance, inertia);
   header.environment_scale = scale.environment;
   header.contact_distance = contact_stiffness > 0 ? distance : 0;
@@ -35,7 +35,7 @@ void SizeClass::describe(std::uint32_t place, const Configuration& configuration
 }
 
 bool SizeClass::has_real_bodies() const {
-  return std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.viscous_limit > 0; }) ||
+  return std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.highest_length_rate > 0; }) ||
          std::ranges::any_of(robots_, [](const Robot* robot) { return has_own_points(*robot); });
 }
 

@@ -25,6 +25,9 @@
 
 namespace mercury::cuda {
 
+// Which springs have a relaxation time.
+enum class Viscosity { none, uniform, by_material };
+
 template <class Robot>
 class SpringPass {
  public:
@@ -32,22 +35,23 @@ class SpringPass {
 
   // Adds the forces or corrections of all springs of this warp's tiles. Returns the longest |d|^2 that this thread met,
   // padding included [m2].
-  // `viscous`: whether springs may have a relaxation time.
-  template <bool viscous>
+  template <Viscosity viscosity>
   __device__ float add_all() const {
     float longest = 0;
-    Viscosity viscosity{};
-    if constexpr (viscous)
-      viscosity = {robot_.stored_header().relaxation_time, robot_.scale() * robot_.stored_header().viscous_limit};
+    Damping damping{};
+    if constexpr (viscosity != Viscosity::none) {
+      const RobotHeader& header = robot_.stored_header();
+      damping = {header.highest_length_rate, damping_of(header.relaxation_time)};
+    }
     robot_.walk_springs(
         [&](std::uint32_t tile, const Mass<Memory>& mass, std::uint32_t rows) {
           const int bias = static_cast<int>(rows) * rounding_magic_bits;
           Owner owner{mass.vector(field_x), own_valence(tile, mass), bias, bias, bias, {}};
-          if constexpr (viscous) owner.v = mass.vector(field_v);
+          if constexpr (viscosity != Viscosity::none) owner.v = mass.vector(field_v);
           return owner;
         },
         [&](auto count, const SpringRecord* records, Owner& owner) {
-          add_springs<decltype(count)::value, viscous>(records, viscosity, owner, longest);
+          add_springs<decltype(count)::value, viscosity>(records, damping, owner, longest);
         },
         [](const Mass<Memory>& mass, const Owner& owner) { mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z); });
     return longest;
@@ -87,41 +91,39 @@ class SpringPass {
     Vec3 d;  // from the partner to the owner
     SpringParameters<solver> parameters;
     float scaled_rest_length;
-    float valence;  // of both masses together, for XPBD
-    Vec3 rate;      // the velocity of the owner, seen from the partner, if viscous
-    float relaxation_time;
+    float valence;          // of both masses together, for XPBD
+    Vec3 rate;              // the velocity of the owner, seen from the partner, if viscous
+    float relaxation_time;  // if that is by material
   };
 
-  // Of a robot, if viscous.
-  struct Viscosity {
-    float relaxation_time;  // of all springs [s]; negative = of each material
-    float scaled_limit;
+  struct SpringDamping {
+    float scaled_relaxation_time, viscous_factor;  // the factor for XPBD
   };
+  struct Damping {
+    float highest_rate;     // of length [m/s]
+    SpringDamping uniform;  // of all springs
+  };
+  __device__ SpringDamping damping_of(float relaxation_time) const {
+    return {robot_.scale() * relaxation_time, viscous_factor(relaxation_time, robot_.arguments().constants.inverse_dt)};
+  }
 
   // `count` springs of one owner: first all loads, then the arithmetic and the additions.
-  template <int count, bool viscous>
-  __device__ void add_springs(const SpringRecord* records, const Viscosity& viscosity, Owner& owner,
-                              float& longest) const {
+  template <int count, Viscosity viscosity>
+  __device__ void add_springs(const SpringRecord* records, const Damping& damping, Owner& owner, float& longest) const {
     LoadedSpring springs[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
       springs[i] = load(records[i], owner);
-      if constexpr (viscous) {
-        springs[i].rate = owner.v - springs[i].partner.vector(field_v);
-        springs[i].relaxation_time = viscosity.relaxation_time;
-      }
+      if constexpr (viscosity != Viscosity::none) springs[i].rate = owner.v - springs[i].partner.vector(field_v);
+      if constexpr (viscosity == Viscosity::by_material)
+        springs[i].relaxation_time = robot_.relaxation_time_of(records[i]);
     }
-    if constexpr (viscous)
-      if (viscosity.relaxation_time < 0) {
-#pragma unroll
-        for (int i = 0; i < count; ++i) springs[i].relaxation_time = robot_.relaxation_time_of(records[i]);
-      }
 #pragma unroll
     for (int i = 0; i < count; ++i) {
       const LoadedSpring& spring = springs[i];
       const float squared = squared_length(spring.d);
       longest = fmaxf(longest, squared);
-      const float per_distance = units_per_distance<viscous>(spring, viscosity, squared);
+      const float per_distance = units_per_distance<viscosity>(spring, damping, squared);
       const int x = bits_of(multiply_add(per_distance, spring.d.x, rounding_magic));
       const int y = bits_of(multiply_add(per_distance, spring.d.y, rounding_magic));
       const int z = bits_of(multiply_add(per_distance, spring.d.z, rounding_magic));
@@ -143,16 +145,17 @@ class SpringPass {
   }
 
   // Force or correction on the partner, per meter of d, in units.
-  template <bool viscous>
-  __device__ float units_per_distance(const LoadedSpring& spring, const Viscosity& viscosity, float squared) const {
+  template <Viscosity viscosity>
+  __device__ float units_per_distance(const LoadedSpring& spring, const Damping& damping, float squared) const {
     float length = spring.scaled_rest_length * spring.parameters.length_factor;
     float valence = spring.valence;
-    if constexpr (viscous) {
+    if constexpr (viscosity != Viscosity::none) {
       const Vec3 d = spring.d, rate = spring.rate;
       const float approach = multiply_add(d.z, rate.z, multiply_add(d.y, rate.y, d.x * rate.x));
-      length -= viscous_length(squared, approach, robot_.scale() * spring.relaxation_time, viscosity.scaled_limit);
-      if constexpr (solver == Solver::xpbd)
-        valence *= viscous_factor(spring.relaxation_time, robot_.arguments().constants.inverse_dt);
+      SpringDamping by = damping.uniform;
+      if constexpr (viscosity == Viscosity::by_material) by = damping_of(spring.relaxation_time);
+      length = viscous_length(length, by.scaled_relaxation_time, length_rate(squared, approach, damping.highest_rate));
+      if constexpr (solver == Solver::xpbd) valence *= by.viscous_factor;
     }
     if constexpr (solver == Solver::force)
       return hooke(squared, length, spring.parameters.stiffness, robot_.scale());

@@ -45,12 +45,13 @@ __global__ void __maxnreg__(72)
         __syncthreads();
       stepper.predict(step);
       __syncthreads();
-    } else if (stepper.sums_apart()) {
+    } else if (stepper.accelerates_first()) {
       __syncthreads();
       stepper.accelerate(step);
       __syncthreads();
     }
     stepper.add_springs(step);
+    stepper.prefetch_end();
     __syncthreads();
     stepper.end(step);
     stepper.prefetch_environment();
@@ -78,7 +79,10 @@ auto kernel_for(const LaunchConfiguration& launch) {
       return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
   if constexpr (std::is_same_v<EnvironmentModel, GeneralModel>)
     if (!launch.on_chip) return step_kernel<solver, EnvironmentModel, OffChip, record_words>;
-  return step_kernel<solver, EnvironmentModel, OnChip, record_words>;
+  if constexpr (solver == Solver::force && std::is_same_v<EnvironmentModel, ResistiveModel>)
+    return step_kernel<solver, EnvironmentModel, OnChipWithWater, record_words>;
+  else
+    return step_kernel<solver, EnvironmentModel, OnChip, record_words>;
 }
 
 template <Solver solver, class EnvironmentModel>
@@ -92,8 +96,6 @@ template <class Kernel>
 void prepare(Kernel kernel) {
   const auto bytes = static_cast<int>(device_limits().shared_per_block);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), "reserving shared memory");
-  check(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout, cudaSharedmemCarveoutMaxShared),
-        "preferring shared memory");
 }
 
 template <Solver solver, class EnvironmentModel>
@@ -102,6 +104,9 @@ void start(const EnvironmentModel& model, const StepArguments& arguments, cudaSt
   const auto kernel = kernel_for<solver, EnvironmentModel>(launch);
   const std::uint32_t blocks = (arguments.batch.robot_count + launch.robots_per_block - 1) / launch.robots_per_block;
   const std::uint32_t threads = launch.robots_per_block * launch.warps_per_robot * lanes;
+  check(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout,
+                             static_cast<int>(launch.shared_percent)),
+        "dividing memory between blocks and cache");
   kernel<<<blocks, threads, launch.shared_bytes, stream>>>(arguments, model);
   check(cudaGetLastError(), "starting the step kernel");
 }

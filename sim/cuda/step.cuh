@@ -32,6 +32,7 @@ class RobotStepper {
       const float* from = robot_.state(tile);
       for (std::uint32_t field = 0; field < state_fields; ++field) mass.set_value(field, from[field * lanes]);
       mass.set_sum(solver == Solver::force ? robot_.incoming_bias(tile) : 0);
+      if constexpr (Memory::sums_water) mass.set_sum(0, field_water);
       if constexpr (solver == Solver::xpbd && Memory::keeps_valence)
         mass.set_value(field_valence, robot_.load_valence(robot_.own_slot(tile)));
     }
@@ -71,15 +72,15 @@ class RobotStepper {
     if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
   }
 
-  // Whether the forces of the environment are to be summed apart from those of springs, by accelerate().
-  __device__ bool sums_apart() const {
-    if constexpr (EnvironmentModel::real_bodies)
+  // Whether the environment needs sums of its own without a field for them, so that accelerate() comes before springs.
+  __device__ bool accelerates_first() const {
+    if constexpr (EnvironmentModel::real_bodies && solver == Solver::force && !Memory::sums_water)
       return model_.sums_apart();
     else
       return false;
   }
 
-  // Force solver: adds the forces of the environment to the velocity.
+  // Force solver: takes the forces of the environment out of the sums, and keeps v + dt F for end().
   __device__ void accelerate(std::uint32_t step) {
     if constexpr (EnvironmentModel::real_bodies) {
       if (failure_->before(step, phase_prediction)) return;
@@ -91,7 +92,11 @@ class RobotStepper {
         // The bias of the reactions that are to come has been in the sum.
         const int bias = robot_.incoming_bias(tile);
         const Vec3 force = sum_of(mass, bias, inverse_scale);
-        mass.set_vector(field_v, accelerated(v, acceleration(force, v, point_at(tile)), constants()));
+        const Vec3 driven = accelerated(v, acceleration(force, v, point_at(tile)), constants());
+        float* const kept = driven_velocity(tile);
+        kept[0] = driven.x;
+        kept[lanes] = driven.y;
+        kept[2 * lanes] = driven.z;
         mass.set_sum(bias);
       }
     }
@@ -116,32 +121,42 @@ class RobotStepper {
   __device__ void add_springs(std::uint32_t step) {
     if (failure_->before(step, phase_springs)) return;
     const float limit = robot_.header().squared_stretch_limit;
-    const SpringPass<Robot> springs(robot_);
-    float longest;
-    if (EnvironmentModel::real_bodies && robot_.arguments().launch.viscous)
-      longest = springs.template add_all<EnvironmentModel::real_bodies>();
-    else
-      longest = springs.template add_all<false>();
+    const float longest = add_all_springs();
     // Padding counts in add_all() and may be long, so a failure is checked again without it.
     if (longest > limit && SpringPass<Robot>::longest_spring(robot_.arguments(), robot_.context()) > limit)
       failure_->report(step, phase_springs, Failure::never);
   }
 
+  // Loads early what end() needs first from device memory.
+  __device__ void prefetch_end() { next_ = in_device_memory(robot_.first_tile()); }
+
+  // After prefetch_end().
   __device__ void end(std::uint32_t step) {
     if (failure_->before(step, phase_end)) return;
-    float farthest = 0;
+    Distance farthest;
     // XPBD in water has the registers for two tiles at a time. Left alone, the choice of the compiler changes with
     // unrelated code.
 #pragma unroll(solver == Solver::xpbd && Memory::on_chip && !EnvironmentModel::has_contacts ? 2 : 1)
     for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
-      if (!robot_.has_mass(tile)) continue;
+      if (!robot_.has_mass(tile)) break;  // this lane has none in the last tile
       const Mass<Memory> mass = robot_.own_mass(tile);
       Vec3 x = mass.vector(field_x), v = mass.vector(field_v);
-      const PointProperties point = point_at(tile);
+      const auto [point, incoming] = next_;
+      next_ = in_device_memory(tile + 1);
       if constexpr (solver == Solver::force) {
-        const int bias = robot_.incoming_bias(tile);
+        const int bias = Robot::bias_of(incoming);
         const Vec3 force = sum_of(mass, 0, 1 / robot_.header().force_scale);
-        v = accelerated(v, sums_apart() ? point.inverse_inertia * force : acceleration(force, v, point), constants());
+        if constexpr (Memory::sums_water) {
+          const Vec3 water = sum_of(mass, 0, 1 / environment_scale(), field_water);
+          mass.set_sum(0, field_water);
+          v = accelerated(v, acceleration(water, v, point), constants());
+          v = accelerated(v, point.inverse_inertia * force, constants());
+        } else if (accelerates_first()) {
+          const float* const kept = driven_velocity(tile);
+          v = accelerated({kept[0], kept[lanes], kept[2 * lanes]}, point.inverse_inertia * force, constants());
+        } else {
+          v = accelerated(v, acceleration(force, v, point), constants());
+        }
         x = multiply_add(constants().dt, v, x);
         mass.set_sum(bias);
       } else {
@@ -155,13 +170,30 @@ class RobotStepper {
         end_step(x, v, point.inverse_inertia, model_, constants());
       else
         end_step(x, v, model_, constants());
-      if constexpr (EnvironmentModel::has_contacts) farthest = fmaxf(farthest, distance_moved(mass, x));
+      if constexpr (EnvironmentModel::has_contacts) farthest.add(mass, x);
       store(step, phase_end, tile, x, v);
     }
-    contacts_.moved(farthest);
+    if constexpr (EnvironmentModel::has_contacts) contacts_.moved(farthest.bound(constants()));
   }
 
  private:
+  // The longest |d|^2 of this thread's springs, padding included [m2].
+  __device__ float add_all_springs() const {
+    const SpringPass<Robot> springs(robot_);
+    if constexpr (EnvironmentModel::real_bodies)
+      if (robot_.arguments().launch.viscous)
+        return robot_.stored_header().relaxation_time < 0 ? springs.template add_all<Viscosity::by_material>()
+                                                          : springs.template add_all<Viscosity::uniform>();
+    return springs.template add_all<Viscosity::none>();
+  }
+
+  // Of this thread's mass in a tile, between accelerate() and end() [m/s]: the last bytes of the workspace.
+  __device__ float* driven_velocity(std::uint32_t tile) const {
+    char* const end = batch().workspace + std::size_t{robot_.context().robot + 1} * batch().workspace_stride;
+    return reinterpret_cast<float*>(end - velocity_bytes(batch().tile_stride)) + 3 * lanes * tile +
+           robot_.context().lane;
+  }
+
   __device__ PointProperties point_at(std::uint32_t tile) const {
     if constexpr (EnvironmentModel::real_bodies)
       return robot_.point(tile);
@@ -185,17 +217,22 @@ class RobotStepper {
       if (perturbation.robot != robot_.context().robot) continue;
       const Vec3 units = perturbation.stiffness * environment_scale() *
                          (perturbation.target - robot_.mass_at(perturbation.slot).vector(field_x));
-      if (fits(units)) robot_.mass_at(perturbation.slot).add_to_sum(units);
+      if (fits(units)) robot_.mass_at(perturbation.slot).add_to_environment(units);
     }
   }
 
-  // An upper bound for how far a mass moves in this step [m]. In XPBD, working memory has its prediction and its
-  // predicted velocity.
-  __device__ float distance_moved(const Mass<Memory>& mass, Vec3 x) const {
-    float moved = sqrtf(squared_length(x - mass.vector(field_x)));
-    if constexpr (solver == Solver::xpbd) moved += constants().dt * sqrtf(squared_length(mass.vector(field_v)));
-    return moved;
-  }
+  // How far masses move in a step at most. In XPBD, working memory has their predictions and predicted velocities.
+  struct Distance {
+    float squared_step = 0, squared_speed = 0;  // [m2], [m2/s2]
+
+    __device__ void add(const Mass<Memory>& mass, Vec3 x) {
+      squared_step = fmaxf(squared_step, squared_length(x - mass.vector(field_x)));
+      if constexpr (solver == Solver::xpbd) squared_speed = fmaxf(squared_speed, squared_length(mass.vector(field_v)));
+    }
+    __device__ float bound(const StepConstants& constants) const {
+      return sqrtf(squared_step) + (solver == Solver::xpbd ? constants.dt * sqrtf(squared_speed) : 0);
+    }
+  };
 
   // Units per newton of what add_environment() adds.
   __device__ float environment_scale() const {
@@ -206,10 +243,11 @@ class RobotStepper {
   }
 
   // The sum above `bias`.
-  __device__ static Vec3 sum_of(const Mass<Memory>& mass, int bias, float inverse_scale) {
-    return {static_cast<float>(mass.sum(0) - bias) * inverse_scale,
-            static_cast<float>(mass.sum(1) - bias) * inverse_scale,
-            static_cast<float>(mass.sum(2) - bias) * inverse_scale};
+  __device__ static Vec3 sum_of(const Mass<Memory>& mass, int bias, float inverse_scale,
+                                std::uint32_t field = field_sum) {
+    return {static_cast<float>(mass.sum(0, field) - bias) * inverse_scale,
+            static_cast<float>(mass.sum(1, field) - bias) * inverse_scale,
+            static_cast<float>(mass.sum(2, field) - bias) * inverse_scale};
   }
 
   // Stores a mass's new state if it is finite. If not, the mass stays where it is, and the robot has exploded.
@@ -222,9 +260,23 @@ class RobotStepper {
     }
   }
 
+  // What end() needs of this thread's mass in a tile.
+  struct InDeviceMemory {
+    PointProperties point;
+    std::uint32_t incoming = 0;
+  };
+  __device__ InDeviceMemory in_device_memory(std::uint32_t tile) const {
+    tile = min(tile, batch().tile_stride - 1);  // it is loaded one tile ahead
+    InDeviceMemory found{point_at(tile)};
+    if constexpr (solver == Solver::force) found.incoming = robot_.incoming_count(tile);
+    return found;
+  }
+
   const Robot robot_;
   const EnvironmentModel& model_;
-  FacePass faces_;
+  InDeviceMemory next_;
+  // Kernels of real bodies have no register left for a pair, and would wait to store it elsewhere.
+  FacePass<!EnvironmentModel::real_bodies> faces_;
   ContactPass<Robot, EnvironmentModel::real_bodies> contacts_;
   Failure* const failure_;
 };

@@ -23,10 +23,12 @@ struct StepArguments {
 };
 
 // The model whose kernel a launch uses. Robots in device memory wait for it most of the time, so they have one kernel
-// for all environments.
-inline AnyEnvironmentModel step_model_of(const Environment& environment, bool real_bodies,
+// for all environments. So have robots for whose own sums of the environment the chip has no room.
+inline AnyEnvironmentModel step_model_of(const Configuration& configuration, bool real_bodies,
                                          const LaunchConfiguration& launch) {
-  return launch.on_chip ? solver_model_of(environment, real_bodies) : GeneralModel(environment);
+  const Environment& environment = configuration.environment;
+  if (!launch.on_chip || (sums_water(configuration) && !launch.sums_water)) return GeneralModel(environment);
+  return solver_model_of(environment, real_bodies);
 }
 
 // Robots that the current device steps at the same time.

@@ -126,7 +126,7 @@ struct OceanModel {
   //   sum    = -3 u        sum of the corners' velocities, minus 3 flow
   //   F / 3  = rho A / 6 (... (u . n) u + ... |u|^2 n)
   //          = -rho / 108 (... |normal . sum| sum + ... |sum|^2 normal)
-  FaceCoefficients<float> of_sums(float scale) const {
+  MERCURY_HOST_DEVICE FaceCoefficients<float> of_sums(float scale) const {
     const float common = -half_density * scale / 54;
     return {common * drag_minus_lift, common * lift, common * tangential, 0};
   }
@@ -209,7 +209,7 @@ struct ResistiveModel {
   }
 
   // As those of OceanModel.
-  FaceCoefficients<float> of_sums(float scale) const {
+  MERCURY_HOST_DEVICE FaceCoefficients<float> of_sums(float scale) const {
     const float common = -half_density * scale / 54;
     return {0, 0, common * tangential, common * normal};
   }
@@ -316,7 +316,7 @@ struct GeneralModel : OceanModel {
   MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
     return drag_and_lift(normal, u, speed_squared, by) + ResistiveModel::on_face(normal, u, speed_squared, by);
   }
-  FaceCoefficients<float> of_sums(float scale) const {
+  MERCURY_HOST_DEVICE FaceCoefficients<float> of_sums(float scale) const {
     FaceCoefficients<float> by = OceanModel::of_sums(scale);
     by.normal = -half_density * scale / 54 * normal;
     return by;

@@ -87,6 +87,13 @@ bool has_viscous_springs(const RobotMeasures& measures, std::span<const Material
   return false;
 }
 
+float highest_length_rate(const RobotMeasures& measures, std::span<const Material> materials) {
+  float slowest = 0;
+  for (std::size_t id = 0; id < materials.size(); ++id)
+    if (measures.used[id]) slowest = std::max(slowest, materials[id].relaxation_time);
+  return slowest > 0 ? viscous_limit * measures.longest / slowest : 0;
+}
+
 std::optional<float> common_relaxation_time(const RobotMeasures& measures, std::span<const Material> materials) {
   std::optional<float> common;
   for (std::size_t id = air + 1; id < materials.size(); ++id) {

@@ -58,6 +58,8 @@ FixedPointScale fixed_point_scale(const RobotMeasures& measures, std::span<const
 
 // tau d|d|/dt is at most this many of the robot's longest rest lengths.
 inline constexpr float viscous_limit = 2;
+// So this is the highest rate of length that counts [m/s]; 0 if no spring has a relaxation time.
+float highest_length_rate(const RobotMeasures& measures, std::span<const Material> materials);
 
 // The largest softening of a spring by XPBD, (w_a s_a + w_b s_b) k dt^2: springs behave as if their stiffness were k /
 // (1 + softening), another one at each dt (docs/physics.md).

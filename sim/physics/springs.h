@@ -28,7 +28,7 @@
 //
 // A relaxation time tau makes a spring resist its rate of length (Kelvin-Voigt). It acts as if L were shorter by
 // tau d|d|/dt:
-//   F_a    = k (|d| - L + tau d|d|/dt) d / |d|,   d|d|/dt = d . (v_b - v_a) / |d|      viscous_length()
+//   F_a    = k (|d| - L + tau d|d|/dt) d / |d|,   d|d|/dt = d . (v_b - v_a) / |d|      length_rate()
 //   lambda = (C + tau d|d|/dt) / ((1 + tau / dt) (w_a s_a + w_b s_b) + 1 / (k dt^2))
 // The second line is XPBD's damping (Macklin et al. 2016, equation 26) with beta = k tau, where v is the velocity that
 // leads to the predicted positions.
@@ -58,13 +58,18 @@ MERCURY_HOST_DEVICE Real hooke(Real squared, Real length, Real stiffness, Real o
   return stiffness * constraint_ratio(squared, length, one);
 }
 
-// tau d|d|/dt [m], at most `most`, so that a spring's force keeps within the range of its sums (fixed_point.h).
-// `approach` is d . (v_b - v_a). As in constraint_ratio(), `relaxation_time` and `most` may be multiplied by a power of
-// two.
+// d|d|/dt [m/s], at most `most`, so that a spring's force keeps within the range of its sums (fixed_point.h).
+// `approach` is d . (v_b - v_a).
 template <class Real>
-MERCURY_HOST_DEVICE Real viscous_length(Real squared, Real approach, Real relaxation_time, Real most) {
-  const Real longer = relaxation_time * (approach * inverse_sqrt(squared));
-  return select(longer > most, most, select(longer < -most, -most, longer));
+MERCURY_HOST_DEVICE Real length_rate(Real squared, Real approach, Real most) {
+  return larger(smaller(approach * inverse_sqrt(squared), most), -most);
+}
+
+// The length L of which a spring with a relaxation time behaves as if it were. As in constraint_ratio(), `length` and
+// `relaxation_time` may be multiplied by a power of two.
+template <class Real>
+MERCURY_HOST_DEVICE Real viscous_length(Real length, Real relaxation_time, Real rate) {
+  return fnma(relaxation_time, rate, length);
 }
 
 // 1 + tau / dt [1].

@@ -23,7 +23,7 @@ std::vector<Robot> crowd() {
   std::vector<Robot> robots = {bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 1), bodies::point({1, 2, 3}),
                                bodies::random_voxels({.x = 5, .y = 4, .z = 3}, 2),
                                bodies::random_voxels({.x = 2, .y = 3, .z = 2}, 3), bodies::pair({50, 0.3f, 4, 1})};
-  bodies::rotate(robots[3], bodies::random_rotation(3));  // more than 256 different rest lengths
+  bodies::rotate(robots[3], bodies::random_rotation(3));  // more than 64 different rest lengths
   return robots;
 }
 

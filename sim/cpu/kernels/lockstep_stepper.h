@@ -62,7 +62,7 @@ class LockstepStepper {
  private:
   // Algorithm 1.
   bool step_force(const float* factors) {
-    const bool apart = accelerate_by_environment();
+    const float* const driven_v = v_driven_by_environment();
     Box box;
     const bool compact = is_compact(load_aligned(group_.squared_diagonal.data()));
     const bool within_limit = add_springs(factors, compact, [&](std::size_t slot, Integers3 sum) HWY_ATTR {
@@ -70,8 +70,8 @@ class LockstepStepper {
       const PointLanes point = point_at(slot);
       Lanes3 v;
       if constexpr (EnvironmentModel::real_bodies)
-        v = apart ? accelerated_by_springs(sum, per_force_, v0, point, constants_)
-                  : accelerated_by(sum, per_force_, v0, point, model_, constants_);
+        v = driven_v ? accelerated_by_springs(sum, per_force_, load_nth_slot(driven_v, slot), point, constants_)
+                     : accelerated_by(sum, per_force_, v0, point, model_, constants_);
       else
         v = accelerated_by(sum, per_force_, v0, point, model_, constants_);
       Lanes3 x = multiply_add(constants_.dt, v, x0);
@@ -83,16 +83,18 @@ class LockstepStepper {
     return within_limit && is_within_reach(box);
   }
 
-  // Algorithm 1, where the forces of the environment are summed apart. Returns whether they are.
-  bool accelerate_by_environment() {
-    if constexpr (!EnvironmentModel::real_bodies) return false;
-    if (!model_.sums_apart()) return false;
+  // Algorithm 1, where the forces of the environment are summed apart: v + dt F by slot, else null.
+  const float* v_driven_by_environment() {
+    if constexpr (!EnvironmentModel::real_bodies) return nullptr;
+    if (!model_.sums_apart()) return nullptr;
+    group_.driven_v.resize(group_.v.size());
+    float* const driven_v = group_.driven_v.data();
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
       const Lanes3 v =
           accelerated_by(take(slot), per_environment_, load_nth_slot(v_, slot), point_at(slot), model_, constants_);
-      store_aligned(v, slot_at(v_, 3 * lane_count * slot), 0);
+      store_aligned(v, slot_at(driven_v, 3 * lane_count * slot), 0);
     }
-    return true;
+    return driven_v;
   }
 
   // Algorithm 2.
@@ -237,7 +239,7 @@ class LockstepStepper {
                                          group_.stiffness.data(),
                                          group_.relaxation_time.data(),
                                          group_.factor.data(),
-                                         load_aligned(group_.viscous_limit.data()),
+                                         load_aligned(group_.highest_length_rate.data()),
                                          0.0f};
     const float *const x = x_, *const v = v_;
     std::int32_t* const sums = sums_;

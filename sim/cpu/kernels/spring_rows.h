@@ -16,7 +16,7 @@ struct SpringRow {
   const float* stiffness;
   const float* relaxation_time;  // if `viscous`
   const FactorId* factor;
-  Lanes viscous_limit;    // [m], if `viscous`
+  Lanes highest_rate;     // of length [m/s], if `viscous`
   Lanes longest_squared;  // of all springs so far, if `checked`
 
   // What the next row's springs add to their partners, in units, plus rounding_magic_bits. `d` points from partner to
@@ -30,7 +30,8 @@ struct SpringRow {
     if constexpr (checked) longest_squared = select((squared > longest_squared) & is_spring, squared, longest_squared);
     Lanes length = rest * look_up(factors, factor, is_spring);
     if constexpr (viscous) {
-      length = length - viscous_length(squared, inner(d, rate()), load_aligned(relaxation_time), viscous_limit);
+      const Lanes length_rate = mercury::length_rate(squared, inner(d, rate()), highest_rate);
+      length = viscous_length(length, load_aligned(relaxation_time), length_rate);
       relaxation_time += lane_count;
     }
     const Lanes per_distance = hooke(squared, length, load_aligned(stiffness));
@@ -58,7 +59,7 @@ bool add_springs(Body& body, const float* factors, const Finish& finish) {
                                        schedule.stiffness.data(),
                                        schedule.relaxation_time.data(),
                                        schedule.factor.data(),
-                                       viscous_limit * body.measures.longest,
+                                       highest_length_rate(body.measures, body.materials),
                                        0.0f};
   const Run* run = schedule.runs.data();
   const std::uint32_t* partners = schedule.partners.data();

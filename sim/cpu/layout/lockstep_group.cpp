@@ -87,7 +87,7 @@ void resize_arrays(LockstepGroup& group) {
   group.sums.resize(3 * slots);
   for (Aligned<float>* by_lane :
        {&group.force_scale, &group.correction_scale, &group.environment_scale, &group.squared_stretch_limit,
-        &group.contact_distance, &group.viscous_limit, &group.face_force_bound, &group.squared_diagonal})
+        &group.contact_distance, &group.highest_length_rate, &group.face_force_bound, &group.squared_diagonal})
     by_lane->resize(group.lanes);
 }
 
@@ -174,7 +174,7 @@ void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& mode
     group.environment_scale[lane] = body.scale.environment;
     group.squared_stretch_limit[lane] = body.measures.squared_stretch_limit();
     group.contact_distance[lane] = body.contact_distance;
-    group.viscous_limit[lane] = viscous_limit * body.measures.longest;
+    group.highest_length_rate[lane] = highest_length_rate(body.measures, body.materials);
   }
 }
 

@@ -76,6 +76,7 @@ struct LockstepGroup {
   // [slot][x, y, z][lane]
   Aligned<float> x, v;         // between XPBD's prediction and correction: the prediction and v + dt F
   Aligned<std::int32_t> sums;  // what acts on the masses, in units; zero between steps
+  Aligned<float> driven_v;     // as in Body
   Aligned<float> checkpoint_x, checkpoint_v;
   Aligned<float> searched_x;            // positions when near pairs were last searched, for contacts
   std::vector<std::uint64_t> searches;  // NearPairs::searches() at that time, by lane; empty = not searched
@@ -99,7 +100,7 @@ struct LockstepGroup {
   Aligned<float> force_scale, correction_scale, environment_scale;  // FixedPointScale
   Aligned<float> squared_stretch_limit;                             // [m2]
   Aligned<float> contact_distance;                                  // [m]
-  Aligned<float> viscous_limit;                                     // of tau d|d|/dt [m]
+  Aligned<float> highest_length_rate;                               // [m/s]
   Aligned<float> face_force_bound;  // no face's force exceeds this times |2 A n| |sum of velocities|^2 [units]
   Aligned<float> squared_diagonal;  // of the box around all masses of the lane [m2]; infinite if not known
 

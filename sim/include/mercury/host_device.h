@@ -39,6 +39,8 @@ MERCURY_HOST_DEVICE float fnma(float a, float b, float c) {
 }
 
 MERCURY_HOST_DEVICE float absolute(float a) { return std::fabs(a); }
+MERCURY_HOST_DEVICE float smaller(float a, float b) { return std::fmin(a, b); }
+MERCURY_HOST_DEVICE float larger(float a, float b) { return std::fmax(a, b); }
 MERCURY_HOST_DEVICE float square_root(float a) { return std::sqrt(a); }
 
 // Choices that a vector of floats makes lane by lane.
