@@ -14,11 +14,18 @@ namespace {
 // A body of n masses that all springs join has n^4 / 24 tetrahedra: of such, not all are needed.
 constexpr int most_per_spring = 64;
 constexpr std::size_t tetrahedra_per_voxel = 6;
-// Flatter ones, by volume per cube of the longest rest length, are no space between masses.
-constexpr double flat = 1e-4;
+// Flatter ones, by volume per cube of their longest edge, are no space between masses: four masses of one side of a
+// tapered cell, say, which may pass through their plane. A regular one has 0.12, a corner of a cube 0.06.
+constexpr double flat = 0.01;
 
 // Six times the volume; positive = right-handed.
 double sixfold_volume(Double3 a, Double3 b, Double3 c, Double3 d) { return dot(b - a, cross(c - a, d - a)); }
+
+double longest_edge(Double3 a, Double3 b, Double3 c, Double3 d) {
+  double squared = 0;
+  for (const Double3 edge : {b - a, c - a, d - a, c - b, d - b, d - c}) squared = std::max(squared, dot(edge, edge));
+  return std::sqrt(squared);
+}
 
 bool is_within(Double3 p, Double3 a, Double3 b, Double3 c, Double3 d) {
   const double sign = sixfold_volume(a, b, c, d) < 0 ? -1 : 1;
@@ -126,7 +133,6 @@ void BodyCells::find_tetrahedra(const Robot& robot) {
     const auto begin = neighbors_.begin() + first_neighbor_[mass], end = neighbors_.begin() + first_neighbor_[mass + 1];
     return std::span<const std::uint16_t>(std::upper_bound(begin, end, mass), end);
   };
-  const double least = 6 * flat * std::pow(static_cast<double>(longest_), 3);
   std::vector<std::uint16_t> common, third;
   for (std::uint32_t a = 0; a < robot.masses.size(); ++a)
     for (const std::uint16_t b : above(a)) {
@@ -141,7 +147,8 @@ void BodyCells::find_tetrahedra(const Robot& robot) {
           if (found == most_per_spring) break;
           const auto corner = [&](std::size_t mass) { return Double3(robot.masses[mass]); };
           const double volume = sixfold_volume(corner(a), corner(b), corner(c), corner(d));
-          if (std::abs(volume) < least) continue;
+          if (std::abs(volume) < 6 * flat * std::pow(longest_edge(corner(a), corner(b), corner(c), corner(d)), 3))
+            continue;
           ++found;
           const auto first = static_cast<std::uint16_t>(a);
           if (volume > 0)

@@ -62,6 +62,32 @@ TEST(BodyCells, TetrahedraCountWithTheirVolumes) {
   EXPECT_NEAR(cells.folding(positions).inverted, 0.25, 1e-6);
 }
 
+// A tapered cell of eight joined masses, whose narrow end turns by a few degrees: the masses of a side leave their
+// plane, and nothing is inside out. Pushed through the wide end, it is.
+TEST(BodyCells, ATwistedTaperedCellIsNotInsideOut) {
+  Robot robot{.materials = bodies::one_material({.stiffness = 50})};
+  for (int corner = 0; corner < 8; ++corner) {
+    const float wide = (corner & 1) != 0 ? 0.9f : 1.0f, high = (corner & 1) != 0 ? 0.95f : 1.0f;
+    robot.masses.push_back({(corner & 1) != 0 ? 1.0f : 0.0f, (corner & 2) != 0 ? wide / 2 : -wide / 2,
+                            (corner & 4) != 0 ? high / 2 : -high / 2});
+  }
+  for (std::uint16_t a = 0; a < 8; ++a)
+    for (std::uint16_t b = a + 1; b < 8; ++b) robot.springs.push_back({a, b, 1, rest_distance(robot, a, b)});
+  const BodyCells cells(robot);
+  ASSERT_GT(cells.size(), 0u);
+  for (const float angle : {-0.2f, 0.2f}) {
+    Positions positions = robot.masses;
+    for (Vec3& x : positions)
+      if (x.x > 0.5f)
+        x = {x.x, x.y * std::cos(angle) - x.z * std::sin(angle), x.y * std::sin(angle) + x.z * std::cos(angle)};
+    EXPECT_EQ(cells.folding(positions).inverted, 0) << angle;
+  }
+  Positions positions = robot.masses;
+  for (Vec3& x : positions)
+    if (x.x > 0.5f) x.x = -1;
+  EXPECT_GT(cells.folding(positions).inverted, 0.5);
+}
+
 // The last layer of masses of a bar goes beyond the layer before: the voxel between them is inside out.
 TEST(BodyCells, VoxelsAreCountedOneByOne) {
   const Robot robot = bodies::voxels({.x = 5, .y = 1, .z = 2, .edge = 1}, {.stiffness = 50});
