@@ -20,6 +20,7 @@ Generator voxel_generator();
 Generator nn_generator();
 Generator shell_generator();
 Generator cppn_generator();
+Generator tapered_generator();
 
 namespace {
 
@@ -111,7 +112,8 @@ Generator with_records(Generator generator) {
 
 const std::vector<Generator>& generators() {
   static const std::vector<Generator> all = [] {
-    std::vector<Generator> made{voxel_generator(), nn_generator(), shell_generator(), cppn_generator()};
+    std::vector<Generator> made{voxel_generator(), nn_generator(), shell_generator(), cppn_generator(),
+                                tapered_generator()};
     for (Generator& generator : made) generator = with_records(std::move(generator));
     return made;
   }();

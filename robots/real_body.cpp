@@ -17,7 +17,9 @@
 #include <vector>
 
 #include "mercury/error.h"
+#include "mercury/random.h"
 #include "mercury/voxels.h"
+#include "robots/hexahedra.h"
 #include "robots/number_text.h"
 #include "robots/origin_member.h"
 
@@ -97,6 +99,19 @@ std::string name_of_material(const Robot& robot, MaterialId id) {
              : robot.material_names[id];
 }
 
+// Actuators of materials that are now several.
+void rename_materials(std::vector<Actuator>& actuators, const std::multimap<MaterialId, MaterialId>& made) {
+  for (Actuator& actuator : actuators) {
+    std::vector<MaterialId> mine;
+    for (const auto& [of, id] : made)
+      if (std::ranges::find(actuator.materials, of) != actuator.materials.end()) mine.push_back(id);
+    std::ranges::sort(mine);
+    actuator.materials = std::move(mine);
+  }
+  // Those of materials that no voxel has, such as of springs along one axis alone.
+  std::erase_if(actuators, [](const Actuator& actuator) { return actuator.materials.empty(); });
+}
+
 void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMaterial& material, Robot& real) {
   // By the number of axes along which a spring runs: an edge, a diagonal across a side, one through the middle.
   constexpr std::array<double, 4> share{0, 0.15, 0.10, 0.15};
@@ -149,15 +164,70 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
     real.springs.push_back({static_cast<std::uint16_t>(spot.pair >> 16), static_cast<std::uint16_t>(spot.pair & 0xffff),
                             entry->second, length});
   }
-  for (Actuator& actuator : real.actuators) {
-    std::vector<MaterialId> mine;
-    for (const auto& [of, id] : ids)
-      if (std::ranges::find(actuator.materials, std::get<0>(of)) != actuator.materials.end()) mine.push_back(id);
-    std::ranges::sort(mine);
-    actuator.materials = std::move(mine);
+  std::multimap<MaterialId, MaterialId> made;
+  for (const auto& [of, id] : ids) made.emplace(std::get<0>(of), id);
+  rename_materials(real.actuators, made);
+}
+
+// Springs are as stiff as others of their material within some percent, since a table has at most 255 materials.
+void set_hexahedra_springs(const Robot& robot, std::span<const Hexahedron> cells, const RealMaterial& material,
+                           Robot& real) {
+  std::vector<MaterialId> of_springs;
+  for (const Spring& spring : robot.springs) of_springs.push_back(spring.material);
+  const std::vector<Substance> substances = substances_of(robot, material, of_springs);
+  std::vector<double> modulus, density;
+  for (const Substance& substance : substances) {
+    modulus.push_back(substance.modulus);
+    density.push_back(substance.density);
   }
-  // Those of materials that no voxel has, such as of springs along one axis alone.
-  std::erase_if(real.actuators, [](const Actuator& actuator) { return actuator.materials.empty(); });
+  auto [mass, stiffness] = sum_hexahedra(robot, cells, modulus, density);
+  real.mass.assign(mass.begin(), mass.end());
+  // A few short springs across a thin fin would need a step of time that is far shorter than the rest of the body does.
+  double length = 0;
+  for (const Hexahedron& cell : cells) length += static_cast<double>(rest_distance(robot, cell[0], cell[1]));
+  length /= static_cast<double>(cells.size());
+  for (std::size_t s = 0; s < stiffness.size(); ++s) {
+    const auto& [a, b, id, rest_length] = robot.springs[s];
+    const double most = 0.35 * modulus[id] / (density[id] * length * length) * std::min(mass[a], mass[b]);
+    stiffness[s] = std::min(stiffness[s], most);
+  }
+  const std::span<const Material> table = materials_of(robot);
+  for (double step = 1.04;; step *= 1.04) {
+    struct Sum {
+      double stiffness = 0;
+      int springs = 0;
+    };
+    std::map<std::pair<MaterialId, long>, Sum> kinds;
+    std::vector<std::pair<MaterialId, long>> kind_of_spring;
+    for (std::size_t s = 0; s < stiffness.size(); ++s) {
+      const long level = std::lround(portable_log(stiffness[s]) / portable_log(step));
+      kind_of_spring.emplace_back(robot.springs[s].material, level);
+      Sum& sum = kinds[kind_of_spring.back()];
+      sum.stiffness += stiffness[s];
+      ++sum.springs;
+    }
+    if (kinds.size() >= max_materials) {
+      if (step > 10) throw InputError("/materials", "the cells have too many materials for one table of springs");
+      continue;
+    }
+    real.materials.assign(1, Material{});
+    real.material_names.assign(1, "air");
+    std::map<std::pair<MaterialId, long>, MaterialId> ids;
+    std::multimap<MaterialId, MaterialId> made;
+    for (const auto& [kind, sum] : kinds) {
+      const auto id = static_cast<MaterialId>(real.materials.size());
+      Material own = table[kind.first];
+      own.stiffness = static_cast<float>(sum.stiffness / sum.springs);
+      own.relaxation_time = static_cast<float>(substances[kind.first].relaxation_time);
+      real.materials.push_back(own);
+      real.material_names.push_back(name_of_material(robot, kind.first));
+      ids.emplace(kind, id);
+      made.emplace(kind.first, id);
+    }
+    for (std::size_t s = 0; s < real.springs.size(); ++s) real.springs[s].material = ids[kind_of_spring[s]];
+    rename_materials(real.actuators, made);
+    return;
+  }
 }
 
 void set_network_springs(const Robot& robot, const RealMaterial& material, Robot& real) {
@@ -236,7 +306,10 @@ Robot with_real_body(const Robot& robot, const RealMaterial& material) {
   drop_cavities(real);
   Voxels voxels = voxels_of(robot);
   if (voxels.shares_pairs) voxels.all.clear();
-  if (voxels.all.empty())
+  const Generator* generator = generator_of(robot);
+  if (generator && generator->cells)
+    set_hexahedra_springs(robot, generator->cells(robot), material, real);
+  else if (voxels.all.empty())
     set_network_springs(robot, material, real);
   else
     set_voxel_springs(robot, voxels, material, real);

@@ -35,4 +35,7 @@ std::vector<Robot> found_network_robots();
 // All of the above.
 std::vector<Robot> all_robots();
 
+// Of real materials.
+std::vector<Robot> animals();
+
 }  // namespace mercury::library

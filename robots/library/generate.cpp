@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the sample robots: generate_library FOLDER
+// Writes the sample robots: generate_library FOLDER, such as robots/library. Those for the paper's physics come into paper/.
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -13,8 +13,11 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
+    const std::filesystem::path folder = argv[1];
+    for (const mercury::Robot& robot : mercury::library::animals())
+      mercury::save_robot(folder / (robot.name + ".json"), robot);
     for (const mercury::Robot& robot : mercury::library::all_robots())
-      mercury::save_robot(std::filesystem::path(argv[1]) / (robot.name + ".json"), robot);
+      mercury::save_robot(folder / "paper" / (robot.name + ".json"), robot);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "generate_library: %s\n", error.what());
     return 1;

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
 #include "mercury/error.h"
 #include "mercury/origin.h"
-#include "robots/parameter_table.h"
+#include "robots/genome_table.h"
 #include "robots/portable_math.h"
 #include "robots/shell/revolved_mesh.h"
 #include "robots/shell/shell_genome.h"
@@ -240,30 +239,6 @@ class Builder {
 // Turns a mesh into a robot of two layers, without name and origin. It has at most max_masses / 2 vertices.
 Robot shell_body(const ShellGenome& genome, const RevolvedMesh& mesh) { return Builder(genome, mesh).build(); }
 
-std::string origin_of(const ShellGenome& genome) {
-  nlohmann::ordered_json origin{{"kind", "shell"}};
-  if (!genome.environment.empty()) origin["environment"] = genome.environment;
-  for (const auto& row : shell_genome_table())
-    std::visit(
-        [&]<class Value>(const Value& value) {
-          if constexpr (!std::is_same_v<Value, SizeRange>) origin[row.description.name] = value;
-        },
-        row.get(genome));
-  return origin.dump();
-}
-
-// A value of the kind that the default has.
-ParameterValue read(const nlohmann::json& origin, const GeneratorParameter& description) {
-  const std::string place = "/origin/" + description.name;
-  const auto found = origin.find(description.name);
-  if (found == origin.end()) throw InputError(place, "is missing");
-  if (std::holds_alternative<std::string>(description.initial) && found->is_string()) return found->get<std::string>();
-  if (std::holds_alternative<double>(description.initial) && found->is_number()) return found->get<double>();
-  if (std::holds_alternative<std::int64_t>(description.initial) && found->is_number_integer())
-    return found->get<std::int64_t>();
-  throw InputError(place, "give " + accepted_values(description));
-}
-
 }  // namespace
 
 void check_shell_thickness(double thickness, double diameter) {
@@ -284,25 +259,13 @@ Robot grow(const ShellGenome& genome, const std::string& name) {
                          "the shell would have more than " + std::to_string(max_masses) + " masses; give fewer");
   Robot robot = shell_body(genome, mesh);
   robot.name = name;
-  robot.origin = origin_of(genome);
+  robot.origin = origin_of("shell", shell_genome_table(), genome);
   return robot;
 }
 
 std::optional<ShellGenome> shell_genome_of(const Robot& robot) {
   if (kind_of(robot) != "shell") return std::nullopt;
-  const auto origin = nlohmann::json::parse(robot.origin, nullptr, false);
-  ShellGenome genome;
-  genome.environment = environment_of(robot);
-  for (const auto& row : shell_genome_table()) {
-    const ParameterValue value = read(origin, row.description);
-    try {
-      check(row.description, value);
-    } catch (const ParameterError& error) {
-      throw InputError("/origin/" + error.parameter(), error.problem());
-    }
-    row.set(genome, value);
-  }
-  return genome;
+  return genome_in(robot, shell_genome_table());
 }
 
 }  // namespace mercury

@@ -11,7 +11,7 @@
 
 #include "mercury/error.h"
 #include "mercury/random.h"
-#include "robots/parameter_table.h"
+#include "robots/genome_table.h"
 #include "robots/shell/shell_genome.h"
 
 namespace mercury {
@@ -21,41 +21,7 @@ const GenesKind& shell_genes();
 namespace {
 
 const std::vector<std::string> form_names{"bell", "tube", "ring", "pod"};
-
-// The genome with the chosen numbers moved. Every number draws, so that its step does not depend on the choice.
-template <class Chosen>
-ShellGenome moved(const ShellGenome& genome, double strength, std::uint64_t seed, Chosen chosen) {
-  Random random(seed);
-  ShellGenome child = genome;
-  for (const auto& row : shell_genome_table()) {
-    const double drawn = random.normal();
-    if (!row.description.highest || !chosen(row.description.name)) continue;
-    const double low = row.description.lowest, high = *row.description.highest;
-    const double step = 0.04 * strength * (high - low) * drawn;
-    ParameterValue value = row.get(child);
-    if (auto* number = std::get_if<double>(&value)) *number = std::clamp(*number + step, low, high);
-    if (auto* whole = std::get_if<std::int64_t>(&value))
-      *whole = static_cast<std::int64_t>(std::clamp(std::round(static_cast<double>(*whole) + step), low, high));
-    row.set(child, value);
-  }
-  return child;
-}
-
-// moved(), drawn again where it changes nothing; at last the number `nudged` moves by a millionth of its range, towards
-// the middle.
-template <class Chosen>
-ShellGenome surely_moved(const ShellGenome& genome, double strength, std::uint64_t seed, Chosen chosen,
-                         double ShellGenome::*nudged, double lowest, double highest) {
-  if (strength == 0) return genome;
-  constexpr std::uint64_t attempts = 30;
-  for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
-    ShellGenome child = moved(genome, strength, attempt == 0 ? seed : seed_of(seed, attempt), chosen);
-    if (child != genome) return child;
-  }
-  ShellGenome child = genome;
-  child.*nudged += (child.*nudged > (lowest + highest) / 2 ? -1e-6 : 1e-6) * (highest - lowest);
-  return child;
-}
+constexpr double step = 0.04;  // of a mutation, over the range of a number
 
 }  // namespace
 
@@ -95,7 +61,7 @@ ShellGenome mutate(const ShellGenome& genome, double strength, std::uint64_t see
   const auto chosen = [](const std::string& name) {
     return name != "diameter" && name != "thickness" && name != "segments";
   };
-  return surely_moved(genome, strength, seed, chosen, &ShellGenome::height, 0.2, 3);
+  return surely_moved(genome, shell_genome_table(), step * strength, seed, chosen, &ShellGenome::height, 0.2, 3);
 }
 
 ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed) {
@@ -103,7 +69,7 @@ ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint
     return name == "waves_around" || name == "waves_along" || name == "active" || name == "contraction" ||
            name == "bending" || name == "frequency";
   };
-  return surely_moved(genome, strength, seed, chosen, &ShellGenome::frequency, 0, 20);
+  return surely_moved(genome, shell_genome_table(), step * strength, seed, chosen, &ShellGenome::frequency, 0, 20);
 }
 
 ShellGenome crossover(const ShellGenome& a, const ShellGenome& b, std::uint64_t seed) {

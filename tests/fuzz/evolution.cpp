@@ -122,7 +122,7 @@ std::vector<std::string> journal_seeds() {
 void check_genome(std::string_view input) {
   static const std::vector<std::unique_ptr<GenomeSpace>> spaces = [] {
     std::vector<std::unique_ptr<GenomeSpace>> made;
-    for (const char* kind : {"voxel", "cppn", "nn", "shell"}) made.push_back(make_genome_space({.kind = kind}));
+    for (const char* kind : {"voxel", "cppn", "nn", "shell", "tapered"}) made.push_back(make_genome_space({.kind = kind}));
     return made;
   }();
   if (input.empty()) return;
@@ -139,7 +139,7 @@ void check_genome(std::string_view input) {
 std::vector<std::string> genome_seeds() {
   std::vector<std::string> seeds;
   char choice = 0;
-  for (const char* kind : {"voxel", "cppn", "nn", "shell"}) {
+  for (const char* kind : {"voxel", "cppn", "nn", "shell", "tapered"}) {
     const auto space = make_genome_space({.kind = kind});
     seeds.push_back(choice++ + space->random(1, 0)->encode());
   }

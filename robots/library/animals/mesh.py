@@ -30,7 +30,7 @@ for axis, end in itertools.product(range(3), (0, 1)):
     corner[:, axis], corner[:, (axis + 1) % 3], corner[:, (axis + 2) % 3] = end, *zip(*turn)
     SIDES.append(list(corner @ (4, 2, 1)))
 
-MOST_MATERIALS = 200
+MOST_MATERIALS = 250
 
 
 class Mesh:
@@ -107,6 +107,37 @@ def _shares(logs: tuple[float, ...]) -> dict[int, float]:
 
 
 Muscle = tuple[float, float, float]  # amplitude [1], frequency [rad/s], phase [rad]
+
+
+def muscles_for(
+    mesh: Mesh,
+    pose: Callable[[float], Any],
+    frequency: float,
+    *,
+    harmonics: int = 1,
+    step: float = 0.02,
+    phases: int = 12,
+) -> Callable[[int, int], tuple[Muscle, ...]]:
+    """Muscles whose rest lengths follow a motion: pose(t) are the points (n, 3) at t of 0 to 1, over one period [Hz].
+
+    So all springs of a body want to be in the same pose, and none of them buckles. Of the motion of each length they have the
+    first harmonics, amplitudes in steps, phases in parts of a turn.
+    """
+    samples = 32
+    poses = np.array([pose(i / samples) for i in range(samples)])
+
+    def muscles(a: int, b: int) -> tuple[Muscle, ...]:
+        lengths = np.linalg.norm(poses[:, a] - poses[:, b], axis=1)
+        parts = np.fft.rfft(lengths / lengths.mean()) * 2 / samples
+        found = []
+        for n in range(1, harmonics + 1):
+            amplitude = step * round(harmonics * abs(parts[n]) / step)
+            turn = (np.angle(parts[n]) / (2 * math.pi) + 0.25) % 1
+            turn = round(turn * phases) / phases % 1 if amplitude else 0
+            found.append((digits(amplitude, 3), 2 * math.pi * frequency * n if amplitude else 0, 2 * math.pi * turn))
+        return tuple(found) if any(amplitude for amplitude, _, _ in found) else ()
+
+    return muscles
 
 
 def document(

@@ -63,7 +63,7 @@ class BashCompletion : public Completion {
 
 TEST_F(BashCompletion, KnowsCommandsAndKinds) {
   EXPECT_THAT(offers("ru"), ElementsAre("run"));
-  EXPECT_THAT(offers("new ''"), ElementsAre("voxel", "nn", "shell", "cppn"));
+  EXPECT_THAT(offers("new ''"), ElementsAre("voxel", "nn", "shell", "cppn", "tapered"));
   EXPECT_THAT(offers("help mu"), ElementsAre("mutate"));
   EXPECT_THAT(offers("-q --solver xpbd be"), ElementsAre("bench"));
   EXPECT_THAT(offers("''"), Contains("describe-options"));
@@ -109,7 +109,7 @@ TEST_F(Completion, FishOffersTheSame) {
                       "source ./script\ncomplete -C '" + line + "' | string replace -r '\\t.*' ''\n");
   };
   EXPECT_THAT(offers("mercury ru"), ElementsAre("run"));
-  EXPECT_THAT(offers("mercury new "), UnorderedElementsAre("voxel", "nn", "shell", "cppn"));
+  EXPECT_THAT(offers("mercury new "), UnorderedElementsAre("voxel", "nn", "shell", "cppn", "tapered"));
   EXPECT_THAT(offers("mercury run --sol"), ElementsAre("--solver"));
   EXPECT_THAT(offers("mercury run --solver "), UnorderedElementsAre("force", "xpbd"));
   EXPECT_THAT(offers("mercury run e"), ElementsAre("eel.json"));

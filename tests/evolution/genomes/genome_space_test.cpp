@@ -184,7 +184,7 @@ TEST_P(EveryGenome, DamagedBytesGiveAGenomeOrALine) {
 
 std::vector<Case> cases() {
   std::vector<Case> all{{"given", Genes::muscles}};
-  for (const std::string kind : {"voxel", "cppn", "shell", "nn"})
+  for (const std::string kind : {"voxel", "cppn", "shell", "nn", "tapered"})
     for (const Genes genes : {Genes::body, Genes::muscles, Genes::both})
       if (kind != "nn" || MERCURY_NN) all.push_back({kind, genes});
   return all;

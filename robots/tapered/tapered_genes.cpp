@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+#include <utility>
+
+#include "mercury/error.h"
+#include "robots/genes.h"
+#include "robots/tapered/tapered.h"
+
+namespace mercury {
+namespace {
+
+struct TaperedGenes {
+  static constexpr std::uint8_t tag = 6;
+  TaperedGenome genome;
+
+  static TaperedGenes of(const Robot& robot) {
+    std::optional<TaperedGenome> genome = tapered_genome_of(robot);
+    if (!genome) throw InputError("/origin", "holds no tapered robot");
+    genome->environment.clear();
+    return {*std::move(genome)};
+  }
+
+  TaperedGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
+    if (genes == Genes::body) return {mutate(genome, strength, seed, is_of_body)};
+    if (genes == Genes::muscles) return {mutate(genome, strength, seed, is_of_muscles)};
+    return {mutate(genome, strength, seed)};
+  }
+
+  TaperedGenes crossed(const TaperedGenes& other, Genes genes, std::uint64_t seed) const {
+    const TaperedGenome child = crossover(genome, other.genome, seed);
+    TaperedGenome kept = genome;
+    for (const auto& row : tapered_genome_table())
+      if ((genes != Genes::muscles && is_of_body(row.description.name)) ||
+          (genes != Genes::body && is_of_muscles(row.description.name)))
+        row.set(kept, row.get(child));
+    return {std::move(kept)};
+  }
+
+  Robot grown(const std::string& name, const std::string& environment) const {
+    TaperedGenome whole = genome;
+    whole.environment = environment;
+    return grow(whole, name);
+  }
+
+  // The bending, then each number in the order of the table, which is kept.
+  void write(ByteWriter& writer) const {
+    writer.add(static_cast<std::uint8_t>(genome.bending));
+    for (const auto& row : tapered_genome_table()) {
+      const ParameterValue value = row.get(genome);
+      if (const auto* whole = std::get_if<std::int64_t>(&value)) writer.add(static_cast<std::uint32_t>(*whole));
+      if (const auto* number = std::get_if<double>(&value)) writer.add(*number);
+    }
+  }
+
+  static TaperedGenes read(ByteReader& reader) {
+    TaperedGenes genes;
+    const auto bending = reader.read<std::uint8_t>();
+    if (bending > static_cast<std::uint8_t>(TaperedBending::up_down))
+      throw InputError("genome", "bends in no known direction");
+    genes.genome.bending = static_cast<TaperedBending>(bending);
+    for (const auto& row : tapered_genome_table()) {
+      if (std::holds_alternative<std::int64_t>(row.description.initial))
+        row.set(genes.genome, static_cast<std::int64_t>(reader.read<std::uint32_t>()));
+      if (std::holds_alternative<double>(row.description.initial)) row.set(genes.genome, reader.read<double>());
+    }
+    validate(genes.genome);
+    return genes;
+  }
+
+  void add_identity(IdentityHash& hash) const {
+    ByteWriter writer;
+    write(writer);
+    hash.add(std::move(writer).take());
+  }
+};
+
+}  // namespace
+
+const GenesKind& tapered_genes() {
+  static constexpr GenesKind kind = genes_kind<TaperedGenes>();
+  return kind;
+}
+
+}  // namespace mercury
