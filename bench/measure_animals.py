@@ -27,7 +27,7 @@ import mercurysim
 
 ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = ROOT / "robots" / "library"
-SECONDS, SETTLE = 20, 1  # all muscles set in at once, so a body is jerked at the start
+SECONDS, SETTLE = 20, 1  # all muscles set in at once, so the first second is no gait
 GRAVITY = 9.81
 HEAD = "| animal | lives in | masses | length | median (quartiles) from 1 s to 20 s | body lengths/s | Strouhal | cost of transport | verdict |"
 

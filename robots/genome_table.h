@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Genomes that are a struct of numbers with a table (parameter_table.h): what the origin keeps of them, and how they move.
+// Genomes that are a struct of numbers with a table (parameter_table.h): what the origin keeps of them, and how they
+// move.
 #pragma once
 
 #include <algorithm>
@@ -61,8 +62,8 @@ Genome genome_in(const Robot& robot, const ParameterTable<Genome>& table) {
   return genome;
 }
 
-// The genome with the chosen numbers moved by a normal number times `size` times their range. Every number draws, so that
-// its step does not depend on the choice.
+// The genome with the chosen numbers moved by a normal number times `size` times their range. Every number draws, so
+// that its step does not depend on the choice.
 template <class Genome, class Chosen>
 Genome moved(const Genome& genome, const ParameterTable<Genome>& table, double size, std::uint64_t seed,
              Chosen chosen) {

@@ -50,7 +50,8 @@ std::array<double, 8> spring_shares(const Vector& sizes) {
     for (std::size_t i = 0; i < 3; ++i)
       if (axes >> i & 1) squared += n[i] = sizes[i] * sizes[i];
     for (double& part : n) part /= squared;
-    moduli[axes] = {4 * n[0] * n[0], 4 * n[1] * n[1], 4 * n[2] * n[2], 4 * n[0] * n[1], 4 * n[1] * n[2], 4 * n[2] * n[0]};
+    moduli[axes] = {4 * n[0] * n[0], 4 * n[1] * n[1], 4 * n[2] * n[2],
+                    4 * n[0] * n[1], 4 * n[1] * n[2], 4 * n[2] * n[0]};
   }
   std::array<std::array<double, 8>, 8> normal{};
   std::array<double, 8> right{};

@@ -156,6 +156,12 @@ std::string kind_for(const GenomeSpaceRequest& request) {
   return kind_of(first);
 }
 
+// A real body of hexahedra has several materials per muscle, which its genes move together.
+bool moves_materials_together(const Robot& robot) {
+  const Generator* generator = generator_of(robot);
+  return generator && generator->cells && generator->genes;
+}
+
 }  // namespace
 
 void write_head(ByteWriter& writer, std::uint8_t tag) {
@@ -178,7 +184,9 @@ Physics physics_of(const GenomeSpaceRequest& request) {
 
 std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request) {
   if (!request.environment.empty()) environment_named(request.environment);  // or it throws
-  if (!request.founders.empty() && request.genes == Genes::muscles) return make_given_body_space(request);
+  if (!request.founders.empty() && request.genes == Genes::muscles &&
+      !std::ranges::all_of(request.founders, moves_materials_together))
+    return make_given_body_space(request);
   const Generator& generator = generator_named(kind_for(request));
   if (!generator.genes) throw ParameterError("kind", generator.kind + " robots cannot be evolved");
   GenomeSpaceRequest whole = request;

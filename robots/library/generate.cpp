@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the sample robots: generate_library FOLDER, such as robots/library. Those for the paper's physics come into paper/.
+// Writes the sample robots: generate_library FOLDER, such as robots/library. Those for the paper's physics come into
+// paper/.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

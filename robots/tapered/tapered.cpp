@@ -19,7 +19,7 @@
 namespace mercury {
 namespace {
 
-constexpr MaterialId passive = 1;     // tissue; muscles follow
+constexpr MaterialId passive = 1;        // tissue; muscles follow
 constexpr float muscle_stiffness = 900;  // of a body as in the paper [N/m], as in shells
 // A spring at an angle to the body follows those along it.
 constexpr double at_an_angle = 0.6;
@@ -89,8 +89,8 @@ class Builder {
       for (const int side : {-1, 1})
         for (int layer = 0; layer <= g_.layers; ++layer) {
           const double height = 2.0 * layer / g_.layers - 1;
-          points.push_back({1 - at - 0.5, side * depth * g_.width / 2 * (1 - (1 - g_.edge) * height * height),
-                            depth / 2 * height});
+          points.push_back(
+              {1 - at - 0.5, side * depth * g_.width / 2 * (1 - (1 - g_.edge) * height * height), depth / 2 * height});
         }
     }
     const auto corner = [&](int station, int layer) { return points[lattice_.point(station, 1, layer)]; };

@@ -20,7 +20,8 @@ bool is_of_body(std::string_view number);
 bool is_of_muscles(std::string_view number);
 
 // mutate() for the numbers that `chosen` accepts.
-TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed, bool (*chosen)(std::string_view));
+TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed,
+                     bool (*chosen)(std::string_view));
 
 // The cells of a robot by its origin.
 std::vector<Hexahedron> tapered_cells(const Robot& robot);

@@ -21,11 +21,10 @@ const std::vector<std::string> bendings{"sideways", "up-down"};
 template <std::size_t n>
 TableRow<TaperedGenome> element(std::array<double, n> TaperedGenome::*member, std::size_t index, const char* name,
                                 double lowest, double highest) {
-  return row_of<TaperedGenome>({.name = name + std::to_string(index + 1), .lowest = lowest, .highest = highest},
-                               [=](const TaperedGenome& genome) { return (genome.*member)[index]; },
-                               [=](TaperedGenome& genome, const ParameterValue& value) {
-                                 (genome.*member)[index] = std::get<double>(value);
-                               });
+  return row_of<TaperedGenome>(
+      {.name = name + std::to_string(index + 1), .lowest = lowest, .highest = highest},
+      [=](const TaperedGenome& genome) { return (genome.*member)[index]; },
+      [=](TaperedGenome& genome, const ParameterValue& value) { (genome.*member)[index] = std::get<double>(value); });
 }
 
 TaperedGenome genome_in(const Robot& robot) {
@@ -53,11 +52,9 @@ const ParameterTable<TaperedOptions>& option_table() {
                                    .lowest = 0.1,
                                    .highest = 1e5,
                                    .usual_highest = 100}),
-      parameter(&Options::stations, {.name = "stations",
-                                     .help = "Cells from nose to tail",
-                                     .lowest = 4,
-                                     .highest = 100,
-                                     .usual_highest = 40}),
+      parameter(
+          &Options::stations,
+          {.name = "stations", .help = "Cells from nose to tail", .lowest = 4, .highest = 100, .usual_highest = 40}),
       parameter(&Options::layers, {.name = "layers",
                                    .help = "Cells from one edge to the other",
                                    .lowest = 1,
@@ -93,7 +90,9 @@ const ParameterTable<TaperedGenome>& tapered_genome_table() {
   return rows;
 }
 
-bool is_of_body(std::string_view number) { return number == "width" || number == "edge" || number.starts_with("depth_"); }
+bool is_of_body(std::string_view number) {
+  return number == "width" || number == "edge" || number.starts_with("depth_");
+}
 
 bool is_of_muscles(std::string_view number) {
   return number == "frequency" || number == "waves" || number.starts_with("contraction_");

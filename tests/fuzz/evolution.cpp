@@ -122,7 +122,8 @@ std::vector<std::string> journal_seeds() {
 void check_genome(std::string_view input) {
   static const std::vector<std::unique_ptr<GenomeSpace>> spaces = [] {
     std::vector<std::unique_ptr<GenomeSpace>> made;
-    for (const char* kind : {"voxel", "cppn", "nn", "shell", "tapered"}) made.push_back(make_genome_space({.kind = kind}));
+    for (const char* kind : {"voxel", "cppn", "nn", "shell", "tapered"})
+      made.push_back(make_genome_space({.kind = kind}));
     return made;
   }();
   if (input.empty()) return;

@@ -22,8 +22,8 @@ namespace mercury {
 namespace {
 
 using testing::DoubleNear;
-using testing::ElementsAre;
 using testing::Each;
+using testing::ElementsAre;
 using testing::Ge;
 using testing::StartsWith;
 
@@ -49,16 +49,18 @@ std::array<double, 6> moduli_of(const std::array<double, 3>& sizes) {
 }
 
 TEST(Hexahedra, ACubeHasTheSpringsOfAVoxel) {
-  EXPECT_THAT(spring_shares({0.3, 0.3, 0.3}),
-              ElementsAre(0, DoubleNear(0.15, 1e-6), DoubleNear(0.15, 1e-6), DoubleNear(0.2, 1e-6),
-                          DoubleNear(0.15, 1e-6), DoubleNear(0.2, 1e-6), DoubleNear(0.2, 1e-6), DoubleNear(0.45, 1e-6)));
+  EXPECT_THAT(
+      spring_shares({0.3, 0.3, 0.3}),
+      ElementsAre(0, DoubleNear(0.15, 1e-6), DoubleNear(0.15, 1e-6), DoubleNear(0.2, 1e-6), DoubleNear(0.15, 1e-6),
+                  DoubleNear(0.2, 1e-6), DoubleNear(0.2, 1e-6), DoubleNear(0.45, 1e-6)));
 }
 
 // E and Poisson's ratio 1/4 need C_iiii = 1.2 and C_iijj = 0.4. Longer boxes cannot have both.
 TEST(Hexahedra, BoxesAreAsIsotropicAsSpringsCanBe) {
   const std::array<double, 6> nearly = moduli_of({1, 1.2, 0.9});
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(nearly[i], i < 3 ? 1.2 : 0.4, 0.01) << i;
-  for (const std::array<double, 3>& sizes : {std::array{1.0, 1.2, 0.9}, {1.0, 0.7, 0.8}, {2.0, 1.0, 1.0}, {1.0, 1.0, 0.4}}) {
+  for (const std::array<double, 3>& sizes :
+       {std::array{1.0, 1.2, 0.9}, {1.0, 0.7, 0.8}, {2.0, 1.0, 1.0}, {1.0, 1.0, 0.4}}) {
     const std::array<double, 6> moduli = moduli_of(sizes);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(moduli[i], 1.2, 0.2) << sizes[0] << ' ' << sizes[1] << ' ' << i;
     EXPECT_THAT(spring_shares(sizes), Each(Ge(0.0)));

@@ -121,8 +121,8 @@ struct Generator {
   // cannot be mixed: sizes, environment, a table without base materials. Depends on the arguments alone. Throws
   // InputError as regrow and make, and for parents that are too different. Its origin names both.
   std::function<Robot(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name)> cross;
-  // Eight corners of each cell, x fastest, then y, then z, of a robot made of hexahedra that are no cubes; none otherwise.
-  // A real body of it has springs and masses by their sizes.
+  // Eight corners of each cell, x fastest, then y, then z, of a robot made of hexahedra that are no cubes; none
+  // otherwise. A real body of it has springs and masses by their sizes.
   std::function<std::vector<std::array<std::uint16_t, 8>>(const Robot& robot)> cells;
   const GenesKind* genes = nullptr;  // what evolution changes; nullptr = these robots cannot be evolved
 };

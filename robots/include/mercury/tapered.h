@@ -41,11 +41,12 @@ struct TaperedGenome {
   double volume = 30;  // of the body [liters], 0.1 to 1e5; with the depths it sets the length
   // From edge to edge, at depth_places, over the length; 0.01 to 0.5 each.
   std::array<double, 11> depths{0.05, 0.07, 0.09, 0.1, 0.1, 0.1, 0.09, 0.08, 0.07, 0.06, 0.04};
-  double width = 0.55;    // distance of the skins in the middle, over the depth, 0.1 to 2
-  double edge = 0.6;      // distance of the skins at both edges, over that in the middle, 0.1 to 1
-  double frequency = 2;   // of the muscles [Hz], 0.1 to 5
-  double waves = 1.7;     // of the muscles on the body, -3 to 3; below 0 they run from the tail to the nose
-  std::array<double, 6> contractions{0.15, 0.2, 0.2, 0.2, 0.2, 0.15};  // amplitudes at contraction_places, 0 to 0.4 each
+  double width = 0.55;   // distance of the skins in the middle, over the depth, 0.1 to 2
+  double edge = 0.6;     // distance of the skins at both edges, over that in the middle, 0.1 to 1
+  double frequency = 2;  // of the muscles [Hz], 0.1 to 5
+  double waves = 1.7;    // of the muscles on the body, -3 to 3; below 0 they run from the tail to the nose
+  std::array<double, 6> contractions{0.15, 0.2, 0.2,
+                                     0.2,  0.2, 0.15};  // amplitudes at contraction_places, 0 to 0.4 each
   std::string environment;  // where the robot belongs ("water"), kept in its origin; empty = not recorded
   friend bool operator==(const TaperedGenome&, const TaperedGenome&) = default;
 };
@@ -57,13 +58,13 @@ void validate(const TaperedGenome& genome);
 // own: tissue, and two muscles per segment and skin, along the body and at an angle. Throws ParameterError as validate.
 Robot grow(const TaperedGenome& genome, const std::string& name = {});
 
-// The genome in a robot's origin; none if the robot is not a tapered one. Throws InputError("/origin/layers", ...) if the
-// origin is of kind "tapered" but cannot be used.
+// The genome in a robot's origin; none if the robot is not a tapered one. Throws InputError("/origin/layers", ...) if
+// the origin is of kind "tapered" but cannot be used.
 std::optional<TaperedGenome> tapered_genome_of(const Robot& robot);
 
-// The genome with about a third of its numbers moved by a normal number times `strength` times 2 % of their range. Cells,
-// segments, volume and the direction of bending stay. With a strength above 0 at least one number changes. Depends on the
-// arguments alone.
+// The genome with about a third of its numbers moved by a normal number times `strength` times 2 % of their range.
+// Cells, segments, volume and the direction of bending stay. With a strength above 0 at least one number changes.
+// Depends on the arguments alone.
 TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed);
 
 // A child of two: each number from either with probability 1/2; what mutations keep is the first's. Depends on the

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the sample animals.
+"""Writes the sample animals that no generator makes.
 
     PYTHONPATH=build/python python3 robots/library/animals robots/library [NAME ...]
 """

@@ -13,6 +13,7 @@
 #include "mercury/origin.h"
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
+#include "mercury/real_body.h"
 #include "mercury/voxel.h"
 #include "tests/refusal.h"
 
@@ -273,6 +274,23 @@ TEST(GenomeSpaces, RefuseFoundersThatCannotBeUsed) {
   EXPECT_THAT(refused({.environment = "moon"}), HasSubstr("moon"));
   EXPECT_EQ(refusal([] { genes_named("all"); }), "genes: \"all\" is not accepted; give body, muscles or both");
   EXPECT_EQ(genes_named(name_of(Genes::both)), Genes::both);
+}
+
+// A muscle of a real tapered robot is several materials, since its springs are of several stiffnesses.
+TEST(GenomeSpaces, MusclesOfTaperedFoundersStayWhole) {
+  const Robot founder = with_real_body(generator_named("tapered").make({}, "water", 1, 0), {.modulus = 1e6f});
+  const auto space = make_genome_space({.genes = Genes::muscles, .founders = {founder}});
+  EXPECT_EQ(space->random(1, 0)->grow(founder.name).springs, founder.springs);
+  EXPECT_EQ(space->random(1, 0)->grow(founder.name).materials, founder.materials);
+  const Robot child = space->random(1, 5)->grow("child");
+  EXPECT_EQ(child.masses, founder.masses);
+  EXPECT_EQ(child.mass, founder.mass);
+  EXPECT_EQ(child.springs, founder.springs);
+  EXPECT_NE(child.materials, founder.materials);
+  std::map<std::string, std::set<std::pair<float, float>>> laws;  // by the muscle's name
+  for (std::size_t id = 1; id < child.materials.size(); ++id)
+    laws[child.material_names[id]].emplace(child.materials[id].amplitude, child.materials[id].phase);
+  for (const auto& [name, different] : laws) EXPECT_EQ(different.size(), 1u) << name;
 }
 
 TEST(GenomeIdentity, IsThatOfTheBodyThatGrows) {
