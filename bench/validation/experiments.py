@@ -105,8 +105,8 @@ def beat(name: str) -> tuple[float, float]:
     source=CATSHARK_SOURCE,
     kind="real",
     remark="Expected is the animals' mean at 1.25 to 1.75 body lengths per second; slower animals beat more, 0.66 at 0.5 body "
-    "lengths per second. The sample eel was searched for with this number as its goal (docs/library.md), so the row shows that a "
-    "body by Mercury's equations can swim so, not that it must. The eel of the paper's physics has 2.2.",
+    "lengths per second. The sample eel and fish were searched for with this number as their goal (docs/library.md), so the rows "
+    "show that bodies by Mercury's equations can swim so, not that they must. The eel of the paper's physics has 2.2.",
 )
 def animals(short: bool) -> Result:
     expected = float(np.mean([CATSHARK[speed] for speed in (1.25, 1.5, 1.75)]))

@@ -56,8 +56,9 @@ struct RealMaterial {
 // carries just its own share, so a bar has the modulus E however many voxels it has across. Voxels of different
 // materials that share a spring give it one spring each.
 //
-// A robot of hexahedra (Generator::cells): the same with the springs and masses of each by its sizes (robots/hexahedra.h).
-// Springs are at most 0.35 E / (rho h^2) as stiff as the smaller mass at their ends, h the mean length of the cells.
+// A robot of hexahedra (Generator::cells): the same with the springs and masses of each by its sizes
+// (robots/hexahedra.h). Springs are at most 0.35 E / (rho h^2) as stiff as the smaller mass at their ends, h the mean
+// length of the cells.
 //
 // Any other robot: all springs times one factor, so that an isotropic network of muscles has the modulus on average
 // (sum of k L0^2 = 6 E V, with the volume V within the skin), and masses in proportion to the L0^2 of their springs.

@@ -287,10 +287,10 @@ TEST(GenomeSpaces, MusclesOfTaperedFoundersStayWhole) {
   EXPECT_EQ(child.mass, founder.mass);
   EXPECT_EQ(child.springs, founder.springs);
   EXPECT_NE(child.materials, founder.materials);
-  std::map<std::string, std::set<std::pair<float, float>>> laws;  // by the muscle's name
+  std::map<std::string, std::set<std::pair<float, float>>> movements;  // by the muscle's name
   for (std::size_t id = 1; id < child.materials.size(); ++id)
-    laws[child.material_names[id]].emplace(child.materials[id].amplitude, child.materials[id].phase);
-  for (const auto& [name, different] : laws) EXPECT_EQ(different.size(), 1u) << name;
+    movements[child.material_names[id]].emplace(child.materials[id].amplitude, child.materials[id].phase);
+  for (const auto& [name, different] : movements) EXPECT_EQ(different.size(), 1u) << name;
 }
 
 TEST(GenomeIdentity, IsThatOfTheBodyThatGrows) {
