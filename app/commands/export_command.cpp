@@ -182,7 +182,7 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
     throw InputError("--seconds", fmt::format("{} holds {}; give {}", format.name,
                                               holds_motion(format) ? "the motion of a recording" : "one pose",
                                               format_names(holds_simulated_motion)));
-  if (!(seconds > 0)) throw InputError("--seconds", "0 is not accepted for a motion; give more");
+  if (options.for_seconds && !(seconds > 0)) throw InputError("--seconds", "0 is not accepted for a motion; give more");
   std::vector<std::shared_ptr<const Robot>> chosen;
   ExportNotes chosen_notes = notes;
   chosen_notes.captions.clear();
@@ -200,11 +200,12 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
   {
     Simulation simulation(configuration, chosen, shown_work());
     for (const std::string& note : simulation.notes()) warn(note);
-    Progress progress("simulating", "frames", motion_frames(configuration, seconds));
-    record_motion(simulation, seconds, recording.path(), options.robots.seed(), [&](std::int64_t frames) {
-      throw_if_interrupted();
-      progress.update(frames);
-    });
+    Progress progress("simulating", "frames", motion_frames(seconds));
+    chosen_notes.final_states =
+        record_motion(simulation, seconds, recording.path(), options.robots.seed(), [&](std::int64_t frames) {
+          throw_if_interrupted();
+          progress.update(frames);
+        }).final_states;
   }
   const auto reader = std::make_shared<TrajectoryReader>(recording.path());
   std::vector<RecordedMotion> motions;
@@ -219,11 +220,13 @@ int export_robots(const ExportOptions& options) {
   const LoadedRobots loaded = options.robots.load({});
   const Targets targets(options, names_of_robots(loaded.robots));
   const bool moves = options.for_seconds || (!holds_pose(targets.format()) && holds_simulated_motion(targets.format()));
-  if (!moves) return export_poses(options, loaded, targets);
+  // Formats that hold several robots take them from a recording, at rest one of a single frame.
+  const bool together = targets.together() && targets.robots().size() > 1;
+  if (!moves && (!together || !options.for_simulation.empty())) return export_poses(options, loaded, targets);
   std::vector<std::string> notes;
   const Configuration configuration = options.simulation.configuration(loaded.environments, notes, loaded.physics);
   for (const std::string& note : notes) warn(note);
-  return export_simulated(options, configuration, loaded.robots, targets, options.simulation.seconds(),
+  return export_simulated(options, configuration, loaded.robots, targets, moves ? options.simulation.seconds() : 0,
                           {.title = {}, .command = options.command, .captions = {}});
 }
 

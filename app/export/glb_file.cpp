@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 in one binary file. glTF has y up; the node turns the robot, whose numbers stay as they are.
+// glTF 2.0 in one binary file. glTF has y up; a node turns the robots, whose numbers stay as they are.
 //
 // A motion has a morph target per frame, the difference from the first frame. The weight of target k is 1 at the time
 // of frame k and 0 at all others; viewers interpolate linearly between frames.
@@ -88,7 +88,10 @@ ordered_json material_of(const ExportedMaterial& material) {
 }
 
 // A primitive per material, without normals: viewers then shade each face flat.
-void add_primitives(Document& document, const SkinShape& shape, std::size_t positions, const ordered_json& targets) {
+void add_primitives(Document& document, const std::string& name, const SkinShape& shape, std::size_t positions,
+                    const ordered_json& targets) {
+  const std::size_t first_material = document.json["materials"].size();
+  for (const ExportedMaterial& material : shape.materials) document.json["materials"].push_back(material_of(material));
   ordered_json primitives = ordered_json::array();
   const auto add = [&](const std::vector<std::uint16_t>& indices, std::size_t material, bool are_lines) {
     if (indices.empty()) return;
@@ -106,28 +109,40 @@ void add_primitives(Document& document, const SkinShape& shape, std::size_t posi
       std::vector<std::uint16_t> indices;
       for (const std::uint32_t element : lists[i])
         indices.insert(indices.end(), elements[element].begin(), elements[element].end());
-      add(indices, i, are_lines);
+      add(indices, first_material + i, are_lines);
     }
   };
   add_all(shape.faces, shape.face_materials, false);
   add_all(shape.springs, shape.spring_materials, true);
-  document.json["meshes"][0]["primitives"] = primitives;
+  document.json["meshes"].push_back({{"name", name}, {"primitives", primitives}});
 }
 
-Document document_of(const ExportedRobot& exported, const SkinShape& shape) {
+// A node that turns the scene, whose children are the robots.
+Document empty_document() {
   constexpr double half_root = 0.7071067811865476;
   Document document;
   document.json = {
       {"asset", {{"version", "2.0"}, {"generator", program_version}}},
       {"scene", 0},
       {"scenes", {{{"nodes", {0}}}}},
-      {"nodes", {{{"name", exported.robot.name}, {"rotation", {-half_root, 0, 0, half_root}}, {"mesh", 0}}}},
-      {"meshes", {{{"name", exported.robot.name}}}},
+      {"nodes",
+       {{{"name", "robots"}, {"rotation", {-half_root, 0, 0, half_root}}, {"children", ordered_json::array()}}}},
+      {"meshes", ordered_json::array()},
       {"materials", ordered_json::array()},
       {"accessors", ordered_json::array()},
       {"bufferViews", ordered_json::array()}};
-  for (const ExportedMaterial& material : shape.materials) document.json["materials"].push_back(material_of(material));
   return document;
+}
+
+// Of the last mesh. Returns the node's index.
+std::size_t add_node(Document& document, const std::string& name, const render::Vector3& offset) {
+  ordered_json node{{"name", name}, {"mesh", document.json["meshes"].size() - 1}};
+  if (offset != render::Vector3{0, 0, 0})
+    node["translation"] = {shortest(offset.x), shortest(offset.y), shortest(offset.z)};
+  document.json["nodes"].push_back(node);
+  const std::size_t index = document.json["nodes"].size() - 1;
+  document.json["nodes"][0]["children"].push_back(index);
+  return index;
 }
 
 std::size_t bytes_of(std::size_t frames, std::size_t vertices) {
@@ -153,20 +168,25 @@ void require_short(const RecordedMotion& motion, std::size_t vertices, const std
                   frames, vertices, first, every * apart, motion.time(first - 1) - motion.recording().time(0)));
 }
 
-void add_animation(Document& document, RecordedMotion& motion, std::span<const std::size_t> targets) {
+// The weights of the last mesh, moved by the one animation.
+void add_animation(Document& document, RecordedMotion& motion, std::size_t targets, std::size_t node) {
   const std::size_t frames = motion.frames();
-  std::vector<float> times, weights(frames * targets.size(), 0.0f);
+  std::vector<float> times, weights(frames * targets, 0.0f);
   for (std::size_t frame = 0; frame < frames; ++frame) {
     times.push_back(static_cast<float>(motion.time(frame) - motion.time(0)));
-    if (frame > 0) weights[frame * targets.size() + frame - 1] = 1;
+    if (frame > 0) weights[frame * targets + frame - 1] = 1;
   }
   const std::size_t input = document.add_floats(times), output = document.add_floats(weights);
   document.json["accessors"][input]["min"] = {shortest(times.front())};
   document.json["accessors"][input]["max"] = {shortest(times.back())};
-  document.json["meshes"][0]["weights"] = std::vector<int>(targets.size(), 0);
-  document.json["animations"] = {{{"name", "motion"},
-                                  {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}},
-                                  {"samplers", {{{"input", input}, {"interpolation", "LINEAR"}, {"output", output}}}}}};
+  document.json["meshes"].back()["weights"] = std::vector<int>(targets, 0);
+  if (!document.json.contains("animations"))
+    document.json["animations"] = {
+        {{"name", "motion"}, {"channels", ordered_json::array()}, {"samplers", ordered_json::array()}}};
+  ordered_json& animation = document.json["animations"][0];
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", "weights"}}}});
+  animation["samplers"].push_back({{"input", input}, {"interpolation", "LINEAR"}, {"output", output}});
 }
 
 }  // namespace
@@ -174,34 +194,52 @@ void add_animation(Document& document, RecordedMotion& motion, std::span<const s
 void write_glb(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
                const ExportChoices& choices) {
   const SkinShape shape = skin_shape(robot.robot, choices.springs);
-  Document document = document_of(robot, shape);
-  add_primitives(document, shape, document.add_vectors(vertices_of(shape, pose.positions)), {});
+  Document document = empty_document();
+  add_primitives(document, robot.robot.name, shape, document.add_vectors(vertices_of(shape, pose.positions)), {});
+  add_node(document, robot.robot.name, {});
   OutputStreams files;
   document.write(files.add(path));
   files.keep();
 }
 
-void write_glb_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
-                      const ExportChoices& choices) {
-  const SkinShape shape = skin_shape(robot.robot, choices.springs);
-  require_short(motion, shape.masses.size(), path);
-  Document document = document_of(robot, shape);
-  const std::vector<Vec3> first = vertices_of(shape, motion.pose(0).positions);
-  const std::size_t positions = document.add_vectors(first);
-  std::vector<std::size_t> accessors;
-  ordered_json targets = ordered_json::array();
-  for (std::size_t frame = 1; frame < motion.frames(); ++frame) {
-    std::vector<Vec3> offsets = vertices_of(shape, motion.pose(frame).positions);
-    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = offsets[i] - first[i];
-    accessors.push_back(document.add_vectors(offsets));
-    targets.push_back({{"POSITION", accessors.back()}});
-    choices.watch(frame + 1, motion.frames());
+void write_glb_motions(std::span<RecordedMotion> motions, const std::filesystem::path& path,
+                       const ExportChoices& choices) {
+  std::vector<SkinShape> shapes;
+  std::size_t vertices = 0, frames = 0, done = 0;
+  for (RecordedMotion& motion : motions) {
+    shapes.push_back(skin_shape(motion.robot().robot, choices.springs));
+    vertices += shapes.back().masses.size();
+    frames += motion.frames();
   }
-  add_primitives(document, shape, positions, targets);
-  if (!accessors.empty()) add_animation(document, motion, accessors);
+  const auto longest = std::ranges::max_element(motions, {}, &RecordedMotion::frames);
+  require_short(*longest, vertices, path);
+  const std::vector<render::Vector3> offsets = side_by_side(motions);
+  Document document = empty_document();
+  for (std::size_t robot = 0; robot < motions.size(); ++robot) {
+    RecordedMotion& motion = motions[robot];
+    const SkinShape& shape = shapes[robot];
+    const std::string name = motion.robot().robot.name;
+    const std::vector<Vec3> first = vertices_of(shape, motion.pose(0).positions);
+    const std::size_t positions = document.add_vectors(first);
+    ordered_json targets = ordered_json::array();
+    for (std::size_t frame = 1; frame < motion.frames(); ++frame) {
+      std::vector<Vec3> moved = vertices_of(shape, motion.pose(frame).positions);
+      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = moved[i] - first[i];
+      targets.push_back({{"POSITION", document.add_vectors(moved)}});
+      choices.watch(std::min(++done, frames), frames);
+    }
+    add_primitives(document, name, shape, positions, targets);
+    const std::size_t node = add_node(document, name, offsets[robot]);
+    if (!targets.empty()) add_animation(document, motion, targets.size(), node);
+  }
   OutputStreams files;
   document.write(files.add(path));
   files.keep();
+}
+
+void write_glb_motion(const ExportedRobot&, RecordedMotion& motion, const std::filesystem::path& path,
+                      const ExportChoices& choices) {
+  write_glb_motions(std::span(&motion, 1), path, choices);
 }
 
 }  // namespace mercury

@@ -139,7 +139,8 @@ class PageRobotWriter {
         shape_(shape_of(robot_)), index_(page_masses(robot_, masses_)), step_(step_of(shape_->body->lengths)) {}
 
   // `caption`: lines below the name; empty = the distance. `done` of `total` frames are written before.
-  PageRobot write(const std::vector<std::string>& caption, std::size_t& done, std::size_t total) {
+  PageRobot write(const std::vector<std::string>& caption, const std::string& final_state, std::size_t& done,
+                  std::size_t total) {
     EvenFrames frames(motion_);
     add_positions(frames, done, total);
     add_skin();
@@ -149,7 +150,7 @@ class PageRobotWriter {
                            fmt::format("{}, {}, {}", robot_.masses.size(), robot_.springs.size(), robot_.faces.size())},
                           {"distance", distance},
                           {"positions", fmt::format("rounded to {:.3g} mm", 500 * step_)},
-                          {"final state", hash_text()}};
+                          {"final state", final_state.empty() ? hash_text() : final_state}};
     ordered_json pairs = ordered_json::array();
     for (const auto& [name, text] : facts.items()) pairs.push_back({name, text});
     return {{{"name", robot_.name},
@@ -473,8 +474,10 @@ void write_html(std::span<RecordedMotion> motions, const std::filesystem::path& 
   std::string data;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const bool has_caption = i < choices.notes.captions.size();
-    PageRobot robot = PageRobotWriter(motions[i], choices)
-                          .write(has_caption ? choices.notes.captions[i] : std::vector<std::string>(), done, total);
+    PageRobot robot =
+        PageRobotWriter(motions[i], choices)
+            .write(has_caption ? choices.notes.captions[i] : std::vector<std::string>(),
+                   i < choices.notes.final_states.size() ? choices.notes.final_states[i] : "", done, total);
     robots.push_back(std::move(robot.description));
     data += fmt::format("<script type=\"text/plain\" id=\"robot-{}\">{}</script>\n", i, robot.data);
   }

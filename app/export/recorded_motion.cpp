@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/scene/camera_controller.h"
+#include "app/scene/group_layout.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -95,6 +97,14 @@ Pose RecordedMotion::pose_with_velocities(std::size_t frame) {
   Pose pose = this->pose(frame);
   pose.velocities = recording_->velocities_of(robot_, recorded_frame(frame));
   return pose;
+}
+
+std::vector<render::Vector3> side_by_side(std::span<RecordedMotion> motions) {
+  if (motions.size() < 2) return std::vector<render::Vector3>(motions.size(), render::Vector3{0, 0, 0});
+  std::vector<render::Bounds> boxes;
+  for (const RecordedMotion& motion : motions) boxes.push_back(rest_bounds(motion.robot().robot));
+  const bool ground = has_ground(motions.front().robot().environment);
+  return grid_layout(boxes, {.view = direction_of({}, ground), .on_ground = ground});
 }
 
 }  // namespace mercury

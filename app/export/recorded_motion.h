@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "app/export/exported_robot.h"
 #include "app/recording/trajectory_reader.h"
+#include "render/vector.h"
 
 namespace mercury {
 
@@ -51,5 +54,9 @@ class RecordedMotion {
   std::size_t robot_, first_ = 0, every_ = 1, count_ = 0;
   std::string problem_;
 };
+
+// Where robots stand that are exported together, as pictures lay them out: added to their coordinates [m]. One robot
+// stays where it is.
+std::vector<render::Vector3> side_by_side(std::span<RecordedMotion> motions);
 
 }  // namespace mercury

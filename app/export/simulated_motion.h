@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "mercury/simulation.h"
 
@@ -25,13 +27,18 @@ class TemporaryRecording {
   std::filesystem::path path_;
 };
 
-inline constexpr double motion_rate = 30;  // frames per second of simulated time, or as near as whole steps come to it
+inline constexpr double motion_rate = 30;  // frames per second of simulated time
 
-// Steps the simulation for that time and records it. `watch` sees how many frames there are; it may throw to stop the
-// work. Returns the number of frames.
-std::int64_t record_motion(Simulation& simulation, double seconds, const std::filesystem::path& path,
-                           std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch);
+struct SimulatedMotion {
+  std::int64_t frames = 0;
+  std::vector<std::string> final_states;  // of each robot after all steps: its hash, and when
+};
+
+// Steps the simulation for that time and records it at exactly motion_rate: a frame between two steps is interpolated
+// between them. `watch` sees how many frames there are; it may throw to stop the work.
+SimulatedMotion record_motion(Simulation& simulation, double seconds, const std::filesystem::path& path,
+                              std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch);
 // Frames that it will have.
-std::int64_t motion_frames(const Configuration& configuration, double seconds);
+std::int64_t motion_frames(double seconds);
 
 }  // namespace mercury

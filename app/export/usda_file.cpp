@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "app/base/version.h"
@@ -22,6 +23,9 @@ class Frames {
   bool moves() const { return motion_ != nullptr; }
   std::size_t count() const { return motion_ ? motion_->frames() : 1; }
   Pose pose(std::size_t frame) const { return motion_ ? motion_->pose(frame) : pose_; }
+  std::span<const Vec3> velocities(std::size_t frame) const {
+    return motion_ ? motion_->pose_with_velocities(frame).velocities : pose_.velocities;
+  }
   double rate() const { return motion_ ? motion_->frame_rate() : 0; }
   // Whole numbers, as far as frames are equally far apart.
   double time_code(std::size_t frame) const {
@@ -58,34 +62,89 @@ std::string quoted(const std::string& text) {
 
 class UsdaWriter {
  public:
-  UsdaWriter(OutputStream& file, const Frames& frames, const ExportChoices& choices)
-      : file_(file), frames_(frames), watch_(choices.watch) {}
+  // `total`: frames of all lists of points that will be written.
+  UsdaWriter(OutputStream& file, const ExportChoices& choices, std::size_t total)
+      : file_(file), watch_(choices.watch), total_(total) {}
 
-  void write(const ExportedRobot& exported, const SkinShape& shape) {
-    passes_ = std::size_t{!shape.faces.empty()} + std::size_t{!shape.springs.empty()};
-    const std::string name = identifier_of(exported.robot.name);
+  // `title` of the document; `frames`: of the longest motion.
+  void begin(const std::string& title, const std::string& root, const Frames& frames) {
     file_.print("#usda 1.0\n(\n    defaultPrim = \"{}\"\n    doc = \"{}\"\n    metersPerUnit = 1\n    upAxis = \"Z\"\n",
-                name, quoted(fmt::format("{}, written by {}", exported.robot.name, program_version)));
-    if (frames_.moves()) {
-      const double rate = frames_.count() > 1 ? frames_.rate() : 24;
+                root, quoted(fmt::format("{}, written by {}", title, program_version)));
+    if (frames.moves()) {
+      const double rate = frames.count() > 1 ? frames.rate() : 24;
       file_.print(
           "    startTimeCode = 0\n    endTimeCode = {}\n    timeCodesPerSecond = {}\n    framesPerSecond = {}\n",
-          frames_.time_code(frames_.count() - 1), rate, rate);
+          frames.time_code(frames.count() - 1), rate, rate);
     }
-    file_.print(")\n\ndef Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n", name);
+    file_.text(")\n\n");
+  }
+
+  // A robot as a prim below `parent`, a path such as "/robots"; empty = at the top.
+  void write(const ExportedRobot& exported, const SkinShape& shape, const Frames& frames, const std::string& parent,
+             const std::string& name, const render::Vector3& offset) {
+    frames_ = &frames;
+    path_ = parent + "/" + name;
+    file_.print("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n", name);
+    if (offset != render::Vector3{0, 0, 0})
+      file_.print(
+          "    double3 xformOp:translate = ({}, {}, {})\n    uniform token[] xformOpOrder = [\"xformOp:translate\"]\n",
+          offset.x, offset.y, offset.z);
+    write_materials(shape);
     if (!shape.faces.empty()) write_skin(shape);
     if (!shape.springs.empty()) write_springs(shape, shortest_of(exported.robot));
     file_.text("}\n");
   }
 
  private:
+  static std::string material_name(const ExportedMaterial& material) { return fmt::format("material_{}", material.id); }
+
+  // As renderers and Blender take them, beside the colors of faces that viewers show.
+  void write_materials(const SkinShape& shape) {
+    file_.text("    def Scope \"materials\"\n    {\n");
+    for (const ExportedMaterial& material : shape.materials) {
+      const auto [r, g, b] = render::linear_of(material.color);
+      const std::string name = material_name(material);
+      file_.print(
+          "        def Material \"{0}\" (\n            displayName = \"{1}\"\n        )\n        {{\n"
+          "            token outputs:surface.connect = <{2}/materials/{0}/surface.outputs:surface>\n"
+          "            def Shader \"surface\"\n            {{\n"
+          "                uniform token info:id = \"UsdPreviewSurface\"\n"
+          "                color3f inputs:diffuseColor = ({3}, {4}, {5})\n"
+          "                float inputs:roughness = 0.5\n"
+          "                token outputs:surface\n            }}\n        }}\n",
+          name, quoted(material.name), path_, r, g, b);
+    }
+    file_.text("    }\n");
+  }
+
+  // The faces of each material, and their material.
+  void write_subsets(const SkinShape& shape) {
+    const auto faces = by_material(shape, shape.face_materials);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (faces[i].empty()) continue;
+      file_.print(
+          "        def GeomSubset \"{}\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n"
+          "        {{\n            uniform token elementType = \"face\"\n"
+          "            uniform token familyName = \"materialBind\"\n",
+          material_name(shape.materials[i]));
+      write_list("            int[] indices = [", faces[i], [&](std::uint32_t face) { file_.print("{}", face); });
+      file_.print("            rel material:binding = <{}/materials/{}>\n        }}\n", path_,
+                  material_name(shape.materials[i]));
+    }
+  }
+
   void write_skin(const SkinShape& shape) {
-    file_.text("    def Mesh \"skin\"\n    {\n        uniform token subdivisionScheme = \"none\"\n");
+    file_.text(
+        "    def Mesh \"skin\"\n    {\n        uniform token subdivisionScheme = \"none\"\n"
+        "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n");
     write_list("        int[] faceVertexCounts = [", shape.faces, [&](const auto&) { file_.text("3"); });
     write_list("        int[] faceVertexIndices = [", shape.faces,
                [&](const auto& face) { file_.print("{}, {}, {}", face[0], face[1], face[2]); });
     write_colors(shape, shape.face_materials);
-    write_points([&](std::span<const Vec3> positions) { return vertices_of(shape, positions); });
+    const auto of_vertices = [&](std::span<const Vec3> of_masses) { return vertices_of(shape, of_masses); };
+    write_points(of_vertices);
+    write_velocities(of_vertices);
+    write_subsets(shape);
     file_.text("    }\n");
   }
 
@@ -135,32 +194,47 @@ class UsdaWriter {
                "] (\n            interpolation = \"uniform\"\n        )\n");
   }
 
+  void write_vectors(std::string_view start, const std::vector<Vec3>& vectors, std::string_view end) {
+    write_list(
+        start, vectors, [&](Vec3 p) { file_.print("({}, {}, {})", p.x, p.y, p.z); }, end);
+  }
+
   template <class PointsAt>
   void write_points(const PointsAt& points_at) {
-    const auto write_vector = [&](Vec3 p) { file_.print("({}, {}, {})", p.x, p.y, p.z); };
     std::vector<Box> boxes;
     const auto write_frame = [&](std::string_view start, std::size_t frame, std::string_view end) {
-      const std::vector<Vec3> points = points_at(frames_.pose(frame).positions);
+      const std::vector<Vec3> points = points_at(frames_->pose(frame).positions);
       boxes.push_back(box_of(points));
-      write_list(start, points, write_vector, end);
+      write_vectors(start, points, end);
     };
-    if (!frames_.moves()) {
+    if (!frames_->moves()) {
       write_frame("        point3f[] points = [", 0, "]\n");
       file_.text("        float3[] extent = ");
       write_box(boxes.front());
       return file_.text("\n");
     }
     file_.text("        point3f[] points.timeSamples = {\n");
-    for (std::size_t frame = 0; frame < frames_.count(); ++frame) {
-      write_frame(fmt::format("            {}: [", frames_.time_code(frame)), frame, "],\n");
-      watch_(++done_, passes_ * frames_.count());
+    for (std::size_t frame = 0; frame < frames_->count(); ++frame) {
+      write_frame(fmt::format("            {}: [", frames_->time_code(frame)), frame, "],\n");
+      watch_(std::min(++done_, total_), total_);
     }
     file_.text("        }\n        float3[] extent.timeSamples = {\n");
-    for (std::size_t frame = 0; frame < frames_.count(); ++frame) {
-      file_.print("            {}: ", frames_.time_code(frame));
+    for (std::size_t frame = 0; frame < frames_->count(); ++frame) {
+      file_.print("            {}: ", frames_->time_code(frame));
       write_box(boxes[frame]);
       file_.text(",\n");
     }
+    file_.text("        }\n");
+  }
+
+  // In meters per second, for motion blur; poses at rest have none.
+  template <class At>
+  void write_velocities(const At& at) {
+    if (!frames_->moves()) return;
+    file_.text("        vector3f[] velocities.timeSamples = {\n");
+    for (std::size_t frame = 0; frame < frames_->count(); ++frame)
+      write_vectors(fmt::format("            {}: [", frames_->time_code(frame)), at(frames_->velocities(frame)),
+                    "],\n");
     file_.text("        }\n");
   }
 
@@ -169,15 +243,24 @@ class UsdaWriter {
   }
 
   OutputStream& file_;
-  const Frames& frames_;
   const FrameWatch& watch_;
-  std::size_t passes_ = 1, done_ = 0;
+  const Frames* frames_ = nullptr;
+  std::string path_;  // of the robot
+  std::size_t total_, done_ = 0;
 };
 
-void write(const ExportedRobot& robot, const Frames& frames, const std::filesystem::path& path,
-           const ExportChoices& choices) {
+std::size_t lists_of(const SkinShape& shape) {
+  return std::size_t{!shape.faces.empty()} + std::size_t{!shape.springs.empty()};
+}
+
+void write_one(const ExportedRobot& robot, const Frames& frames, const std::filesystem::path& path,
+               const ExportChoices& choices) {
+  const SkinShape shape = skin_shape(robot.robot, choices.springs);
   OutputStreams files;
-  UsdaWriter(files.add(path), frames, choices).write(robot, skin_shape(robot.robot, choices.springs));
+  UsdaWriter writer(files.add(path), choices, lists_of(shape) * frames.count());
+  const std::string name = identifier_of(robot.robot.name);
+  writer.begin(robot.robot.name, name, frames);
+  writer.write(robot, shape, frames, "", name, {});
   files.keep();
 }
 
@@ -185,12 +268,38 @@ void write(const ExportedRobot& robot, const Frames& frames, const std::filesyst
 
 void write_usda(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
                 const ExportChoices& choices) {
-  write(robot, Frames(pose), path, choices);
+  write_one(robot, Frames(pose), path, choices);
 }
 
 void write_usda_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                        const ExportChoices& choices) {
-  write(robot, Frames(motion), path, choices);
+  write_one(robot, Frames(motion), path, choices);
+}
+
+void write_usda_motions(std::span<RecordedMotion> motions, const std::filesystem::path& path,
+                        const ExportChoices& choices) {
+  if (motions.size() == 1) return write_usda_motion(motions[0].robot(), motions[0], path, choices);
+  std::vector<SkinShape> shapes;
+  std::size_t total = 0;
+  for (RecordedMotion& motion : motions) {
+    shapes.push_back(skin_shape(motion.robot().robot, choices.springs));
+    total += lists_of(shapes.back()) * motion.frames();
+  }
+  OutputStreams files;
+  OutputStream& file = files.add(path);
+  UsdaWriter writer(file, choices, total);
+  writer.begin(fmt::format("{} robots", motions.size()), "robots",
+               Frames(*std::ranges::max_element(motions, {}, &RecordedMotion::frames)));
+  file.text("def Xform \"robots\" (\n    kind = \"group\"\n)\n{\n");
+  const std::vector<render::Vector3> offsets = side_by_side(motions);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    std::string name = identifier_of(motions[i].robot().robot.name);
+    while (!names.insert(name).second) name += "_";
+    writer.write(motions[i].robot(), shapes[i], Frames(motions[i]), "/robots", name, offsets[i]);
+  }
+  file.text("}\n");
+  files.keep();
 }
 
 }  // namespace mercury

@@ -67,9 +67,9 @@ class AppendedArrays {
 };
 
 // What is the same in all frames.
-class Grid {
+class CellGrid {
  public:
-  explicit Grid(const ExportedRobot& exported)
+  explicit CellGrid(const ExportedRobot& exported)
       : exported_(exported), springs_of_faces_(springs_of_faces(exported.robot)) {
     const Robot& robot = exported.robot;
     const std::vector<render::Color> colors = colors_of(robot);
@@ -155,7 +155,7 @@ class FrameFiles {
   FrameFiles(const FrameFiles&) = delete;
   FrameFiles& operator=(const FrameFiles&) = delete;
 
-  void write(const Grid& grid, const Pose& pose, const std::string& name) {
+  void write(const CellGrid& grid, const Pose& pose, const std::string& name) {
     OutputStream file(unfinished_ / name);
     grid.write(file, pose);
     file.close();
@@ -185,7 +185,7 @@ class FrameFiles {
 
 void write_vtu(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path, const ExportChoices&) {
   OutputStreams files;
-  Grid(robot).write(files.add(path), pose);
+  CellGrid(robot).write(files.add(path), pose);
   files.keep();
 }
 
@@ -202,7 +202,7 @@ std::filesystem::path frames_beside(const std::filesystem::path& pvd) {
 
 void write_pvd(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                const ExportChoices& choices) {
-  const Grid grid(robot);
+  const CellGrid grid(robot);
   const std::filesystem::path folder = frames_beside(path);
   FrameFiles frames(folder);
   OutputStreams files;

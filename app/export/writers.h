@@ -39,6 +39,7 @@ struct ExportNotes {
   std::string subtitle;                            // empty = how many robots there are
   std::string command;                             // that makes the file again
   std::vector<std::vector<std::string>> captions;  // lines below the names, per robot; empty = none
+  std::vector<std::string> final_states;           // per robot: hash and time; empty = those of the last frames
   std::shared_ptr<const Board> board;              // a map whose cells have the robots, or nothing
   std::vector<ExportedIndividual> family;          // the robots and their kin, by id; empty = none
 };
@@ -85,6 +86,20 @@ void write_usda(const ExportedRobot& robot, const Pose& pose, const std::filesys
                 const ExportChoices& choices);
 void write_usda_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                        const ExportChoices& choices);
+
+// Several robots side by side, as pictures lay them out.
+void write_glb_motions(std::span<RecordedMotion> motions, const std::filesystem::path& path,
+                       const ExportChoices& choices);
+void write_usda_motions(std::span<RecordedMotion> motions, const std::filesystem::path& path,
+                        const ExportChoices& choices);
+
+// The same in one archive.
+void write_usdz(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
+                const ExportChoices& choices);
+void write_usdz_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                       const ExportChoices& choices);
+void write_usdz_motions(std::span<RecordedMotion> motions, const std::filesystem::path& path,
+                        const ExportChoices& choices);
 
 // Describes the recording for ParaView; its numbers stay where they are. Throws InputError for a recording that was not
 // finished.

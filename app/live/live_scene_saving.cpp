@@ -67,10 +67,12 @@ std::int64_t record(const std::vector<Exported>& exported, const Configuration& 
   for (std::size_t robot = 0; robot < exported.size(); ++robot)
     for (std::size_t id = 1; id < exported[robot].materials.size(); ++id)
       simulation.set_material(robot, static_cast<MaterialId>(id), exported[robot].materials[id]);
-  return record_motion(simulation, seconds, path, std::nullopt, [&](std::int64_t frames) {
-    require_going(control);
-    control.progress(frames);
-  });
+  return record_motion(simulation, seconds, path, std::nullopt,
+                       [&](std::int64_t frames) {
+                         require_going(control);
+                         control.progress(frames);
+                       })
+      .frames;
 }
 
 void write_motions(const ExportFormat& format, const std::vector<Exported>& exported,
@@ -290,7 +292,7 @@ SaveResult LiveScene::export_motion(const std::vector<RobotId>& robots, const fs
     if (const auto files = existing_outputs(format, path); !overwrite && !files.empty())
       return {SaveResult::Outcome::exists, files, ""};
     make_folder_of(path);
-    const auto frames = motion_frames(configuration, seconds);
+    const auto frames = motion_frames(seconds);
     const auto all = static_cast<std::int64_t>(exported.size()) * frames;
     parts_->background.begin("exporting " + path.filename().string(), frames + all,
                              [&messages = parts_->messages, &format, exported = std::move(exported), configuration,

@@ -111,9 +111,10 @@ class InterruptibleWork {
 };
 
 void write_motions(std::vector<RecordedMotion>& motions, const ExportFormat& format, const Request& request,
-                   InterruptibleWork& work) {
-  const ExportChoices choices{
-      .springs = request.springs, .notes = {}, .watch = [&](std::size_t, std::size_t) { work.check(); }};
+                   InterruptibleWork& work, std::vector<std::string> final_states = {}) {
+  const ExportChoices choices{.springs = request.springs,
+                              .notes = {.final_states = std::move(final_states)},
+                              .watch = [&](std::size_t, std::size_t) { work.check(); }};
   if (format.motions)
     format.motions(motions, request.path, choices);
   else
@@ -158,11 +159,12 @@ void export_simulated(Simulation& simulation, const ExportFormat& format, const 
   work.run([&] {
     request.prepare(format);
     const TemporaryRecording recording(request.path);
-    record_motion(simulation, seconds, recording.path(), std::nullopt, [&](std::int64_t) { work.check(); });
+    SimulatedMotion motion =
+        record_motion(simulation, seconds, recording.path(), std::nullopt, [&](std::int64_t) { work.check(); });
     const auto reader = std::make_shared<TrajectoryReader>(recording.path());
     std::vector<RecordedMotion> motions;
     for (std::size_t i = 0; i < simulation.size(); ++i) motions.emplace_back(reader, i);
-    write_motions(motions, format, request, work);
+    write_motions(motions, format, request, work, std::move(motion.final_states));
   });
 }
 

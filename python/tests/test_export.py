@@ -69,7 +69,7 @@ def test_what_cannot_be_used_is_one_line(recording, robots, tmp_path):
     refused("seconds: a Recording has its own length", recording, tmp_path / "a.html", seconds=1)
     refused("springs: a .stl file holds no springs", robots[0], tmp_path / "a.stl", springs=True)
     refused("choose from a Recording", robots[0], tmp_path / "a.stl", still=0)
-    refused("robot: the recording has 2; give a name or an index", recording, tmp_path / "a.glb")
+    refused("robot: the recording has 2; give a name or an index", recording, tmp_path / "a.pc2")
     refused("robot: no robot is named \"7\"", recording, tmp_path / "a.glb", robot=7)
     refused("start: 3 is not accepted; the recording has 0 to 0.2 s", recording, tmp_path / "a.glb", robot=0, start=3)
     refused("format: stl holds one pose", recording, tmp_path / "a.stl", robot=0)
@@ -85,7 +85,7 @@ def page_of(text):
 def test_robots_are_simulated_for_a_motion(robots, recording, tmp_path):
     mercurysim.export(robots[1], tmp_path / "a.pc2", seconds=0.2, environment="ocean")
     points, _, _, samples = struct.unpack_from("<iffi", (tmp_path / "a.pc2").read_bytes(), 16)
-    assert (points, samples) == (len(np.unique(robots[1].faces)), 1 + 200 // 33)
+    assert (points, samples) == (len(np.unique(robots[1].faces)), 1 + 0.2 * 30)
 
 
 def test_show_is_a_page_of_all_robots_and_leaves_a_batch_alone(robots, recording, tmp_path):

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "mercury/cppn.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/voxel.h"
@@ -383,6 +384,8 @@ Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Pro
 std::optional<VoxelBody> voxel_body_of(const Robot& robot) {
   if (robot.origin.empty()) return std::nullopt;
   if (const std::optional<VoxelGrid> grid = voxel_grid_of(robot)) return body_of_grid(*grid, robot);
+  if (const std::optional<CppnGenome> genome = cppn_genome_of(robot))
+    return body_of_grid(largest_body(paint(*genome)), robot);
   if (kind_of(robot) != "import") return std::nullopt;
   return body_of_import(Json::parse(robot.origin));
 }

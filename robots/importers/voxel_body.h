@@ -52,8 +52,8 @@ struct Provenance {
 Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Provenance& provenance,
                        std::size_t most_materials, Rounding& rounding);
 
-// Grid and substances of an origin: of a robot that was imported or of any other voxel robot. Nothing for robots of
-// other kinds. Throws InputError("/origin: ...") for an origin that breaks a rule.
+// Grid and substances of an origin: of a robot that was imported, was painted, or is any other voxel robot. Nothing for
+// robots of other kinds. Throws InputError("/origin: ...") for an origin that breaks a rule.
 std::optional<VoxelBody> voxel_body_of(const Robot& robot);
 
 // The voxels that share a spring of a voxel robot, as indices of cells; four at most.

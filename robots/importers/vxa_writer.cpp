@@ -192,7 +192,7 @@ std::string vxa_document(const Robot& robot) {
   const std::optional<VoxelBody> body = voxel_body_of(robot);
   if (!body)
     throw InputError(robot.name,
-                     "has no grid of voxels in its origin, which VXA needs; voxel robots and imported ones have");
+                     "has no grid of voxels in its origin, which VXA needs; voxel, painted and imported robots have");
   const std::string environment = environment_of(robot);
   return VxaWriter(*body, environment == "land" ? land_stiffness_scale : 1, environment).document();
 }

@@ -105,10 +105,15 @@ TEST_F(ExportCommand, StillTakesThePoseOfTheNearestFrame) {
 }
 
 TEST_F(ExportCommand, RobotsAreSimulatedForAMotion) {
-  ASSERT_EQ(mercury({"run", robot_, "--seconds", "0.1", "--device", "cpu", "--record", path("run.h5")}).status, 0);
+  // A frame is 20 steps.
+  const std::vector<std::string> options{"--seconds", "0.1", "--dt", "0.0016666666666666668", "--device", "cpu"};
+  const auto with_options = [&](std::vector<std::string> words) {
+    words.insert(words.end(), options.begin(), options.end());
+    return mercury(words);
+  };
+  ASSERT_EQ(with_options({"run", robot_, "--every", "20", "--record", path("run.h5")}).status, 0);
   ASSERT_EQ(mercury({"export", path("run.h5"), "-o", path("recorded.pc2")}).status, 0);
-  const Outcome outcome =
-      mercury({"export", robot_, "--seconds", "0.1", "--device", "cpu", "-o", path("simulated.pc2")});
+  const Outcome outcome = with_options({"export", robot_, "-o", path("simulated.pc2")});
   EXPECT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(outcome.output, path("simulated.pc2") + "\n");
   EXPECT_EQ(read("simulated.pc2"), read("recorded.pc2"));

@@ -149,6 +149,26 @@ class Pygltflib(Case):
             np.testing.assert_allclose(shape, positions[frame][self.skin], atol=1e-6)
 
 
+    def test_several_robots_stand_side_by_side_and_move(self):
+        import pygltflib
+        mercury("new", "voxel", "--seed", 8, "--voxels", "3x3x3", "-o", self.folder / "other.json")
+        robots = [self.folder / "eel.json", self.folder / "other.json"]
+        file = self.folder / "both.glb"
+        mercury("export", *robots, "-o", file, "--seconds", 0.1, "--device", "cpu")
+        gltf = pygltflib.GLTF2().load(str(file))
+        first, second = (gltf.nodes[index] for index in gltf.nodes[0].children)
+        self.assertEqual([first.name, second.name], [json.loads(robot.read_text())["name"] for robot in robots])
+        apart = np.linalg.norm(np.subtract(first.translation, second.translation))
+        width = np.ptp(self.masses, axis=0).max()
+        self.assertGreater(apart, 0.5 * width)
+        for mesh in gltf.meshes:
+            self.assertEqual({len(primitive.targets) for primitive in mesh.primitives}, {3})  # after the first frame
+        self.assertEqual([channel.target.node for channel in gltf.animations[0].channels], gltf.nodes[0].children)
+        mercury("export", *robots, "-o", file, "--force")  # at rest
+        still = pygltflib.GLTF2().load(str(file))
+        self.assertEqual((len(still.meshes), len(still.animations)), (2, 0))
+
+
 class Vtk(Case):
     needs = "vtkmodules.vtkIOXML"
 
@@ -206,6 +226,51 @@ class Usd(Case):
         self.assertEqual(color.GetInterpolation(), UsdGeom.Tokens.uniform)
         self.assertEqual(len(color.Get()), len(self.faces))
         self.assertGreater(len(set(map(tuple, color.Get()))), 2)
+
+
+    def test_archives_hold_the_same(self):
+        from pxr import Usd as usd, UsdGeom
+        stage = usd.Stage.Open(self.export_motion("swim.usdz"))
+        mesh = UsdGeom.Mesh(stage.GetDefaultPrim().GetChild("skin"))
+        for frame, expected in enumerate(self.recorded()[1]):
+            np.testing.assert_array_equal(np.array(mesh.GetPointsAttr().Get(frame)), expected[self.skin])
+        content = (self.folder / "swim.usdz").read_bytes()
+        self.assertEqual(content.index(b"#usda") % 64, 0)
+
+    def test_velocities_are_those_of_the_recording(self):
+        from pxr import Usd as usd, UsdGeom
+        stage = usd.Stage.Open(self.export_motion("swim.usda"))
+        mesh = UsdGeom.Mesh(stage.GetDefaultPrim().GetChild("skin"))
+        for frame, expected in enumerate(self.recorded()[2]):
+            np.testing.assert_array_equal(np.array(mesh.GetVelocitiesAttr().Get(frame)), expected[self.skin])
+
+    def test_each_face_has_a_material_of_its_color(self):
+        from pxr import Usd as usd, UsdGeom, UsdShade
+        stage = usd.Stage.Open(self.export("eel.usda"))
+        mesh = UsdGeom.Mesh(stage.GetDefaultPrim().GetChild("skin"))
+        subsets = UsdShade.MaterialBindingAPI(mesh).GetMaterialBindSubsets()
+        valid, reason = UsdGeom.Subset.ValidateSubsets(subsets, len(self.faces), UsdGeom.Tokens.partition)
+        self.assertTrue(valid, reason)
+        colors = mesh.GetDisplayColorPrimvar().Get()
+        for subset in subsets:
+            material = UsdShade.MaterialBindingAPI(subset).ComputeBoundMaterial()[0]
+            surface = material.ComputeSurfaceSource()[0]
+            color = surface.GetInput("diffuseColor").Get()
+            for face in subset.GetIndicesAttr().Get():
+                np.testing.assert_allclose(color, colors[face], rtol=1e-6)
+
+    def test_several_robots_are_prims_of_their_own(self):
+        from pxr import Usd as usd, UsdGeom
+        mercury("new", "voxel", "--seed", 8, "--voxels", "3x3x3", "-o", self.folder / "other.json")
+        robots = [self.folder / "eel.json", self.folder / "other.json"]
+        mercury("export", *robots, "-o", self.folder / "both.usda", "--seconds", 0.1, "--device", "cpu")
+        stage = usd.Stage.Open(str(self.folder / "both.usda"))
+        self.assertEqual(stage.GetTimeCodesPerSecond(), 30)
+        first, second = stage.GetDefaultPrim().GetChildren()
+        places = [np.array(UsdGeom.XformCommonAPI(prim).GetXformVectors(0)[0]) for prim in (first, second)]
+        self.assertGreater(np.linalg.norm(places[0] - places[1]), 0.5 * np.ptp(self.masses, axis=0).max())
+        for prim in (first, second):
+            self.assertEqual(len(UsdGeom.Mesh(prim.GetChild("skin")).GetPointsAttr().GetTimeSamples()), 4)
 
 
 class VtkXdmf(Case):

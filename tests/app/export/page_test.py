@@ -133,7 +133,7 @@ class Group(Case):
         self.export(self.folder / "robots", "--environment", "land", "--seconds", 1, "-o", self.folder / "three.html")
         page = self.open("three.html", size=(360, 640), touch=True)
         self.assertEqual(page.value("player.shown.length"), 3)
-        self.assertAlmostEqual(page.value("player.end"), 0.99)  # frames are 33 steps of 1 ms apart
+        self.assertAlmostEqual(page.value("player.end"), 1)  # 30 frames per second, between steps of 1 ms
         page.press(" ")
         with self.subTest("they stand on the ground side by side"):
             boxes = page.value("player.group.boxes.map(({ low, high }) => [low, high])")

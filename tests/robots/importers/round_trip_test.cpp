@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "mercury/cppn.h"
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/origin.h"
@@ -40,6 +41,13 @@ TEST(VxaRoundTrip, KeepsGridAndMaterials) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Robot robot = random_voxel_robot({.frequencies = static_cast<int>(seed % 5) + 1}, seed);
     expect_same_after_a_round_trip(robot, largest_body(*voxel_grid_of(robot)));
+  }
+}
+
+TEST(VxaRoundTrip, KeepsPaintedRobots) {
+  for (std::uint64_t seed = 1; seed < 6; ++seed) {
+    const Robot robot = random_cppn_robot({}, seed);
+    expect_same_after_a_round_trip(robot, largest_body(paint(*cppn_genome_of(robot))));
   }
 }
 
