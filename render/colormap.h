@@ -53,8 +53,8 @@ Color color_at(Colormap map, float value, float low, float high);
 // Chroma is reduced until the color is inside sRGB.
 Color oklch(float lightness, float chroma, float hue);
 
-// A muscle's color: hue is its phase, with four phases far apart for all kinds of color vision; lightness is its
-// frequency (slow = light). `phase` in radians, `speed` 0 = slowest to 1 = fastest.
+// A muscle's color: hue and lightness are its phase, with phases of 45 degrees and more apart for all kinds of color
+// vision; slow ones are a little lighter. `phase` in radians, `speed` 0 = slowest to 1 = fastest.
 Color muscle_color(float phase, float speed);
 inline constexpr Color tissue_color = rgb(0xe9c9b4);
 inline constexpr Color bone_color = rgb(0xf4f1e8);

@@ -5,8 +5,10 @@
 #include <zlib.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <stdexcept>
 
 namespace mercury::render {
@@ -36,14 +38,32 @@ void append(std::vector<std::uint8_t>& bytes, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(number >> shift));
 }
 
-// A chunk "tEXt" goes before the last one, the 12 bytes of IEND: length, name, text, checksum of the latter two.
-void add_text(std::vector<std::uint8_t>& png, std::string_view keyword, std::string_view text) {
+// A chunk: length, name, content, checksum of the latter two.
+void insert_chunk(std::vector<std::uint8_t>& png, std::ptrdiff_t place, std::string_view name,
+                  const std::vector<std::uint8_t>& content) {
   std::vector<std::uint8_t> chunk;
-  append(chunk, static_cast<std::uint32_t>(keyword.size() + 1 + text.size()));
-  for (const std::string_view part : {std::string_view("tEXt"), keyword, std::string_view("\0", 1), text})
-    chunk.insert(chunk.end(), part.begin(), part.end());
+  append(chunk, static_cast<std::uint32_t>(content.size()));
+  chunk.insert(chunk.end(), name.begin(), name.end());
+  chunk.insert(chunk.end(), content.begin(), content.end());
   append(chunk, static_cast<std::uint32_t>(crc32(0, chunk.data() + 4, static_cast<unsigned>(chunk.size() - 4))));
-  png.insert(png.end() - 12, chunk.begin(), chunk.end());
+  png.insert(png.begin() + place, chunk.begin(), chunk.end());
+}
+
+// Goes before the last chunk, the 12 bytes of IEND.
+void add_text(std::vector<std::uint8_t>& png, std::string_view keyword, std::string_view text) {
+  std::vector<std::uint8_t> content(keyword.begin(), keyword.end());
+  content.push_back(0);
+  content.insert(content.end(), text.begin(), text.end());
+  insert_chunk(png, std::ssize(png) - 12, "tEXt", content);
+}
+
+// Goes after the signature of 8 bytes and the first chunk, IHDR, of 25.
+void add_resolution(std::vector<std::uint8_t>& png, double dpi) {
+  constexpr double inch = 0.0254;  // [m]
+  std::vector<std::uint8_t> content;
+  for (int axis = 0; axis < 2; ++axis) append(content, static_cast<std::uint32_t>(std::lround(dpi / inch)));
+  content.push_back(1);  // per meter
+  insert_chunk(png, 8 + 25, "pHYs", content);
 }
 
 [[noreturn]] void fail(const std::string& path, const std::string& why) { throw std::runtime_error(path + ": " + why); }
@@ -65,7 +85,7 @@ void write_png(const std::string& path, const Image& image) {
   fail(path, why);
 }
 
-std::vector<std::uint8_t> png_bytes(const Image& image, std::string_view comment) {
+std::vector<std::uint8_t> png_bytes(const Image& image, std::string_view comment, double dpi) {
   png_image png = description_of(image);
   std::vector<std::uint8_t> bytes(PNG_IMAGE_PNG_SIZE_MAX(png));
   png_alloc_size_t size = bytes.size();
@@ -73,6 +93,7 @@ std::vector<std::uint8_t> png_bytes(const Image& image, std::string_view comment
     throw std::runtime_error(png.message);
   bytes.resize(size);
   if (!comment.empty()) add_text(bytes, "Comment", comment);
+  if (dpi > 0) add_resolution(bytes, dpi);
   return bytes;
 }
 

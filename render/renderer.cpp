@@ -24,7 +24,8 @@ bool shows_horizon(const Camera& camera, int width, int height) {
 
 // Properties of the scene that shaders are compiled for.
 std::string surroundings_variant(const Scene& scene, const FrameBlock& block) {
-  return define("AROUND", int(scene.surroundings)) + define("OCTAVES", block.octave.z > 0 ? 2 : 1);
+  return define("AROUND", int(scene.surroundings)) + define("OCTAVES", block.octave.z > 0 ? 2 : 1) +
+         (scene.catch_shadows ? "#define CATCH_SHADOWS\n" : "");
 }
 
 template <typename Property>
@@ -141,6 +142,8 @@ std::vector<Bounds> Renderer::body_bounds() {
 
 const std::vector<PassTime>& Renderer::times() const { return parts_->timer.times(); }
 
+const Overlay& Renderer::overlay() const { return *parts_->text; }
+
 unsigned Renderer::picture() const { return parts_->targets.picture.get(); }
 
 void Renderer::present(unsigned framebuffer, int x, int y, int width, int height) const {
@@ -200,7 +203,8 @@ void Renderer::Parts::draw_light(const Scene& scene) {
     passes->lattice.draw_shadow(bodies, scene);
   });
   timer.mark("shadow map");
-  passes->light.draw_maps(scene.surroundings == Surroundings::water, scene.surroundings != Surroundings::none);
+  passes->light.draw_maps(scene.surroundings == Surroundings::water,
+                          scene.surroundings != Surroundings::none || scene.catch_shadows);
   timer.mark("light on the floor");
   if (draws_inside(scene))
     section.find([&] {
@@ -244,7 +248,13 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
 void Renderer::draw(const Scene& scene, const Camera& camera) {
   Parts& p = *parts_;
   const bool values = !scene.face_values.empty() || !scene.mass_values.empty() || !scene.spring_values.empty();
-  const Style style = style_of(scene.surroundings, scene.theme, values);
+  Style style = style_of(scene.surroundings, scene.theme, values);
+  if (scene.flat_backdrop) {
+    const float light = *scene.flat_backdrop;
+    style.backdrop_high = style.backdrop_low = {light, light, light};
+    style.fog = {0, 0, 0};
+    style.vignette = style.glow = 0;
+  }
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // others may draw in this context, too
   p.pace.begin();
   p.timer.begin();
@@ -263,8 +273,8 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   // The boxes were measured long ago, and the GPU still has the picture to draw: nobody waits.
   const std::vector<Bounds> boxes =
       scene.labels.empty() ? std::vector<Bounds>() : placed(p.bounds.read(), scene.placements);
-  const Overlay text = overlay_of(scene, camera, boxes, style, p.width, p.height, p.text_size);
-  p.overlay.draw(text, p.targets.finished.get(), p.width, p.height, p.colormaps.get());
+  p.text = overlay_of(scene, camera, boxes, style, p.width, p.height, p.text_size);
+  if (!scene.text_aside) p.overlay.draw(*p.text, p.targets.finished.get(), p.width, p.height, p.colormaps.get());
   p.timer.mark("finish");
   p.timer.end();
   p.pace.end();

@@ -37,6 +37,8 @@ struct PassTime {
 };
 
 // Every member, the destructor included, needs the context of the constructor to be current.
+class Overlay;
+
 class Renderer {
  public:
   // Throws ContextError when the driver refuses a shader or the picture is larger than it can draw.
@@ -75,6 +77,9 @@ class Renderer {
 
   // GPU time of each part of a recent frame, in drawing order; empty at first.
   const std::vector<PassTime>& times() const;
+
+  // What is written on the picture of the last draw().
+  const Overlay& overlay() const;
 
   // The finished picture: an sRGB8_ALPHA8 texture, lower row first as usual in OpenGL. resize() replaces it.
   unsigned picture() const;

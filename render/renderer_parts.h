@@ -35,6 +35,7 @@
 #include "render/passes/visibility_passes.h"
 #include "render/renderer.h"
 #include "render/style.h"
+#include "render/text/overlay.h"
 
 namespace mercury::render {
 
@@ -73,6 +74,7 @@ struct Renderer::Parts {
   SceneBuffers scene_buffers;
   Texture colormaps = make_colormaps();
   OverlayPass overlay;
+  std::optional<Overlay> text;  // of the last picture
   float text_size = 0;
   std::optional<Passes> passes;
   BoundsPass bounds;

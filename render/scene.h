@@ -145,9 +145,13 @@ struct Scene {
 
   Surroundings surroundings = Surroundings::water;
   Theme theme = Theme::dark;
-  float floor = 0;        // height of the ground or sand [m]
-  Vector3 flow{0, 0, 0};  // of the water; particles drift with it [m/s]
-  double time = 0;        // moves caustics and particles [s]
+  float floor = 0;             // height of the ground or sand [m]
+  bool catch_shadows = false;  // without surroundings: bodies still darken the backdrop where the floor would be
+  // The backdrop is of this light alone, and bodies do not depend on it: what matted() takes two pictures of.
+  std::optional<float> flat_backdrop;
+  bool text_aside = false;  // nothing is written on the picture; Renderer::overlay() has it
+  Vector3 flow{0, 0, 0};    // of the water; particles drift with it [m/s]
+  double time = 0;          // moves caustics and particles [s]
 
   std::span<const Patch> patches;  // on land
   std::span<const Tile> tiles;

@@ -60,5 +60,17 @@ void main() {
 #endif
   if (steps > 0.0 && steps < 0.5 * frame.depth.y) light = through_fog(ground, direction, steps * length(sight));
 #endif
+#if defined(CATCH_SHADOWS)
+  // An unseen floor: the share of its light that bodies leave.
+  float steps = (frame.ground.w - frame.eye.z) / sight.z;
+  if (steps > 0.0 && steps < 0.5 * frame.depth.y) {
+    float key = frame.key_light.g * frame.to_key.z / 1.6, sky = frame.sky_light.g;
+    vec2 point = (frame.eye.xyz + steps * sight).xy, at = (point - frame.ground.xy) / frame.ground.z;
+    // Away from the bodies, occlusion is that of the picture's edge.
+    bool near = all(greaterThan(at, vec2(0.0))) && all(lessThan(at, vec2(1.0)));
+    float left = key * key_on_floor(point) + sky * (near ? openness(gl_FragCoord.xy, steps) : 1.0);
+    light *= left / (key + sky);
+  }
+#endif
   color = vec4(light, 0.0);
 }

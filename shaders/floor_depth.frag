@@ -8,6 +8,7 @@ void main() {
   face = 0u;
   vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
   float steps = (frame.ground.w - frame.eye.z) / sight.z;
-  bool hits_floor = int(frame.water.x) != AROUND_NONE && steps > frame.depth.x && steps < 0.5 * frame.depth.y;
+  bool has_floor = int(frame.water.x) != AROUND_NONE || frame.octave.w > 0.5;  // or one that catches shadows alone
+  bool hits_floor = has_floor && steps > frame.depth.x && steps < 0.5 * frame.depth.y;
   gl_FragDepth = hits_floor ? frame.depth.x * (frame.depth.y / steps - 1.0) / (frame.depth.y - frame.depth.x) : 0.0;
 }

@@ -46,6 +46,23 @@ layout(location = 1) uniform vec4 value_scale;
 #endif
 layout(location = 0) out vec4 color;  // a = share of light that glows
 
+#ifdef CUT
+// How drawings show a section: its outline, and hatched, but where colors are values. A share of its color.
+float drawn_section(ivec2 at, uint body) {
+  int width = max(1, int(frame.screen.y / 420.0));
+  for (int i = 0; i < 8; ++i) {
+    float angle = 0.7853982 * float(i);
+    if (!is_inside(at + ivec2(round(float(width) * vec2(cos(angle), sin(angle)))), body)) return 0.25;
+  }
+#if COLOR_BY == 0
+  float spacing = frame.screen.y / 60.0, line = abs(fract(float(at.x + at.y) / spacing) - 0.5) * spacing;
+  return 1.0 - 0.2 * (1.0 - smoothstep(0.5, 1.5, line - 0.04 * spacing));
+#else
+  return 1.0;
+#endif
+}
+#endif
+
 void main() {
   SeenFace face = seen[gl_PrimitiveID];
   vec3 world = skin_point;
@@ -102,6 +119,7 @@ void main() {
   vec4 inside = texelFetch(section, ivec2(gl_FragCoord.xy), 0);
   albedo = inside.rgb * (1.0 + 0.25 * min(inside.a, 0.0));
   activation = inside.a;
+  albedo *= drawn_section(ivec2(gl_FragCoord.xy), body_index);
 #endif
   albedo *= 1.0 - 0.28 * seam;
 #ifdef MARKED

@@ -2,8 +2,11 @@
 // mercury render: makes videos and pictures without a window.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "app/base/file_name.h"
 #include "app/base/messages.h"
@@ -12,6 +15,8 @@
 #include "app/commands/dry_run.h"
 #include "app/commands/render_subject.h"
 #include "app/options/option_values.h"
+#include "app/video/figure.h"
+#include "app/video/picture_file.h"
 #include "app/video/video_pipeline.h"
 
 namespace mercury {
@@ -50,6 +55,7 @@ class Filming {
   // Opens the writer first: a missing encoder or an invalid file name is then reported before the slow start of OpenGL.
   // Returns false when the user interrupted it; the video then ends there.
   bool make(const Output& output) {
+    if (task_.view.background) return make_figure(output);
     VideoOptions::Plan whole = task_.plan;
     whole.timing.frames *= static_cast<std::int64_t>(output.clips.size());
     const std::unique_ptr<FrameWriter> writer =
@@ -69,18 +75,52 @@ class Filming {
   }
 
  private:
-  VideoResult film(const Clip& clip, FrameWriter& writer) {
+  // Robots and their shadows alone, from two pictures with another backdrop each.
+  bool make_figure(const Output& output) {
+    const Clip& clip = output.clips.front();
+    std::array<render::Image, 2> pictures;
+    VideoResult result;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      ViewSettings view = task_.view;
+      view.flat_backdrop = figure_backdrops.at(i);
+      view.text_aside = options_.video.text_aside();
+      PictureKeeper keeper;
+      const VideoResult one = film(clip, keeper, view);
+      if (one.interrupted) return false;
+      result.wall_seconds += one.wall_seconds;
+      pictures.at(i) = keeper.picture();
+    }
+    const PictureSize size{pictures[0].width, pictures[0].height};
+    const int margin = std::max(2, size.height / 60);
+    const std::string path = options_.video.output_of(output.name), comment = task_.subject.comment(clip);
+    const render::Image image = matted(pictures, *task_.view.background);
+    PixelBox box{0, 0, size.width, size.height};
+    if (options_.video.tight()) box = content_of(pictures, margin);
+    if (options_.video.text_aside()) {
+      const render::Overlay& text = offscreen_->renderer.overlay();
+      if (options_.video.tight()) box = joined(box, text, margin, size);
+      const std::string svg = figure_svg(image, text, box, options_.video.dpi(), comment);
+      write_picture_bytes(path, std::span(reinterpret_cast<const std::uint8_t*>(svg.data()), svg.size()));
+    } else {
+      write_picture(path, cropped(image, box), comment, options_.video.dpi());
+    }
+    report_result(path, result);
+    return true;
+  }
+
+  VideoResult film(const Clip& clip, FrameWriter& writer) { return film(clip, writer, task_.view); }
+
+  VideoResult film(const Clip& clip, FrameWriter& writer, ViewSettings view) {
     const bool first = !offscreen_;
     const Device& device = task_.subject.configuration.device;
     if (first)
       offscreen_ = std::make_unique<OffscreenRenderer>(
           make_offscreen_renderer(options_.video.context_kind(), task_.plan.size, options_.video.quality(),
                                   device.kind == DeviceKind::cpu ? -1 : device.index));
-    ViewSettings view = task_.view;
     if (view.caption.empty()) view.caption = clip.title;
     view.camera.zoom *= clip.zoom;
     VideoPipeline pipeline(*offscreen_, task_.subject.simulation_of(clip), view, clip.captions,
-                           task_.subject.second_of(clip, task_.view));
+                           task_.subject.second_of(clip, task_.view), task_.subject.titles());
     if (first) report_start(pipeline, writer);
     for (const std::string& note : pipeline.simulation().notes()) say(note);
     return pipeline.run(writer, task_.plan.pixels, task_.plan.timing, false);
@@ -187,7 +227,7 @@ void add_render_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor), folders, samples (sample:eel), a recording (.h5), or a run");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), a recording (.h5) or two side by side, or a run");
   options->video.add_to(command);
   options->view.add_to(command);
   options->film.add_to(command);
@@ -202,8 +242,10 @@ void add_render_command(const Command& program, const Choose& choose) {
       "  mercury render eel.json --compare solver=xpbd -o sides.mp4\n"
       "  mercury render my-robots --contact-sheet 5x2 --seconds 9 -o poster.png\n"
       "  mercury render run.h5 -o run.mp4                    plays a recording of mercury run --record\n"
+      "  mercury render before.h5 after.h5 -o sides.mp4      two recordings side by side\n"
       "  mercury render RUN --lineage best -o ancestry.mp4   films a run of mercury evolve\n"
       "  mercury render RUN --map -o map.png\n"
+      "  mercury render eel.json --still 2 --background transparent --tight --scale-bar --dpi 300 -o figure.png\n"
       "  mercury render my-robots --fps 60 -o frames/        a folder of PNG pictures");
   command.when_chosen(
       [options, choose] { choose([options] { return options->robots.status(render_robots(*options)); }); });

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/base/progress.h"
+#include "app/recording/trajectory_layout.h"
 #include "app/video/frame_writer.h"
 #include "app/video/side_by_side.h"
 #include "mercury/error.h"
@@ -21,6 +22,16 @@ Subject recording_of(const RenderOptions& options, const std::filesystem::path& 
   if (recording.frames() == 0) throw InputError(file.string(), "holds no frames");
   subject.configuration = recording.configuration();
   subject.seconds = options.simulation.seconds(recording.time(recording.frames() - 1) - recording.time(0));
+  return subject;
+}
+
+// Two recordings side by side, as long as the longer one.
+std::optional<Subject> two_recordings_of(const RenderOptions& options) {
+  const std::vector<std::filesystem::path> files = options.robots.files();
+  if (files.size() != 2 || !std::ranges::all_of(files, is_readable_trajectory_name)) return std::nullopt;
+  Subject subject = recording_of(options, files[0]), second = recording_of(options, files[1]);
+  subject.second_recording = std::move(second.recording);
+  subject.seconds = std::max(subject.seconds, second.seconds);
   return subject;
 }
 
@@ -87,6 +98,7 @@ Subject subject_of(RenderOptions& options, ViewSettings& view) {
     throw InputError(option, "films a run of mercury evolve" +
                                  (files.empty() ? "; give its folder" : ", and " + files[0].string() + " is none"));
   }
+  if (std::optional<Subject> sides = two_recordings_of(options)) return *std::move(sides);
   if (const auto file = options.robots.recording()) return recording_of(options, *file);
   return robots_of(options);
 }
@@ -119,12 +131,18 @@ std::string Subject::comment(const Clip& clip) const {
 }
 
 std::optional<Simulation> Subject::second_of(const Clip& clip, const ViewSettings& view) const {
+  if (second_recording) return playback(second_recording);
   if (!view.compare) return std::nullopt;
   return Simulation(view.compare->over(configuration), clip.robots, shown_work());
 }
 
+std::array<std::string, 2> Subject::titles() const {
+  if (!second_recording) return {};
+  return {recording->path().stem().string(), second_recording->path().stem().string()};
+}
+
 void check_options(RenderOptions& options) {
-  if (options.film.map()) options.video.set_usual_still(0);
+  if (options.film.map() || options.view.settings().background) options.video.set_usual_still(0);
   options.video.plan(options.simulation.seconds());
   options.view.settings();
 }
@@ -135,8 +153,15 @@ RenderTask render_task(RenderOptions& options) {
   if (task.subject.recording && task.view.compare)
     throw InputError("--compare", "not together with a recording, which has one side; give its robots' files");
   task.plan = options.video.plan(task.subject.seconds);
-  if (task.view.compare) halves_of(task.plan.size);
+  if (task.view.compare || task.subject.second_recording) halves_of(task.plan.size);
   require_moment(options.video, task.subject);
+  if (task.view.background &&
+      (!options.video.still() || task.view.compare || task.view.board || task.subject.second_recording))
+    throw InputError("--background", "is of a still of robots; give --still S, without --compare and --map");
+  if (options.video.tight() && !task.view.background)
+    throw InputError("--tight", "cuts a figure off; give --background, too");
+  if (options.video.text_aside() && !task.view.background)
+    throw InputError("-o", "an .svg is a figure; give --background, too");
   if (task.subject.clips.size() > 1 && options.video.contact_sheet()) plan_sheet_of_clips(task.subject, task.plan);
   task.view.interop = options.video.interop();
   task.view.speed = options.video.single_picture() ? 1 : options.video.speed();

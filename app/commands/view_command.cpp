@@ -63,6 +63,7 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.interop = !options.no_interop;
   result.paced = !options.unpaced;
   result.view = options.view.settings(Layout::cells);
+  if (result.view.background) throw InputError("--background", "is of a still; mercury render draws figures");
   result.attached = options.attachments.attached();
   return result;
 }

@@ -33,7 +33,7 @@ PictureSize size_from(const std::string& option, const std::string& text) {
 void VideoOptions::add_to(const Command& command) {
   const auto add = [](const Option& option) { option.in_group("Picture"); };
   add_text(command, "-o,--output", output_,
-           "Video (.mp4, .webm, .gif), picture (.png), or a folder for one PNG per frame", "FILE|FOLDER")
+           "Video (.mp4, .webm, .gif), picture (.png, .svg), or a folder for one PNG per frame", "FILE|FOLDER")
       .required();
   add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from)
           .on_first_screen());
@@ -45,6 +45,8 @@ void VideoOptions::add_to(const Command& command) {
           .on_first_screen());
   add(add_value(command, "--contact-sheet", contact_sheet_,
                 "Columns and rows of moments of --seconds in one picture (.png), as wide as --size", "CxR", grid_from));
+  add(add_number(command, "--dpi", dpi_, "How large a picture is on paper: pixels per inch, as in 300", "N"));
+  add(command.add_flag("--tight", tight_, "With --background: cut the picture off around what it shows"));
   add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4").on_first_screen());
   add(add_choice(command, "--quality", quality_, {"auto", "low", "medium", "high"},
                  "Quality of the drawing (default auto: high on a GPU, low without)"));
@@ -64,6 +66,9 @@ void VideoOptions::validate() const {
     throw InputError("--speed", fmt::format("{} is not accepted; give {} to {:.0f}", speed_, slowest, 1 / slowest));
   if (still_ && !(std::isfinite(*still_) && *still_ >= 0))
     throw InputError("--still", fmt::format("{} is not accepted; give a finite number >= 0 s", *still_));
+  if (dpi_ && !(*dpi_ >= 1 && *dpi_ <= 100000))
+    throw InputError("--dpi", fmt::format("{} is not accepted; give 1 to 100000 pixels per inch", *dpi_));
+  if (dpi_ && !single_picture()) throw InputError("--dpi", "is of a picture; give --still, or -o FILE.png");
   if (still_ && contact_sheet_) throw InputError("--still", "not together with --contact-sheet; give one of them");
   if (contact_sheet_ && std::max(contact_sheet_->columns, contact_sheet_->rows) > most_moments)
     throw InputError("--contact-sheet", fmt::format("{}x{} is not accepted; give up to {} columns and rows",
@@ -71,7 +76,8 @@ void VideoOptions::validate() const {
 }
 
 void VideoOptions::set_usual_still(double seconds) {
-  if (!single_picture() && std::filesystem::path(output_).extension() == ".png") still_ = seconds;
+  const std::filesystem::path extension = std::filesystem::path(output_).extension();
+  if (!single_picture() && (extension == ".png" || extension == ".svg")) still_ = seconds;
 }
 
 PictureSize VideoOptions::asked_size() const {
@@ -90,7 +96,7 @@ VideoOptions::Plan VideoOptions::plan(double seconds) const {
 }
 
 VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {
-  require_picture_name(output_);
+  if (!still_ || !text_aside()) require_picture_name(output_);
   if (still_) return {.size = asked_size(), .timing = {.frames = 1, .start = *still_}};
   const PictureSize sheet = asked_size();
   const int width = (sheet.width + sheet_gap) / contact_sheet_->columns - sheet_gap;
@@ -131,7 +137,8 @@ std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::str
                                                 const std::string& comment) const {
   const std::string output = output_of(name);
   if (single_picture())
-    return std::make_unique<ContactSheet>(output, contact_sheet_.value_or(Grid{}), plan.size, sheet_gap, comment);
+    return std::make_unique<ContactSheet>(output, contact_sheet_.value_or(Grid{}), plan.size, sheet_gap, comment,
+                                          dpi());
   return open_frame_writer(output, {.size = plan.size,
                                     .frames_per_second = 1 / plan.timing.pace,
                                     .expected_frames = plan.timing.frames,

@@ -2,6 +2,7 @@
 // The options for pictures and videos: size, timing, quality, encoding.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -44,6 +45,10 @@ class VideoOptions {
   bool each() const { return each_; }
   std::optional<double> still() const { return still_; }  // [s]
   std::optional<Grid> contact_sheet() const { return contact_sheet_; }
+  bool tight() const { return tight_; }
+  double dpi() const { return dpi_.value_or(0); }
+  // Whether the picture is an SVG, whose text is text.
+  bool text_aside() const { return std::filesystem::path(output_).extension() == ".svg"; }
   bool single_picture() const { return still_ || contact_sheet_; }
   PictureSize asked_size() const;
   render::ContextKind context_kind() const { return render::context_kind_named(gl_); }
@@ -60,7 +65,8 @@ class VideoOptions {
   std::optional<Grid> contact_sheet_;
   double speed_ = 1;
   std::optional<int> crf_;
-  bool each_ = false, no_interop_ = false;
+  std::optional<double> dpi_;
+  bool each_ = false, no_interop_ = false, tight_ = false;
   std::string ffmpeg_, gl_ = "auto", quality_ = "auto";
 };
 

@@ -44,6 +44,9 @@ void ViewOptions::add_to(const Command& command) {
                "TEXT"));
   add(add_choice(command, "--theme", words_.theme, {"dark", "light"}, "Colors of the surroundings (default dark)"));
   add(command.add_flag("--plain", words_.plain, "A plain backdrop rather than water or land"));
+  add(add_text(command, "--background", words_.background,
+               "Of a still: robots, their shadows and text alone, over white, black, #rrggbb or transparent", "COLOR"));
+  add(command.add_flag("--scale-bar", words_.scale_bar, "Also a bar of a round length"));
   add(command.add_flag("--smooth", words_.smooth, "Round skins rather than edged ones"));
   add(add_value(command, "--cut", words_.cut, "Cut each robot open beyond a plane, as in y:30%", "AXIS[:PLACE]",
                 text_from));

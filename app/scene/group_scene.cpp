@@ -69,10 +69,13 @@ void GroupScene::place_floor() { scene_.floor = has_ground(environment_) ? 0 : s
 
 // The parts of the scene that depend only on the settings and the environment.
 void GroupScene::show_surroundings() {
-  const bool plain = settings_.plain || !tiles_.empty();
+  const bool plain = settings_.plain || settings_.flat_backdrop || !tiles_.empty();
   const bool land = has_ground(environment_);
   motion_.set(motion_of(settings_), environment_, picture_axes(direction_of(settings_.camera, land)).right);
   scene_.surroundings = plain ? render::Surroundings::none : surroundings_of(environment_);
+  scene_.catch_shadows = plain && land && tiles_.empty();
+  scene_.flat_backdrop = settings_.flat_backdrop;
+  scene_.text_aside = settings_.text_aside;
   scene_.flow = render::Vector3(flow_of(environment_));
   scene_.show = {.skin = settings_.shown.skin, .springs = settings_.shown.springs, .masses = settings_.shown.masses};
   scene_.theme = settings_.theme;

@@ -35,7 +35,10 @@ struct ViewSettings {
   bool log_scale = false;
   Shown shown;
   render::Theme theme = render::Theme::dark;
-  bool plain = false;  // a plain backdrop rather than water or land
+  bool plain = false;                       // a plain backdrop rather than water or land
+  std::optional<render::Color> background;  // of a figure: bodies and their shadows alone over it; opacity 0 or 255
+  std::optional<float> flat_backdrop;       // while a figure is drawn, see render::Scene
+  bool text_aside = false;                  // likewise
   bool smooth = false;
   std::optional<render::Cut> cut;  // opens each robot
   Layout layout = Layout::grid;

@@ -43,6 +43,21 @@ render::Colormap colormap_named(const std::string& name) {
   throw ParameterError("colormap", fmt::format("\"{}\" is not accepted; give {}", name, fmt::join(names, ", ")));
 }
 
+// "white", "#2a6f97"; "transparent" has no opacity.
+render::Color background_from(const std::string& text) {
+  if (text == "transparent") return {0, 0, 0, 0};
+  if (text == "white") return {};
+  if (text == "black") return {0, 0, 0, 255};
+  std::uint32_t number = 0;
+  const auto [end, error] =
+      std::from_chars(text.data() + std::min<std::size_t>(1, text.size()), text.data() + text.size(), number, 16);
+  if (text.size() != 7 || text[0] != '#' || error != std::errc{} || end != text.data() + text.size())
+    throw ParameterError(
+        "background",
+        fmt::format("\"{}\" is not accepted; give white, black, transparent or a color as #2a6f97", text));
+  return render::rgb(number);
+}
+
 // "y", "-y:30%" or "y:0.2"
 render::Cut cut_from(const std::string& text) {
   static constexpr std::string_view axes = "xyz";
@@ -154,6 +169,13 @@ ViewSettings view_settings(const ViewWords& words, Layout usual) {
   settings.caption = words.caption;
   settings.theme = theme_named(words.theme);
   settings.plain = words.plain;
+  if (!words.background.empty()) {
+    settings.background = background_from(words.background);
+    // Text is dark on bright backgrounds, and on those that nobody knows yet.
+    const auto [r, g, b] = render::linear_of(*settings.background);
+    if (settings.background->a == 0 || 0.2126f * r + 0.7152f * g + 0.0722f * b > 0.2f)
+      settings.theme = render::Theme::light;
+  }
   settings.layout = words.layout ? layout_named(*words.layout) : usual;
   if (words.cut) settings.cut = cut_from(*words.cut);
   if (!words.camera.empty()) settings.camera = camera_named(words.camera);
@@ -166,6 +188,7 @@ ViewSettings view_settings(const ViewWords& words, Layout usual) {
   if (words.zoom) settings.camera.zoom = *words.zoom;
   settings.shown.legend = settings.color->has_values();
   if (words.show) settings.shown = shown_from(*words.show);
+  settings.shown.scale_bar = settings.shown.scale_bar || words.scale_bar;
   settings.shown.arrows.length = words.arrow_length;
   settings.shown.arrows.density = words.arrow_density;
   settings.shown.arrows.threshold = words.arrow_threshold;

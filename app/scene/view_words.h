@@ -22,6 +22,8 @@ struct ViewWords {
   std::string caption;                           // text in the upper left corner; further lines are smaller
   std::string theme = "dark";                    // "dark" or "light"
   bool plain = false;                            // a plain backdrop rather than water or land
+  std::string background;                        // "white", "transparent", "#rrggbb"; empty = the surroundings
+  bool scale_bar = false;                        // in addition to what is shown
   bool smooth = false;                           // round skins rather than edged ones
   std::optional<std::string> cut;                // opens each robot beyond a plane: "y:30%"
   std::optional<std::string> layout;             // "grid", "cells" or "race"; absent = the usual

@@ -24,8 +24,9 @@ void require_picture_name(const std::string& output) {
     throw ParameterError("output", output + ": a picture is written as .png; give such a name");
 }
 
-ContactSheet::ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap, std::string comment)
-    : output_(output), comment_(std::move(comment)), grid_(grid), frame_(frame), gap_(gap) {
+ContactSheet::ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap, std::string comment,
+                           double dpi)
+    : output_(output), comment_(std::move(comment)), grid_(grid), frame_(frame), gap_(gap), dpi_(dpi) {
   require_picture_name(output);
   const auto [width, height] = size_of_sheet(grid, frame, gap);
   make_parent_folder(output);
@@ -45,7 +46,7 @@ void ContactSheet::write(const render::Image& frame) {
   ++count_;
 }
 
-void ContactSheet::finish() { write_picture(output_, sheet_, comment_); }
+void ContactSheet::finish() { write_picture(output_, sheet_, comment_, dpi_); }
 
 std::string ContactSheet::description() const {
   return grid_.columns * grid_.rows == 1 ? "a PNG picture"

@@ -19,7 +19,8 @@ void require_picture_name(const std::string& output);
 class ContactSheet final : public FrameWriter {
  public:
   // Throws as require_picture_name() and size_of_sheet().
-  ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap, std::string comment = {});
+  ContactSheet(const std::string& output, Grid grid, PictureSize frame, int gap, std::string comment = {},
+               double dpi = 0);
   void write(const render::Image& frame) override;
   void finish() override;
   std::string description() const override;
@@ -29,6 +30,7 @@ class ContactSheet final : public FrameWriter {
   Grid grid_;
   PictureSize frame_;
   int gap_;
+  double dpi_;
   int count_ = 0;
   render::Image sheet_;
 };

@@ -43,8 +43,11 @@ void write_into(const fs::path& file, int flags, std::span<const std::uint8_t> b
 
 }  // namespace
 
-void write_picture(const fs::path& file, const render::Image& image, std::string_view comment) {
-  const std::vector<std::uint8_t> bytes = render::png_bytes(image, comment);
+void write_picture(const fs::path& file, const render::Image& image, std::string_view comment, double dpi) {
+  write_picture_bytes(file, render::png_bytes(image, comment, dpi));
+}
+
+void write_picture_bytes(const fs::path& file, std::span<const std::uint8_t> bytes) {
   if (is_device_or_pipe(file)) return write_into(file, 0, bytes, file);
   UnfinishedFile unfinished(file);
   write_into(unfinished.path(), O_CREAT | O_EXCL, bytes, file);

@@ -22,12 +22,18 @@ float aspect_of(const render::Renderer& renderer) {
 
 // What the sides of a comparison are, above each: its own settings where they differ.
 using SideSettings = std::array<ViewSettings, 2>;
-SideSettings settings_of_sides(const ViewSettings& settings, const Configuration& first, const Configuration& second) {
+SideSettings settings_of_sides(const ViewSettings& settings, const Configuration& first, const Configuration& second,
+                               const std::array<std::string, 2>& titles) {
   const auto on_land = [](const Configuration& one) { return has_ground(one.environment); };
   SideSettings sides{settings, known_in(settings, second.environment)};
   const auto [title, second_title] = differences(first, second);
-  for (const auto& [side, text] : {std::pair(&sides[0], &title), std::pair(&sides[1], &second_title)})
-    side->caption += (side->caption.empty() || text->empty() ? "" : "\n") + *text;
+  const auto add = [](ViewSettings& side, const std::string& text) {
+    side.caption += (side.caption.empty() || text.empty() ? "" : "\n") + text;
+  };
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    add(sides.at(i), titles.at(i));
+    add(sides.at(i), i == 0 ? title : second_title);
+  }
   // Robots on land stand in rows on the ground, and beside them those in water do, too.
   if (on_land(first) && !on_land(second)) sides[1].camera.mode = CameraMode::top;
   return sides;
@@ -66,13 +72,15 @@ struct VideoPipeline::Side {
 };
 
 VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings,
-                             std::span<const std::string> names, std::optional<Simulation> second) {
+                             std::span<const std::string> names, std::optional<Simulation> second,
+                             const std::array<std::string, 2>& titles) {
   if (!second) {
     sides_.push_back(std::make_unique<Side>(std::move(simulation), offscreen, std::nullopt, settings, names));
     return;
   }
   const auto sizes = halves_of({offscreen.renderer.width(), offscreen.renderer.height()});
-  const SideSettings of_sides = settings_of_sides(settings, simulation.configuration(), second->configuration());
+  const SideSettings of_sides =
+      settings_of_sides(settings, simulation.configuration(), second->configuration(), titles);
   sides_.push_back(std::make_unique<Side>(std::move(simulation), offscreen, sizes[0], of_sides[0], names));
   sides_.push_back(std::make_unique<Side>(std::move(*second), offscreen, sizes[1], of_sides[1], names));
   // One clock on the left and one legend on the right. The cameras have left room for both.

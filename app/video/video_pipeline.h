@@ -2,6 +2,7 @@
 // Everything that a video of a group needs, put together.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,10 +31,12 @@ OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize 
 class VideoPipeline {
  public:
   // `names`: one per robot, shown instead of its own; empty = its own. `second`: the same robots under other settings,
-  // as settings.compare says; the frame then has two sides. Throws InputError for a setting that does not suit the
-  // robots or their environment, ParameterError("size", ...) for frames too narrow for two sides.
+  // as settings.compare says, or others; the frame then has two sides, with `titles` above them. Throws InputError for
+  // a setting that does not suit the robots or their environment, ParameterError("size", ...) for frames too narrow for
+  // two sides.
   VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings,
-                std::span<const std::string> names = {}, std::optional<Simulation> second = {});
+                std::span<const std::string> names = {}, std::optional<Simulation> second = {},
+                const std::array<std::string, 2>& titles = {});
   ~VideoPipeline();
   VideoPipeline(const VideoPipeline&) = delete;
   VideoPipeline& operator=(const VideoPipeline&) = delete;

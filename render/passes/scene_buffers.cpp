@@ -131,7 +131,7 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   b.ground = {0, 0, 1, scene.floor};
   b.water = {float(scene.surroundings), style.caustics, 0, distance};
   const Octave octave = octave_of(distance);
-  b.octave = {octave.size, 2 * octave.size, octave.share_of_double, 0};
+  b.octave = {octave.size, 2 * octave.size, octave.share_of_double, scene.catch_shadows ? 1.0f : 0.0f};
   return b;
 }
 

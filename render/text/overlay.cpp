@@ -51,6 +51,7 @@ Overlay::Overlay(int width, int height, float text_size, const Style& style)
 void Overlay::text(std::string_view utf8, float x, float y, float size, float align, float opacity) {
   const FontData& font = font_data();
   const float scale = size / float(font.size);
+  texts_.push_back({std::string(utf8), x, y, size, scale * font.ascent, align, opacity});
   float pen = x - align * text_width(utf8, size);
   const float base = y + scale * font.ascent;
   for (const int code : characters_of(utf8)) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -32,6 +33,13 @@ struct OverlayQuad {
   std::uint32_t padding = 0;
 };
 
+// A line of text as it was asked for, for pictures whose text is not of pixels. (x, y) is its upper left, middle or
+// right end, and `ascent` below y is its base line.
+struct OverlayText {
+  std::string text;
+  float x = 0, y = 0, size = 0, ascent = 0, align = 0, opacity = 1;
+};
+
 // Lays out one picture's text and collects its quads.
 class Overlay {
  public:
@@ -39,6 +47,8 @@ class Overlay {
 
   float text_size() const { return text_size_; }
   std::span<const OverlayQuad> quads() const { return quads_; }
+  std::span<const OverlayText> texts() const { return texts_; }
+  const Style& style() const { return style_; }
 
   // One line of text. (x, y) is its upper left corner, or its upper middle (align 0.5) or upper right corner (align 1).
   void text(std::string_view utf8, float x, float y, float size, float align = 0, float opacity = 1);
@@ -67,6 +77,7 @@ class Overlay {
   float width_, height_, text_size_;
   Style style_;
   std::vector<OverlayQuad> quads_;
+  std::vector<OverlayText> texts_;
 };
 
 // The longest of 1, 2, 5 times a power of ten that is not above `most`.

@@ -86,6 +86,41 @@ TEST_F(RenderCommand, StillShowsTheGivenTime) {
   EXPECT_LT(difference / static_cast<double>(still.bytes.size()), 8);
 }
 
+// On land, so that there is a shadow.
+TEST_F(RenderCommand, FiguresShowRobotsAndTheirShadowsAlone) {
+  const std::vector<std::string> figure{"--background", "transparent", "--environment", "land", "--show", "skin"};
+  ASSERT_EQ(mercury(command("a.png", figure)).status, 0);
+  const render::Image image = render::read_png(path("a.png"));
+  ASSERT_EQ(image.format, render::PixelFormat::rgba);
+  ASSERT_EQ(image.width, 160);
+  int nothing = 0, solid = 0, shadow = 0;
+  for (std::size_t i = 0; i + 3 < image.bytes.size(); i += 4) {
+    const std::uint8_t opacity = image.bytes[i + 3];
+    nothing += opacity == 0;
+    solid += opacity == 255;
+    shadow += opacity > 30 && opacity < 200 && image.bytes[i] < 20;
+  }
+  EXPECT_GT(nothing, 160 * 90 / 4);
+  EXPECT_GT(solid, 160 * 90 / 50);
+  EXPECT_GT(shadow, 50);
+  std::vector<std::string> tight = figure;
+  tight.insert(tight.end(), {"--tight", "--dpi", "300"});
+  ASSERT_EQ(mercury(command("b.png", tight)).status, 0);
+  EXPECT_LT(render::read_png(path("b.png")).width, 160);
+  EXPECT_NE(read("b.png").find("pHYs"), std::string::npos);
+  ASSERT_EQ(mercury(command("c.png", {"--background", "white", "--show", "skin"})).status, 0);
+  const render::Image white = render::read_png(path("c.png"));
+  EXPECT_EQ(white.format, render::PixelFormat::rgb);
+  EXPECT_TRUE(std::all_of(white.bytes.begin(), white.bytes.begin() + 9, [](int byte) { return byte == 255; }));
+  ASSERT_EQ(mercury(command("d.svg", {"--background", "white", "--caption", "Fig. 1", "--scale-bar"})).status, 0);
+  EXPECT_THAT(read("d.svg"), HasSubstr(">Fig. 1</text>"));
+  EXPECT_THAT(mercury(command("e.mp4", {"--background", "white"})).messages, HasSubstr("--background: is of a still"));
+  EXPECT_THAT(mercury(command("e.png", {"--tight", "--still", "0"})).messages, HasSubstr("--tight: cuts a figure off"));
+  EXPECT_THAT(
+      mercury(command("e.png", {"--background", "mauve"})).messages,
+      HasSubstr("--background: \"mauve\" is not accepted; give white, black, transparent or a color as #2a6f97"));
+}
+
 TEST_F(RenderCommand, ContactSheetHasTheRequestedWidth) {
   ASSERT_EQ(mercury(command("a.png", {"--contact-sheet", "3x2", "--seconds", "0.5", "--size", "400x200"})).status, 0);
   const render::Image sheet = render::read_png(path("a.png"));
@@ -107,6 +142,33 @@ TEST_F(RenderCommand, RecordingGivesThePicturesOfTheSimulation) {
   EXPECT_EQ(listing("played"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
   for (const std::string& frame : listing("direct"))
     EXPECT_EQ(read("direct/" + frame), read("played/" + frame)) << frame;
+}
+
+// Each half is the picture of its recording, but for camera and captions, which stand in the corners.
+TEST_F(RenderCommand, TwoRecordingsPlaySideBySide) {
+  const auto record = [&](const std::string& name, const std::string& robots, const std::string& seconds) {
+    return mercury({"run", "--random", robots, "--seconds", seconds, "--record", path(name), "--device", "cpu"}).status;
+  };
+  ASSERT_EQ(record("one.h5", "voxel:1", "0.2"), 0);
+  ASSERT_EQ(record("other.h5", "voxel:2:7", "0.4"), 0);
+  const std::vector<std::string> sides{"render", path("one.h5"), path("other.h5"), "--size", "320x120", "--fps", "10"};
+  std::vector<std::string> frames = sides;
+  frames.insert(frames.end(), {"-o", path("sides")});
+  const Outcome outcome = mercury(frames);
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(listing("sides").size(), 4u);  // as long as the longer one
+  const render::Image first = render::read_png(path("sides/frame-00000.png")),
+                      last = render::read_png(path("sides/frame-00003.png"));
+  const auto half = [](const render::Image& image, int begin) {
+    std::vector<std::uint8_t> bytes;
+    for (int y = 30; y < 90; ++y)
+      for (int x = begin + 20; x < begin + 140; ++x)
+        bytes.push_back(image.bytes[3 * (static_cast<std::size_t>(y) * 320 + static_cast<std::size_t>(x))]);
+    return bytes;
+  };
+  EXPECT_NE(half(first, 0), half(first, 160));
+  EXPECT_NE(half(first, 160), half(last, 160));
+  EXPECT_EQ(mercury({"render", path("one.h5"), path("other.h5"), path("one.h5"), "-o", path("a.mp4")}).status, 2);
 }
 
 TEST_F(RenderCommand, RecordingDoesNotMixWithRobots) {
