@@ -227,7 +227,7 @@ void add_render_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor), folders, samples (sample:eel), a recording (.h5) or two side by side, or a run");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), a run, one or two recordings (.h5)");
   options->video.add_to(command);
   options->view.add_to(command);
   options->film.add_to(command);
@@ -242,7 +242,6 @@ void add_render_command(const Command& program, const Choose& choose) {
       "  mercury render eel.json --compare solver=xpbd -o sides.mp4\n"
       "  mercury render my-robots --contact-sheet 5x2 --seconds 9 -o poster.png\n"
       "  mercury render run.h5 -o run.mp4                    plays a recording of mercury run --record\n"
-      "  mercury render before.h5 after.h5 -o sides.mp4      two recordings side by side\n"
       "  mercury render RUN --lineage best -o ancestry.mp4   films a run of mercury evolve\n"
       "  mercury render RUN --map -o map.png\n"
       "  mercury render eel.json --still 2 --background transparent --tight --scale-bar --dpi 300 -o figure.png\n"

@@ -22,8 +22,8 @@ inline constexpr std::array<float, 2> figure_backdrops{0.02f, 0.5f};
 //
 //   c + t backdrop     in linear light: what bodies give, and how much of the backdrop they and their shadows leave
 //
-// so c and t follow from two backdrops. Transparent pixels are such that they look the same over white and over black where
-// programs blend bytes, as almost all do.
+// so c and t follow from two backdrops. Transparent pixels are such that they look the same over white and over black
+// where programs blend bytes, as almost all do.
 render::Image matted(const std::array<render::Image, 2>& pictures, render::Color background);
 
 // In pixels from the upper left corner; the upper left one belongs to it, the lower right one does not.
