@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of other simulators.
+#include <cmath>
+
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/origin.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "mercury/voxel.h"
+#include "robots/importers/encodings.h"
 #include "tests/fuzz/target.h"
+#include "tests/robots/importers/documents.h"
 
 namespace mercury::fuzz {
 namespace {
@@ -21,6 +25,16 @@ void check(const Import& import) {
   for (const ImportedElement& element : import.report.elements) {
     require(!element.place.empty(), "an element without a place");
     require(!element.reason.empty(), "an element without a reason: " + element.place);
+  }
+  if (import.motion) {
+    std::size_t masses = 0;
+    for (const Robot& robot : import.robots) masses += robot.masses.size();
+    require(import.motion->times.size() == import.motion->positions.size(), "frames without a time");
+    for (const std::vector<Vec3>& frame : import.motion->positions) {
+      require(frame.size() == masses, "a frame of other masses");
+      for (const auto [x, y, z] : frame)
+        require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z), "a position that is not finite");
+    }
   }
   require(!to_toml(import.settings, import.report).empty(), "no configuration");
 }
@@ -54,6 +68,7 @@ const std::string rise =
 void check_vxa(std::string_view input) {
   const Import import = import_text(input, "vxa", "fuzz");
   check(import);
+  if (import.robots.empty()) return;  // a base of VXD files
   // What is written of it can be read, and has the same body.
   const Robot& robot = import.robots.front();
   const Import back = import_text(vxa_document(robot), "vxa", "fuzz");
@@ -63,6 +78,8 @@ void check_vxa(std::string_view input) {
 void check_vxd(std::string_view input) { check(import_text(input, "vxd", "fuzz", {}, small_vxa())); }
 void check_rsc(std::string_view input) { check(import_text(input, "rsc", "fuzz")); }
 void check_evogym(std::string_view input) { check(import_text(input, "evogym", "fuzz", {.depth = 2})); }
+void check_npz(std::string_view input) { check(import_text(input, "npz", "fuzz")); }
+void check_history(std::string_view input) { check(import_text(input, "history", "fuzz")); }
 
 std::vector<std::string> vxa_seeds() {
   return {small_vxa(), xml("<Layer>AQE=</Layer><Layer>AAE=</Layer>", "BASE64"),
@@ -83,6 +100,17 @@ std::vector<std::string> evogym_seeds() {
   return {R"({"grid_width": 4, "grid_height": 3, "objects": {"robot": {"indices": [4, 5, 6, 8], "types": [3, 2, 4, 1],
 "neighbors": {"4": [5, 8], "5": [4, 6], "6": [5], "8": [4]}}, "ground": {"indices": [0, 1, 2, 3], "types": [5, 5, 5, 5],
 "neighbors": {}}, "box": {"indices": [7], "types": [2], "neighbors": {"7": []}}}})"};
+}
+
+std::vector<std::string> npz_seeds() { return {base64_decoded(stored_body), base64_decoded(compressed_body)}; }
+
+std::vector<std::string> history_seeds() {
+  const std::string settings = "{{{setting}}}<rescale>0.001</rescale>\n{{{setting}}}<voxel_size>0.01</voxel_size>\n";
+  const std::string apart = "0,0,0,0,0,0,0,-5,-5,-5,5,5,5,1,0,;50,0,20,0,0,0,0,-5,-5,-5,5,5,5,3,0,;<<<>>>\n";
+  return {settings + "<<<Step0 Time:0.001>>>" + apart,
+          settings +
+              "<<<Step0 Time:0.001>>>0,0,0,0,0,0,0,-5,-5,-5,5,5,5,1,0,;10,0,0,0,0,0,0,-5,-5,-5,5,5,5,1,0,;<<<>>>\n"
+              "<<<Step42 Time:0.011>>>1,0,0,90,0,0,1,-6,-5,-5,6,5,5,1,0,;10,0,0,0,0,0,0,-5,-5,-5,5,5,5,1,0,;<<<>>>\n"};
 }
 
 }  // namespace mercury::fuzz

@@ -79,6 +79,8 @@ std::span<const Target> targets() {
                                   Target{"vxd", "vxa", vxd_seeds, check_vxd},
                                   Target{"rsc", "vxa", rsc_seeds, check_rsc},
                                   Target{"evogym", "robot", evogym_seeds, check_evogym},
+                                  Target{"npz", "history", npz_seeds, check_npz},
+                                  Target{"history", "history", history_seeds, check_history},
                                   Target{"scene", "toml", scene_seeds, check_scene},
                                   Target{"keys", "keys", keys_seeds, check_keys}};
   return all;

@@ -54,6 +54,8 @@ void check_vxa(std::string_view input);
 void check_vxd(std::string_view input);
 void check_rsc(std::string_view input);
 void check_evogym(std::string_view input);
+void check_npz(std::string_view input);
+void check_history(std::string_view input);
 void check_scene(std::string_view input);
 void check_keys(std::string_view input);
 
@@ -72,6 +74,8 @@ std::vector<std::string> vxa_seeds();
 std::vector<std::string> vxd_seeds();
 std::vector<std::string> rsc_seeds();
 std::vector<std::string> evogym_seeds();
+std::vector<std::string> npz_seeds();
+std::vector<std::string> history_seeds();
 std::vector<std::string> scene_seeds();
 std::vector<std::string> keys_seeds();
 
