@@ -336,7 +336,7 @@ int run_resumed(RunOptions options) {
       });
 }
 
-int run(RunOptions options) {
+int run(RunOptions& options) {  // its robots count what is left out
   options.replaces_csv = is_there(options.csv);
   if (options.resume.empty()) prepare_outputs(options);
   if (options.json && is_standard_output(options.csv))
