@@ -262,6 +262,9 @@ class HistoryImport {
       for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += voxel.middle[axis] + turned[axis];
     }
     const double share = scale_ / static_cast<double>(voxels.size());
+    constexpr double farthest = 1e6;  // [m]
+    for (const double along : sum)
+      if (!(std::abs(share * along) < farthest)) throw InputError("a voxel is too far away");
     // voxcraft-sim has the middles of the lowest voxels at half an edge, or at 0 with its floor half an edge lower.
     return {static_cast<float>(share * sum[0]), static_cast<float>(share * sum[1]),
             static_cast<float>(share * sum[2] + imported_edge / 2)};

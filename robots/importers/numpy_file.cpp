@@ -104,13 +104,13 @@ NumpyArray array_of(std::string_view npy, std::string name) {
   const std::size_t length = is_first_version ? number_at<std::uint16_t>(npy, 8) : number_at<std::uint32_t>(npy, 8);
   const std::size_t begin = is_first_version ? 10 : 12;
   const std::string_view header = part(npy, begin, length), data = npy.substr(begin + length);
-  const std::string_view kind_name = value_of(header, "descr").substr(1, 3);
+  const std::string_view description = value_of(header, "descr");
+  if (description.empty()) damaged();
+  const std::string_view kind_name = description.substr(1, 3);
   const NumberKind* kind = nullptr;
   for (const NumberKind& known : kinds)
     if (known.name == kind_name) kind = &known;
-  if (!kind)
-    throw InputError("/" + name,
-                     fmt::format("holds {}, and numbers are expected", value_of(header, "descr").substr(0, 12)));
+  if (!kind) throw InputError("/" + name, fmt::format("holds {}, and numbers are expected", description.substr(0, 12)));
   NumpyArray array{.name = std::move(name), .shape = shape_in(value_of(header, "shape")), .values = {}};
   std::size_t count = 1;
   for (const std::size_t n : array.shape)

@@ -141,6 +141,11 @@ TEST(Evogym, BodiesOfNumpyAreWorldsOfOneObject) {
 TEST(BadEvogym, ArchivesThatAreNone) {
   const std::string file = base64_decoded(stored_body);
   EXPECT_EQ(refusal_of("PK, but no archive", "npz"), "not an archive of NumPy (.npz), or damaged");
+  std::string undescribed = file;  // the header of the first array ends with 'descr':
+  const std::size_t header = undescribed.find("{'descr'");
+  undescribed.replace(undescribed.find('\n', header) - 7, 8, "'descr':");
+  undescribed.replace(header, 8, "{'other'");
+  EXPECT_EQ(refusal_of(undescribed, "npz"), "not an archive of NumPy (.npz), or damaged");
   for (std::size_t end = 0; end < file.size(); end += 7)
     EXPECT_NE(refusal_of(std::string_view(file).substr(0, end), "npz"), "no error") << end;
   for (std::size_t place = 0; place < file.size(); ++place) {  // no crash

@@ -51,6 +51,14 @@ TEST(History, VoxelsBecomeBodiesAtTenTimesTheirSize) {
   EXPECT_EQ(import.robots[0].material_names, (std::vector<std::string>{"air", "material 1", "material 3"}));
 }
 
+TEST(History, VoxelsThatGoTooFarAwayAreRefused) {
+  for (const double x : {1e20, 1e300, -1e300}) {
+    const std::string far =
+        frame(42, 0.011, voxel(x, 0, 0, still, 5, 1), voxel(10, 0, 0, still, 5, 3), voxel(50, 0, 20, still, 5, 1));
+    EXPECT_EQ(refusal_of(head + at_rest + far, "history"), "a voxel is too far away");
+  }
+}
+
 // The first voxel is stretched to 12 mm along its own x axis, and turned by 90 degrees around z.
 TEST(History, CornersAreTurnedAndSharedOnesAreMeans) {
   const Import import = history(at_rest + frame(42, 0.011, voxel(1, 0, 0, "90.0,0.00,0.00,0.71,", 6, 1),
