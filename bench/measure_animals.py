@@ -107,7 +107,7 @@ def row(file: Path) -> str:
     robot = mercurysim.load(file)
     found, check = gait(robot), checked(file)
     first = check["steps"][0]
-    swings = robot.name in ("eel", "fish")
+    swings = robot.name in ("eel", "fish", "pike")
     return (
         f"| {robot.name} | {robot.origin['environment']} | {len(robot.masses)} | {found.length:.2f} m "
         f"| {first['median']:.2f} m ({first['lower_quartile']:.2f} to {first['upper_quartile']:.2f}) "

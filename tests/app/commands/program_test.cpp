@@ -56,10 +56,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"NoRobots",
                  {"run"},
                  "no robots given; name files, folders or samples (sample:eel), or use --random voxel:12, nn:12, "
-                 "shell:12 or cppn:12"},
+                 "shell:12, cppn:12 or tapered:12"},
         BadInput{"UnknownKind",
                  {"run", "--random", "fish:2"},
-                 "--random: \"fish\" is not a kind of robot; give voxel:N, nn:N, shell:N or cppn:N"},
+                 "--random: \"fish\" is not a kind of robot; give voxel:N, nn:N, shell:N, cppn:N or tapered:N"},
         BadInput{"NoCount",
                  {"run", "--random", "voxel:0"},
                  "--random: \"voxel:0\" is not accepted; give 1 to 1000000 robots"},
@@ -138,10 +138,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "ocean?"},
         BadInput{"Device", with({"--device", "cuad:1"}),
                  "--device: \"cuad:1\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all; did you mean cuda?"},
-        BadInput{
-            "Kind",
-            {"run", "--random", "vxel:3"},
-            "--random: \"vxel\" is not a kind of robot; give voxel:N, nn:N, shell:N or cppn:N; did you mean voxel?"},
+        BadInput{"Kind",
+                 {"run", "--random", "vxel:3"},
+                 "--random: \"vxel\" is not a kind of robot; give voxel:N, nn:N, shell:N, cppn:N or tapered:N; did you "
+                 "mean voxel?"},
         BadInput{"Word", with({"--form", "ribg"}),
                  "--form: \"ribg\" is not accepted; give any, bell, tube, ring or pod; did you mean ring?"},
         BadInput{"Shown",
