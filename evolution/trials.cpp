@@ -109,21 +109,25 @@ void for_each_broken_limit(const Evaluation& evaluation, const EvaluationRequest
   }
 }
 
-// Of which robots trials measure `inverted` and `overlap`: those that a limit asks about.
-std::function<bool(const Robot&)> measured_folding(const TrialSettings& settings) {
+// What trials measure of a robot's folding: what a limit asks about.
+std::function<MeasuredFolding(const Robot&)> measured_folding(const TrialSettings& settings) {
   if (settings.folding) return measure_all_folding;
   std::vector<const Limit*> asked;
   for (const Limit& limit : limits_table)
     if (is_of_folding(limit) && settings.*limit.value < 1) asked.push_back(&limit);
   if (asked.empty()) return nullptr;
   return [asked](const Robot& robot) {
-    return std::ranges::any_of(asked, [&](const Limit* limit) { return !limit->applies || limit->applies(robot); });
+    MeasuredFolding measured = MeasuredFolding::none;
+    for (const Limit* limit : asked)
+      if (!limit->applies || limit->applies(robot))
+        measured = std::max(measured, limit->quantity == "inverted" ? MeasuredFolding::inverted : MeasuredFolding::all);
+    return measured;
   };
 }
 
 }  // namespace
 
-bool measure_all_folding(const Robot&) { return true; }
+MeasuredFolding measure_all_folding(const Robot&) { return MeasuredFolding::all; }
 
 EvaluationRequest trial_request(const TrialSettings& settings, const Configuration& configuration, std::uint64_t seed) {
   const auto steps_in = [&](double seconds) { return std::int64_t{std::llround(seconds / configuration.dt)}; };

@@ -94,7 +94,7 @@ class Grid {
 
 }  // namespace
 
-BodyCells::BodyCells(const Robot& robot) {
+BodyCells::BodyCells(const Robot& robot, MeasuredFolding measured) : measured_(measured) {
   std::vector<std::uint32_t> pairs;  // in both directions
   for (const auto& [a, b, material, rest_length] : robot.springs) {
     pairs.push_back(std::uint32_t{a} << 16 | b);
@@ -122,8 +122,9 @@ BodyCells::BodyCells(const Robot& robot) {
     }
   }
   if (voxels_.empty()) find_tetrahedra(robot);
-  find_touching();
   for (const float volume : volumes_) volume_ += static_cast<double>(volume);
+  if (measured_ != MeasuredFolding::all) return;
+  find_touching();
   for_each_intruder(robot.masses, [&](std::uint16_t mass, std::uint32_t cell) { at_rest_.push_back(key(cell, mass)); });
   std::ranges::sort(at_rest_);
 }
@@ -230,12 +231,16 @@ void BodyCells::for_each_intruder(std::span<const Vec3> positions, const Visit& 
 }
 
 Folding BodyCells::folding(std::span<const Vec3> positions) const {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   Folding folding;
-  if (volumes_.empty()) return folding;
+  if (measured_ == MeasuredFolding::none) folding.inverted = nan;
+  if (measured_ != MeasuredFolding::all) folding.overlap = nan;
+  if (volumes_.empty() || measured_ == MeasuredFolding::none) return folding;
   double inverted = 0;
   for (std::size_t cell = 0; cell < volumes_.size(); ++cell)
     if (is_inverted(cell, positions)) inverted += static_cast<double>(volumes_[cell]);
   folding.inverted = static_cast<float>(inverted / volume_);
+  if (measured_ != MeasuredFolding::all) return folding;
   std::vector<bool> is_intruder(positions.size());
   for_each_intruder(positions, [&](std::uint16_t mass, std::uint32_t cell) {
     if (!is_intruder[mass]) is_intruder[mass] = !std::ranges::binary_search(at_rest_, key(cell, mass));

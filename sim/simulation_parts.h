@@ -33,7 +33,7 @@ struct Simulation::Parts {
   std::vector<std::unique_ptr<MaterialTable>> changed_tables;  // as they are now; null = the robot's own
   mutable std::vector<KnownExplosion> explosions;              // one per robot
   mutable std::vector<RobotStatus> reported;                   // one per robot, used by telemetry()
-  std::function<bool(const Robot&)> folding_of;                // none = of no robot
+  std::function<MeasuredFolding(const Robot&)> folding_of;     // none = of no robot
   // One per robot; nothing = not known yet, null = not measured.
   mutable std::vector<std::optional<std::shared_ptr<const BodyCells>>> cells;
   double check_seconds = 0;  // LoadTimes::check

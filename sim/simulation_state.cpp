@@ -142,10 +142,10 @@ std::vector<Telemetry> Simulation::telemetry() const {
 }
 
 void Simulation::measure_folding(bool on) {
-  measure_folding(on ? std::function([](const Robot&) { return true; }) : nullptr);
+  measure_folding(on ? std::function([](const Robot&) { return MeasuredFolding::all; }) : nullptr);
 }
 
-void Simulation::measure_folding(std::function<bool(const Robot&)> of) {
+void Simulation::measure_folding(std::function<MeasuredFolding(const Robot&)> of) {
   parts_->folding_of = std::move(of);
   parts_->cells.assign(size(), {});
 }
@@ -157,7 +157,8 @@ bool Simulation::Parts::find_cells() const {
   const auto is_repeated = [&](std::size_t i) { return i > 0 && robots[i] == robots[i - 1]; };
   oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
     if (cells[i] || is_repeated(i)) return;
-    cells[i] = folding_of(*robots[i]) ? std::make_shared<const BodyCells>(*robots[i]) : nullptr;
+    const MeasuredFolding measured = folding_of(*robots[i]);
+    cells[i] = measured == MeasuredFolding::none ? nullptr : std::make_shared<const BodyCells>(*robots[i], measured);
   });
   for (std::size_t i = 0; i < size(); ++i)
     if (!cells[i]) cells[i] = cells[i - 1];

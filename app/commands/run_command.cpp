@@ -310,7 +310,7 @@ int run_resumed(RunOptions options) {
   trials.strain_limit = checkpoint.notes.strain_limit;
   trials.folding = trials.folding ||
                    std::ranges::any_of(checkpoint.notes.measures,
-                                       [](const TrialMeasures::Sums& sums) { return std::isfinite(sums.inverted); });
+                                       [](const TrialMeasures::Sums& sums) { return std::isfinite(sums.overlap); });
   validate(trials);
   const double steps = std::round(trials.seconds / configuration.dt);
   if (!(steps <= 1e15) || steps < static_cast<double>(checkpoint.state.clock.step))

@@ -162,6 +162,13 @@ TEST_P(FoldingOn, TelemetryHasItWhereItIsAskedFor) {
   expect_measured(simulation.telemetry());
   simulation.add(robots[1]);
   expect_measured(simulation.telemetry());
+  simulation.measure_folding([&](const Robot& robot) {
+    return robot.masses.size() == robots[0].masses.size() ? MeasuredFolding::inverted : MeasuredFolding::none;
+  });
+  const Telemetry shaken = simulation.telemetry(1);  // robots[0], since keep()
+  EXPECT_EQ(shaken.inverted, BodyCells(robots[0]).folding(simulation.positions(1)).inverted);
+  EXPECT_TRUE(std::isnan(shaken.overlap));
+  EXPECT_TRUE(std::isnan(simulation.telemetry(0).inverted));
   simulation.measure_folding(false);
   EXPECT_TRUE(std::isnan(simulation.telemetry(0).overlap));
 }
@@ -181,7 +188,7 @@ TEST_P(FoldingOn, AnEvaluationHasTheLargestOfItsSamples) {
   const auto robot = std::make_shared<const Robot>(bodies::random_voxels({.x = 6, .y = 2, .z = 2}, 1));
   const State start = bodies::shaken(*robot, 0.2f, 0, 3);
   EvaluationRequest request{.configuration = {.device = device()}, .steps = 40, .sample_every = 10};
-  request.folding = [](const Robot&) { return true; };
+  request.folding = [](const Robot&) { return MeasuredFolding::all; };
   request.start = [&](std::size_t, const Robot&, std::span<Vec3> positions) {
     std::ranges::copy(start.positions, positions.begin());
   };

@@ -108,7 +108,7 @@ constexpr TrialSettings search_trials() {
 inline constexpr double trial_sample_period = 0.05;
 
 // EvaluationRequest::folding of all robots.
-bool measure_all_folding(const Robot& robot);
+MeasuredFolding measure_all_folding(const Robot& robot);
 
 // What an Evaluator does for the trials of robots. Robots come from trial_source(), or each is one trial of the
 // settings: the first.

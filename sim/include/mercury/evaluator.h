@@ -26,6 +26,7 @@
 
 #include "mercury/backend.h"
 #include "mercury/configuration.h"
+#include "mercury/folding.h"
 #include "mercury/robot.h"
 #include "mercury/state.h"
 #include "mercury/telemetry.h"
@@ -54,8 +55,8 @@ struct EvaluationRequest {
   // checked and scheduled once, so this is the cheap way to try a robot several times. Optional. Several threads call
   // it at the same time.
   std::function<void(std::size_t index, const Robot& robot, std::span<Vec3> positions)> start;
-  // Of which robots the telemetry has `inverted` and `overlap`: Simulation::measure_folding(). None = of no robot.
-  std::function<bool(const Robot&)> folding;
+  // Which of `inverted` and `overlap` the telemetry of a robot has: Simulation::measure_folding(). None = of no robot.
+  std::function<MeasuredFolding(const Robot&)> folding;
   bool hashes = false;  // of the final states
   bool states = false;  // the final states themselves
 

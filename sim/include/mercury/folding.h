@@ -27,15 +27,18 @@ struct Folding {
   float overlap = 0;   // [1]
 };
 
+// What is measured of it. Overlap takes many times as long as the rest.
+enum class MeasuredFolding { none, inverted, all };
+
 // The cells of a robot, for any number of its states. A robot has no cells if it has no voxels and no four masses in
 // space that are all joined, such as one of struts: both figures are 0 then.
 class BodyCells {
  public:
-  explicit BodyCells(const Robot& robot);
+  explicit BodyCells(const Robot& robot, MeasuredFolding measured = MeasuredFolding::all);
 
   // One position per mass. A tetrahedron is inside out if its volume has another sign than at rest, a voxel if the
   // three vectors between the centers of its opposite sides are left-handed. A mass that lies within a cell at rest as
-  // well, as in a file of parts that are in each other, does not count for that cell.
+  // well, as in a file of parts that are in each other, does not count for that cell. What is not measured is NaN.
   Folding folding(std::span<const Vec3> positions) const;
 
   std::size_t size() const { return volumes_.size(); }
@@ -52,6 +55,7 @@ class BodyCells {
   template <class Visit>
   void for_each_intruder(std::span<const Vec3> positions, const Visit& visit) const;
 
+  MeasuredFolding measured_;
   std::vector<std::array<std::uint16_t, 8>> voxels_;  // corners; empty for cells that are tetrahedra
   std::vector<Tetrahedron> tetrahedra_;               // six per voxel, or one per cell; right-handed at rest
   std::vector<float> volumes_;                        // per cell, at rest [m3]

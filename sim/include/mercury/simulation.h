@@ -12,6 +12,7 @@
 #include "mercury/backend.h"
 #include "mercury/clock.h"
 #include "mercury/configuration.h"
+#include "mercury/folding.h"
 #include "mercury/material.h"
 #include "mercury/perturbation.h"
 #include "mercury/robot.h"
@@ -161,11 +162,11 @@ class Simulation {
   // One element per robot, computed on the device.
   std::vector<Telemetry> telemetry() const;
   Telemetry telemetry(std::size_t robot) const;
-  // Whether telemetry, samples included, has Telemetry::inverted and overlap, of all robots or of those for which
-  // `of` is true. They take all positions from the device and some work on the host's cores, so this is off at first.
+  // Whether telemetry, samples included, has Telemetry::inverted and overlap, of all robots or as `of` says of each.
+  // They take all positions from the device and some work on the host's cores, so this is off at first.
   // Several threads call `of` at the same time, about once per robot.
   void measure_folding(bool on);
-  void measure_folding(std::function<bool(const Robot&)> of);
+  void measure_folding(std::function<MeasuredFolding(const Robot&)> of);
   bool measures_folding() const;  // of any robot
   // FNV-1a over the bytes of all positions, then all velocities. Equal hashes mean equal states, bit for bit.
   std::uint64_t hash(std::size_t robot) const;
