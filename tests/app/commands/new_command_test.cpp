@@ -88,6 +88,8 @@ TEST_F(NewCommand, BestOfWritesEveryCandidate) {
 TEST_F(NewCommand, InterruptedSearchKeepsTheBest) {
   const auto child = working_mercury({"new", "voxel", "-o", path("best/"), "--count", "2", "--best-of", "1000000",
                                       "--seconds", "0.1", "--device", "cpu", "--csv", path("a.csv")});
+  const auto has_begun = testing::ContainsRegex("searching: [1-9]");
+  while (child->running() && !testing::Value(child->messages(), has_begun)) nap();
   child->signal(SIGINT);
   const Outcome outcome = outcome_of(*child);
   EXPECT_EQ(outcome.status, 130);
