@@ -43,9 +43,9 @@ CATSHARK_SOURCE = (
 # elastic moduli of their files. Why Mercury is known to differ by more than a tenth, or nothing.
 EVOSORO: dict[str, tuple[list[float], str]] = {
     "hexapus": ([0.3241, 0.3232, 0.3223], "a lattice of springs bends otherwise than beams"),
-    "flapping_passive_tissue": ([0.2918, 0.2919, 0.2920], ""),
-    "hopper": ([1.5043, 1.5097, 1.5102], "without damping inside; with that of BondDampingZ 11 % too far"),
-    "pusher_land": ([2.4985, 2.4998, 2.5002], "without damping inside; with that of BondDampingZ 17 % too near"),
+    "flapping_passive_tissue": ([0.2918, 0.2919, 0.2920], "a lattice of springs bends otherwise than beams"),
+    "hopper": ([1.5043, 1.5097, 1.5102], "a lattice of springs bends otherwise than beams"),
+    "pusher_land": ([2.4985, 2.4998, 2.5002], "a lattice of springs bends otherwise than beams"),
     "quadruped_land": ([1.3979, 1.4050, 1.4115], "sinks into its soft legs and walks another way, for a reason not found"),
 }
 EVOSORO_SOURCE = (

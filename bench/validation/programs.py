@@ -35,7 +35,8 @@ def mercury(*arguments: Any) -> str:
     kind="real",
     remark="The files of `tests/data/evosoro`, imported with their worlds. Expected is the median of three runs of its simulator, with "
     "elastic moduli of 99 to 101 % of the file's; the second number of a robot's name is how far these are apart. Beams of evosoro "
-    "resist bending by stiffnesses of their own, and are damped by themselves (BondDampingZ), which the import leaves out.",
+    "resist bending by stiffnesses of their own. Their damping (BondDampingZ) is the relaxation time of all springs here; without it "
+    "the five got 89, 92, 120, 61 and 27 % as far.",
 )
 def evosoro(short: bool) -> Result:
     rows = []

@@ -48,7 +48,13 @@ double stable_time_step(std::span<const Robot> robots, double stiffness_scale) {
   double largest = 0;
   for (const Robot& robot : robots) largest = std::max(largest, largest_eigenvalue(robot, stiffness_scale));
   constexpr double longest = 1e-3, share = 0.5;  // of the limit 2 / omega, where a step is no longer stable
-  const double limit = share * 2 / std::sqrt(std::max(largest, 1e-12));
+  double relaxation_time = 0;
+  for (const Robot& robot : robots)
+    for (const Material& material : robot.materials)
+      relaxation_time = std::max(relaxation_time, static_cast<double>(material.relaxation_time));
+  // Below 2 / omega without damping inside.
+  const double limit =
+      share * (std::sqrt(relaxation_time * relaxation_time + 4 / std::max(largest, 1e-12)) - relaxation_time);
   for (double decade = longest; decade > 1e-9; decade /= 10)
     for (const double digit : {1.0, 0.5, 0.2})
       if (digit * decade <= limit) return digit * decade;

@@ -27,7 +27,6 @@ constexpr std::string_view no_bodies = "bodies do not stick to each other";
 
 constexpr auto known = std::to_array<KnownElement>({
     {"Integration", own_step},
-    {"BondDampingZ", "springs of Mercury have no damping of their own"},
     {"ColDampingZ", "contacts of Mercury have no damping of their own"},
     {"ColSystem", "Mercury's own search for contacts"},
     {"CollisionHorizon", "Mercury's own search for contacts"},

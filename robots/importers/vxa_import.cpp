@@ -59,6 +59,7 @@ class VxaImport {
     } catch (const InputError& error) {
       throw InputError("/VXA/VXC/Structure", error.what());
     }
+    set_relaxation_time(import.robots);
     import.settings.dt = stable_time_step(import.robots, import.settings.stiffness_scale);
     if (import.settings.environment == "resistive") set_drag(import);
     import.report.elements = document_.elements(known_vxa_element);
@@ -97,6 +98,17 @@ class VxaImport {
     if (model_.stop_time) settings.seconds = *model_.stop_time * scaling_->calibration.time_scale;
     if (model_.start_time) settings.settle = *model_.start_time * scaling_->calibration.time_scale;
     return settings;
+  }
+
+  // A bond of modulus E between voxels of mass m resists its rate of length by zeta sqrt(k m), k = E edge:
+  // CVXS_BondInternal of evosoro takes half of 2 zeta sqrt(k m). Over k, that is zeta edge sqrt(rho / E).
+  void set_relaxation_time(std::vector<Robot>& robots) const {
+    if (!(model_.bond_damping > 0)) return;
+    const double share = mean([&](std::size_t cell) { return std::sqrt(1 / modulus_of_cell(cell)); });
+    const auto relaxation_time = static_cast<float>(model_.bond_damping * model_.edge * std::sqrt(density_) * share *
+                                                    scaling_->calibration.time_scale);
+    for (Robot& robot : robots)
+      for (std::size_t id = 1; id < robot.materials.size(); ++id) robot.materials[id].relaxation_time = relaxation_time;
   }
 
   // The drag of the calibration, for the masses that the robots have per voxel.

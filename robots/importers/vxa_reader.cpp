@@ -78,6 +78,8 @@ class VxaReader {
     if (damping) {
       model_.slow_damping = number_in(damping, "SlowDampingZ").value_or(1.0);
       mark(damping, "SlowDampingZ", approximated, "damping, the mean over the voxels");
+      model_.bond_damping = number_in(damping, "BondDampingZ").value_or(0.1);
+      mark(damping, "BondDampingZ", approximated, "relaxation time of all springs, the mean over the voxels");
     }
     model_.self_collision = switch_in(simulator.child("Collisions"), "SelfColEnabled").value_or(model_.is_voxcraft);
     mark(simulator.child("Collisions"), "SelfColEnabled", mapped, "self-collision on land");

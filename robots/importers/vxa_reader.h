@@ -49,6 +49,7 @@ struct VxaModel {
   bool in_fluid = false;
   double drag_coefficient = 0;                  // AggregateDragCoefficient, rho C_D / 2 [kg/m3]
   double slow_damping = 0;                      // SlowDampingZ [1]
+  double bond_damping = 0;                      // BondDampingZ [1]
   std::optional<double> stop_time, start_time;  // [s]
   std::vector<std::string> decisive, notes;     // of the report
 };

@@ -69,8 +69,9 @@ Palette palette_of(const VoxelBody& body) {
 
 class VxaWriter {
  public:
-  VxaWriter(const VoxelBody& body, double stiffness_scale, std::string environment)
-      : body_(body), palette_(palette_of(body)), environment_(std::move(environment)), scale_(stiffness_scale) {}
+  VxaWriter(const VoxelBody& body, double stiffness_scale, std::string environment, double relaxation_time)
+      : body_(body), palette_(palette_of(body)), environment_(std::move(environment)), scale_(stiffness_scale),
+        relaxation_time_(relaxation_time) {}
 
   std::string document() {
     text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VXA Version=\"1.1\">\n";
@@ -93,10 +94,27 @@ class VxaWriter {
     return 1;
   }
 
+  double modulus(const Substance& substance) const { return substance.stiffness * scale_ / scaling_.stiffness(1); }
+
+  // What the importer makes of the robot's relaxation time. Its programs need some damping of bonds, so a robot that
+  // has none gets 1, as is usual there.
+  double bond_damping() const {
+    if (relaxation_time_ == 0) return 1;
+    double sum = 0;
+    int voxels = 0;
+    for (const std::uint32_t cell : body_.cells)
+      if (cell != 0) {
+        sum += std::sqrt(1 / modulus(body_.substances[cell - 1]));
+        ++voxels;
+      }
+    return relaxation_time_ * voxels / (sum * imported_edge * std::sqrt(density) * scaling_.calibration.time_scale);
+  }
+
   void write_world() {
     const bool land = environment_ == "land", half = std::ranges::any_of(body_.substances, &Substance::half_wave);
+    text_ += fmt::format("<Simulator>\n<Damping>\n<BondDampingZ>{:.17g}</BondDampingZ>\n", bond_damping());
     text_ +=
-        "<Simulator>\n<Damping>\n<BondDampingZ>1</BondDampingZ>\n<ColDampingZ>0.8</ColDampingZ>\n"
+        "<ColDampingZ>0.8</ColDampingZ>\n"
         "<SlowDampingZ>0</SlowDampingZ>\n</Damping>\n<Collisions>\n<SelfColEnabled>1</SelfColEnabled>\n"
         "</Collisions>\n";
     // Only voxcraft-sim cuts waves off; it does so unless this forbids it.
@@ -115,7 +133,6 @@ class VxaWriter {
   }
 
   void write_palette() {
-    const double modulus_per_stiffness = 1 / Scaling(imported_edge, 1e6, density, 9.81).stiffness(1);
     text_ += "<Palette>\n";
     for (std::size_t i = 0; i < palette_.substances.size(); ++i) {
       const Substance& substance = body_.substances[palette_.substances[i]];
@@ -129,7 +146,7 @@ class VxaWriter {
           "<Mechanical>\n<MatModel>0</MatModel>\n<Elastic_Mod>{:.17g}</Elastic_Mod>\n"
           "<Density>{}</Density>\n<Poissons_Ratio>0.35</Poissons_Ratio>\n<CTE>{:.17g}</CTE>\n"
           "<uStatic>1</uStatic>\n<uDynamic>0.8</uDynamic>\n</Mechanical>\n</Material>\n",
-          substance.stiffness * scale_ * modulus_per_stiffness, density, substance.amplitude / temperature);
+          modulus(substance), density, substance.amplitude / temperature);
     }
     text_ += "</Palette>\n";
   }
@@ -182,8 +199,9 @@ class VxaWriter {
 
   const VoxelBody& body_;
   Palette palette_;
+  Scaling scaling_{imported_edge, 1e6, density, 9.81};
   std::string environment_, text_;
-  double scale_;
+  double scale_, relaxation_time_;
 };
 
 }  // namespace
@@ -194,7 +212,10 @@ std::string vxa_document(const Robot& robot) {
     throw InputError(robot.name,
                      "has no grid of voxels in its origin, which VXA needs; voxel, painted and imported robots have");
   const std::string environment = environment_of(robot);
-  return VxaWriter(*body, environment == "land" ? land_stiffness_scale : 1, environment).document();
+  double relaxation_time = 0;  // of all springs, as the importer sets it
+  for (const Material& material : materials_of(robot))
+    relaxation_time = std::max(relaxation_time, static_cast<double>(material.relaxation_time));
+  return VxaWriter(*body, environment == "land" ? land_stiffness_scale : 1, environment, relaxation_time).document();
 }
 
 void write_vxa(const Robot& robot, const std::filesystem::path& path) { write_whole_file(path, vxa_document(robot)); }

@@ -78,6 +78,22 @@ TEST(VxaRoundTrip, KeepsImportedRobots) {
   EXPECT_EQ(back.springs, robot.springs);
 }
 
+// A bond of evosoro resists by zeta sqrt(k m), k = E edge and m = density edge^3. Over k, and in scaled time, that is
+// zeta edge sqrt(density / E) T.
+TEST(VxaRoundTrip, DampingOfBondsIsARelaxationTime) {
+  VxaParts parts;
+  parts.simulator = "<Damping><BondDampingZ>0.5</BondDampingZ></Damping>";
+  parts.materials = VxaParts::material("Muscle", 4e5, 0.01);
+  parts.data = "<Layer>11</Layer><Layer>11</Layer>";
+  const Import import = import_of(parts);
+  const Robot& robot = import.robots.front();
+  for (std::size_t id = 1; id < robot.materials.size(); ++id)
+    EXPECT_NEAR(robot.materials[id].relaxation_time, 0.5 * 0.025 * std::sqrt(1000 / 4e5) * import.report.time_scale,
+                1e-9);
+  EXPECT_TRUE(has_base_materials(robot)) << "it could not be mutated";
+  EXPECT_EQ(import_text(vxa_document(robot), "vxa", "test").robots.front().materials, robot.materials);
+}
+
 // Numbers such as 1e-05, which JSON can write in several ways.
 TEST(VxaRoundTrip, OriginsAreTheSameInBothKindsOfRobotFiles) {
   VxaParts parts;
