@@ -80,9 +80,9 @@ void FileDialog::ask(FileRequest request, std::function<void(const FileChoice&)>
   folder_text_ = view_.folder().string();
   error_.clear();
   set_text(request_.name);
-  format_ = 0;
-  for (std::size_t i = 0; i < request_.extensions.size(); ++i)
-    if (fs::path(text_).extension() == request_.extensions[i]) format_ = static_cast<int>(i);
+  // Several formats may share an extension: the first of them.
+  const auto found = std::ranges::find(request_.extensions, fs::path(text_).extension().string());
+  format_ = found == request_.extensions.end() ? 0 : static_cast<int>(found - request_.extensions.begin());
   open_ = just_opened_ = true;
 }
 
@@ -374,7 +374,8 @@ void FileDialog::draw_name(EventLog& log) {
       request_.kind == Kind::save)
     set_text(fs::path(text_).replace_extension(request_.extensions[static_cast<std::size_t>(format_)]).string());
   log.item("files.format");
-  tooltip("JSON is text; CBOR is the same data in a smaller file");
+  if (std::ranges::find(request_.extensions, ".cbor") != request_.extensions.end())
+    tooltip("JSON is text; CBOR is the same data in a smaller file");
 }
 
 void FileDialog::draw_buttons(EventLog& log) {

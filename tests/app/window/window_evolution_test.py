@@ -61,6 +61,19 @@ class EvolutionTest(WindowCase):
         window.wait("robots", since, lambda event: event["count"] == count)
         self.finish(window)
 
+    def test_the_run_is_exported_as_a_page(self):
+        window, folder = self.open_run()
+        window.wait("run", 0, lambda event: event["generation"] == 4)
+        page = folder.parent / "swim.html"
+        since = window.mark()
+        window.click("menu.File")
+        window.click("menu.export_run")
+        window.dialog(str(page))
+        window.wait("message", since, lambda event: event["text"] == f"exported {page}")
+        best = max(individuals(folder).items(), key=lambda born: float(born[1]["distance"]))[0]
+        self.assertIn(f'"name":"swim-{best}"', page.read_text())
+        self.finish(window)
+
     def test_a_run_that_grows_is_followed_and_one_that_vanishes_is_reported(self):
         window, folder = self.open_run()
         window.wait("run", 0, lambda event: event["generation"] == 4)
