@@ -38,7 +38,7 @@ struct ExportOptions {
   std::string path, format, robot;
   FrameRange range;
   std::optional<std::int64_t> every;
-  std::optional<double> still;
+  std::optional<double> still, fps;
   bool springs = false;
   bool for_seconds = false;    // --seconds was given
   std::string for_simulation;  // the first option that says how to simulate; empty = none was given
@@ -183,6 +183,11 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
                                               holds_motion(format) ? "the motion of a recording" : "one pose",
                                               format_names(holds_simulated_motion)));
   if (options.for_seconds && !(seconds > 0)) throw InputError("--seconds", "0 is not accepted for a motion; give more");
+  const double rate = options.fps.value_or(motion_rate), most = 1 / configuration.dt;
+  if (options.fps && !(rate > 0 && rate <= most * (1 + 1e-9)))
+    throw InputError(
+        "--fps",
+        fmt::format("{} is not accepted; give more than 0 and at most {:.6g} frames/s, one per step", rate, most));
   std::vector<std::shared_ptr<const Robot>> chosen;
   ExportNotes chosen_notes = notes;
   chosen_notes.captions.clear();
@@ -200,12 +205,15 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
   {
     Simulation simulation(configuration, chosen, shown_work());
     for (const std::string& note : simulation.notes()) warn(note);
-    Progress progress("simulating", "frames", motion_frames(seconds));
-    chosen_notes.final_states =
-        record_motion(simulation, seconds, recording.path(), options.robots.seed(), [&](std::int64_t frames) {
-          throw_if_interrupted();
-          progress.update(frames);
-        }).final_states;
+    Progress progress("simulating", "frames", motion_frames(seconds, rate));
+    chosen_notes.final_states = record_motion(
+                                    simulation, seconds, recording.path(), options.robots.seed(),
+                                    [&](std::int64_t frames) {
+                                      throw_if_interrupted();
+                                      progress.update(frames);
+                                    },
+                                    rate)
+                                    .final_states;
   }
   const auto reader = std::make_shared<TrajectoryReader>(recording.path());
   std::vector<RecordedMotion> motions;
@@ -399,6 +407,7 @@ void add_export_command(const Command& program, const Choose& choose) {
   options->film.add_to(command);
   options->output.add_to(command);
   const std::size_t count = command.options().size();
+  add_number(command, "--fps", options->fps, "Frames per second of a simulated motion (default 30)", "N");
   options->simulation.add_to(command);
   std::vector<Option> of_simulation = command.options();
   of_simulation.erase(of_simulation.begin(), of_simulation.begin() + static_cast<std::ptrdiff_t>(count));

@@ -76,13 +76,14 @@ TemporaryRecording::~TemporaryRecording() {
 }
 
 SimulatedMotion record_motion(Simulation& simulation, double seconds, const std::filesystem::path& path,
-                              std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch) {
+                              std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch,
+                              double rate) {
   const double dt = simulation.configuration().dt, start_time = simulation.time();
   const std::int64_t first = simulation.steps(), last = first + std::llround(seconds / dt),
-                     frames = motion_frames(seconds);
+                     frames = motion_frames(seconds, rate);
   std::vector<const Robot*> robots;
   for (std::size_t i = 0; i < simulation.size(); ++i) robots.push_back(&simulation.robot(i));
-  const double steps_per_frame = 1 / (motion_rate * dt);
+  const double steps_per_frame = 1 / (rate * dt);
   TrajectoryWriter writer(path,
                           {.configuration = simulation.configuration(),
                            .device_name = simulation.device_name(),
@@ -97,7 +98,7 @@ SimulatedMotion record_motion(Simulation& simulation, double seconds, const std:
     const double place = std::min(static_cast<double>(frame) * steps_per_frame, static_cast<double>(last - first));
     step_before = std::max(step_before + 1, first + static_cast<std::int64_t>(std::floor(place + rounding)));
     steps.at(static_cast<double>(first) + place,
-             writer.add(step_before, start_time + static_cast<double>(frame) / motion_rate));
+             writer.add(step_before, start_time + static_cast<double>(frame) / rate));
     writer.commit();
     watch(frame + 1);
   }
@@ -109,8 +110,8 @@ SimulatedMotion record_motion(Simulation& simulation, double seconds, const std:
   return motion;
 }
 
-std::int64_t motion_frames(double seconds) {
-  return static_cast<std::int64_t>(std::floor(seconds * motion_rate + rounding)) + 1;
+std::int64_t motion_frames(double seconds, double rate) {
+  return static_cast<std::int64_t>(std::floor(seconds * rate + rounding)) + 1;
 }
 
 }  // namespace mercury

@@ -27,18 +27,19 @@ class TemporaryRecording {
   std::filesystem::path path_;
 };
 
-inline constexpr double motion_rate = 30;  // frames per second of simulated time
+inline constexpr double motion_rate = 30;  // frames per second of simulated time, unless another one is wanted
 
 struct SimulatedMotion {
   std::int64_t frames = 0;
   std::vector<std::string> final_states;  // of each robot after all steps: its hash, and when
 };
 
-// Steps the simulation for that time and records it at exactly motion_rate: a frame between two steps is interpolated
-// between them. `watch` sees how many frames there are; it may throw to stop the work.
+// Steps the simulation for that time and records it at exactly `rate` frames per second: a frame between two steps is
+// interpolated between them. `watch` sees how many frames there are; it may throw to stop the work.
 SimulatedMotion record_motion(Simulation& simulation, double seconds, const std::filesystem::path& path,
-                              std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch);
+                              std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch,
+                              double rate = motion_rate);
 // Frames that it will have.
-std::int64_t motion_frames(double seconds);
+std::int64_t motion_frames(double seconds, double rate = motion_rate);
 
 }  // namespace mercury

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "app/export/export_format.h"
+#include "tests/app/export/export_bodies.h"
 #include "tests/app/program.h"
 
 namespace mercury::test {
@@ -126,6 +127,36 @@ TEST_F(ExportCommand, RobotsAreSimulatedForAMotion) {
               format_names(holds_simulated_motion));
   refuses({path("run.h5"), "-o", path("eel.pc2"), "--dt", "0.002"},
           "--dt: a recording has its own configuration; give robots to simulate");
+}
+
+// Frames on steps are the steps' states, and those between them lie between them.
+TEST_F(ExportCommand, TheFrameRateOfASimulatedMotionIsChosen) {
+  const std::vector<std::string> options{"--seconds", "0.1", "--dt", "0.005", "--device", "cpu"};
+  const auto exported = [&](const std::string& file, const std::string& rate) {
+    std::vector<std::string> words{"export", robot_, "-o", path(file), "--fps", rate};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = mercury(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    return read(file);
+  };
+  const std::string steps = exported("steps.pc2", "200"), between = exported("between.pc2", "80");
+  ASSERT_EQ(number_at<std::int32_t>(steps, 28), 21);
+  ASSERT_EQ(number_at<std::int32_t>(between, 28), 9);
+  const auto floats = static_cast<std::size_t>(3 * number_at<std::int32_t>(steps, 16));
+  // Frame 1 of 80 Hz is half way between steps 2 and 3, frame 2 is step 5.
+  for (std::size_t i = 0; i < floats; ++i) {
+    const auto at_step = [&](std::size_t step) { return number_at<float>(steps, 32 + 4 * (step * floats + i)); };
+    const auto at_frame = [&](std::size_t frame) { return number_at<float>(between, 32 + 4 * (frame * floats + i)); };
+    EXPECT_NEAR(at_frame(1), (at_step(2) + at_step(3)) / 2, 1e-6f);
+    EXPECT_EQ(at_frame(2), at_step(5));
+  }
+  refuses({robot_, "-o", path("a.pc2"), "--dt", "0.005", "--fps", "201"},
+          "--fps: 201 is not accepted; give more than 0 and at most 200 frames/s, one per step");
+  refuses({robot_, "-o", path("a.pc2"), "--fps", "nan"},
+          "--fps: nan is not accepted; give more than 0 and at most 1000 frames/s, one per step");
+  refuses({robot_, "-o", path("a.obj"), "--fps", "25"},
+          "--fps: goes with a motion, and obj is written at rest; give --seconds, too, and " +
+              format_names(holds_simulated_motion));
 }
 
 TEST_F(ExportCommand, APageHoldsAllRobots) {
