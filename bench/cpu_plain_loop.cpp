@@ -225,13 +225,13 @@ bool PlainLoop::end(std::size_t mass, Vec3 x, Vec3 v, const EnvironmentModel& mo
   return store_state(mass, x, v);
 }
 
-// The end of Algorithm 1, after the forces of the environment: they lead to the velocities `driven`.
+// The end of Algorithm 1, after the forces of the environment.
 template <class EnvironmentModel>
-bool PlainLoop::step_springs(const std::vector<Vec3>& driven, const EnvironmentModel& model) {
+bool PlainLoop::step_springs(const EnvironmentModel& model) {
   bool finite = true;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const Vec3 force = take(i, 1 / scale_.force);
-    const Vec3 v = accelerated(driven[i], points_[i].inverse_inertia * force, constants_);
+    const Vec3 v = accelerated(state_.velocities[i], points_[i].inverse_inertia * force, constants_);
     finite &= end(i, multiply_add(constants_.dt, v, state_.positions[i]), v, model);
   }
   return finite;
@@ -243,9 +243,8 @@ bool PlainLoop::step_force(const EnvironmentModel& model) {
   if (!add_environment(model)) return false;
   if constexpr (EnvironmentModel::real_bodies)
     if (model.sums_apart()) {
-      std::vector<Vec3> driven;
-      for (std::size_t i = 0; i < sums_.size(); ++i) driven.push_back(accelerate(i, model));
-      return add_spring_forces() && step_springs(driven, model);
+      for (std::size_t i = 0; i < sums_.size(); ++i) state_.velocities[i] = accelerate(i, model);
+      return add_spring_forces() && step_springs(model);
     }
   if (!add_spring_forces()) return false;
   bool finite = true;

@@ -57,7 +57,7 @@ class PlainLoop {
   template <class EnvironmentModel>
   bool end(std::size_t mass, Vec3 x, Vec3 v, const EnvironmentModel& model);
   template <class EnvironmentModel>
-  bool step_springs(const std::vector<Vec3>& driven, const EnvironmentModel& model);
+  bool step_springs(const EnvironmentModel& model);
   template <class EnvironmentModel>
   bool step_force(const EnvironmentModel& model);
   template <class EnvironmentModel>

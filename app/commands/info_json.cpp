@@ -124,7 +124,7 @@ Json files_in(const std::filesystem::path& folder) {
 
 Environment environment_made_for(const Robot& robot) {
   const std::string name = environment_of(robot);
-  return is_environment(name) ? environment_named(name) : Configuration{}.environment;
+  return default_configuration(physics_of(robot), is_environment(name) ? name : "").environment;
 }
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }

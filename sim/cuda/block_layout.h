@@ -92,9 +92,6 @@ inline std::uint32_t contact_workspace_bytes(std::uint32_t tiles) {
   return tiles * lanes * (3 * sizeof(float) + near_pairs_per_slot * sizeof(std::uint32_t));
 }
 
-// Bytes in device memory for a velocity per slot.
-MERCURY_HOST_DEVICE std::uint32_t velocity_bytes(std::uint32_t tiles) { return tiles * lanes * 3 * sizeof(float); }
-
 // `tiles` = of the largest robot, `fields` = of a tile in working memory.
 MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, std::uint32_t tiles,
                                              std::uint32_t fields) {

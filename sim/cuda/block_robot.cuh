@@ -12,7 +12,7 @@ class BlockRobot {
  public:
   static constexpr Solver solver = solver_;
   using Memory = Memory_;
-  static constexpr std::uint32_t fields = working_fields(solver, Memory::keeps_valence, Memory::sums_water);
+  static constexpr std::uint32_t fields = working_fields(solver, Memory::keeps_valence);
   static constexpr std::uint32_t tile_bytes = fields * field_bytes;
   using SpringRecord = std::conditional_t<record_words == 1, uint1, uint2>;  // .x = key, .y = rest length (layout.h)
 

@@ -12,7 +12,7 @@ std::size_t chip_bytes(const Robot& robot, const Configuration& configuration) {
   LaunchConfiguration launch;
   launch.record_words = record_words_for(robot);
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
-  return block_layout(launch, tiles, working_fields(configuration.solver, false, false)).total;
+  return block_layout(launch, tiles, working_fields(configuration.solver, false)).total;
 }
 
 }  // namespace mercury

@@ -279,8 +279,8 @@ class ContactPass {
     if (!touches(robot, d)) return;
     const Vec3 units =
         repulsion(squared_length(d), robot.header().contact_distance, robot.stored_header().contact_units) * d;
-    robot.mass_at(i).add_to_environment(units);
-    robot.mass_at(j).add_to_environment(-units);
+    robot.mass_at(i).add_to_sum(units);
+    robot.mass_at(j).add_to_sum(-units);
   }
 
   __device__ static bool joined(const Robot& robot, std::uint32_t i, std::uint32_t j) {

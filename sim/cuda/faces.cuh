@@ -84,10 +84,10 @@ class FacePass {
     }
     const int x1 = round_to_int(first.x), y1 = round_to_int(first.y), z1 = round_to_int(first.z);
     const int x2 = round_to_int(second.x), y2 = round_to_int(second.y), z2 = round_to_int(second.z);
-    b.add_to_environment(x1, y1, z1);
-    d.add_to_environment(x2, y2, z2);
-    a.add_to_environment(x1 + x2, y1 + y2, z1 + z2);
-    c.add_to_environment(x1 + x2, y1 + y2, z1 + z2);
+    b.add_to_sum(x1, y1, z1);
+    d.add_to_sum(x2, y2, z2);
+    a.add_to_sum(x1 + x2, y1 + y2, z1 + z2);
+    c.add_to_sum(x1 + x2, y1 + y2, z1 + z2);
     return true;
   }
 

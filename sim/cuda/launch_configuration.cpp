@@ -2,8 +2,6 @@
 #include "sim/cuda/launch_configuration.h"
 
 #include <algorithm>
-#include <utility>
-#include <variant>
 
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/device_limits.h"
@@ -51,11 +49,6 @@ bool fit_one(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t fie
 
 }  // namespace
 
-bool sums_water(const Configuration& configuration) {
-  return configuration.solver == Solver::force &&
-         std::holds_alternative<ResistiveDrag>(configuration.environment.water);
-}
-
 LaunchConfiguration choose_launch_configuration(const Configuration& configuration, const BatchView& robots,
                                                 bool same_materials, bool viscous, std::size_t batch_size,
                                                 std::uint32_t table_chunks) {
@@ -68,19 +61,16 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   launch.record_words = robots.record_words;
   launch.fits_cache = robots.robot_count == batch_size;
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
-  // With ground, the kernel is the general one (environments.h), which has no field_water.
-  launch.sums_water = sums_water(configuration) && !has_ground(configuration.environment);
-  const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip, launch.sums_water); };
+  const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip); };
   // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
   if (batch_size > limits.multiprocessors && fit_several(launch, tiles, fields(), limits, robots.robot_count))
     return launch;
-  for (bool more = true; more; more = std::exchange(launch.sums_water, false))
-    for (const bool contacts_on_chip : {true, false})
-      for (const bool valence_on_chip : {true, false}) {
-        launch.contacts_on_chip = contacts_on_chip;
-        launch.valence_on_chip = valence_on_chip;
-        if (fit_one(launch, tiles, fields(), limits)) return launch;
-      }
+  for (const bool contacts_on_chip : {true, false})
+    for (const bool valence_on_chip : {true, false}) {
+      launch.contacts_on_chip = contacts_on_chip;
+      launch.valence_on_chip = valence_on_chip;
+      if (fit_one(launch, tiles, fields(), limits)) return launch;
+    }
   launch.on_chip = false;
   launch.valence_on_chip = true;
   fit_one(launch, tiles, fields(), limits);

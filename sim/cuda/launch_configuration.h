@@ -20,7 +20,6 @@ struct LaunchConfiguration {
   bool shared_table = false;                           // all robots of the batch have the same materials
   bool on_chip = true;                                 // working memory in shared memory, else in the workspace
   bool valence_on_chip = true;                         // with field_valence, which XPBD reads
-  bool sums_water = false;                             // with field_water, which the force solver adds to
   std::uint32_t contact_buckets = 0;                   // a power of two, or 0 = no self-collision
   std::uint32_t record_words = 2;                      // of the batch
   bool viscous = false;                                // springs have relaxation times
@@ -50,9 +49,6 @@ constexpr std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps)
 constexpr std::uint32_t tiles_per_warp(std::uint32_t tiles) {
   return divide_up(tiles, even_warps(tiles, resident_warps / 2));
 }
-
-// Whether the forces of the environment are summed apart from those of springs (integration.h).
-bool sums_water(const Configuration& configuration);
 
 // The configuration that keeps most robots in flight on the current device, beside the rest of `batch_size` robots.
 // Springs name materials below 32 `table_chunks`.

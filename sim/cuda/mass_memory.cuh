@@ -15,7 +15,6 @@ class OnChip {
   using Address = std::uint32_t;
   static constexpr bool on_chip = true;
   static constexpr bool keeps_valence = true;  // in field_valence, for XPBD
-  static constexpr bool sums_water = false;    // the forces of the environment in field_water, for the force solver
 
   __device__ static float load(Address at, std::uint32_t offset) {
     float value;
@@ -40,17 +39,12 @@ class OnChipWithoutValence : public OnChip {
   static constexpr bool keeps_valence = false;
 };
 
-class OnChipWithWater : public OnChip {
- public:
-  static constexpr bool sums_water = true;
-};
-
 // Device memory.
 class OffChip {
  public:
   using Address = char*;
   static constexpr bool on_chip = false;
-  static constexpr bool keeps_valence = true, sums_water = false;
+  static constexpr bool keeps_valence = true;
 
   __device__ static float load(Address at, std::uint32_t offset) {
     return *reinterpret_cast<volatile float*>(at + offset);
@@ -89,26 +83,17 @@ struct Mass {
   __device__ void set_value(std::uint32_t field, float value) const { Memory::store(at, field * field_bytes, value); }
 
   // The sum of forces or corrections, in units of fixed point.
-  __device__ int sum(std::uint32_t axis, std::uint32_t field = field_sum) const {
-    return __float_as_int(value(field + axis));
+  __device__ int sum(std::uint32_t axis) const { return __float_as_int(value(field_sum + axis)); }
+  __device__ void set_sum(int sum) const {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) set_value(field_sum + axis, __int_as_float(sum));
   }
-  __device__ void set_sum(int sum, std::uint32_t field = field_sum) const {
-    for (std::uint32_t axis = 0; axis < 3; ++axis) set_value(field + axis, __int_as_float(sum));
+  __device__ void add_to_sum(int x, int y, int z) const {
+    Memory::add(at, field_sum * field_bytes, x);
+    Memory::add(at, (field_sum + 1) * field_bytes, y);
+    Memory::add(at, (field_sum + 2) * field_bytes, z);
   }
-  __device__ void add_to_sum(int x, int y, int z) const { add_to(field_sum, x, y, z); }
-  // The same for forces of the environment.
-  __device__ void add_to_environment(int x, int y, int z) const {
-    add_to(Memory::sums_water ? field_water : field_sum, x, y, z);
-  }
-  __device__ void add_to_environment(Vec3 units) const {
-    add_to_environment(round_to_int(units.x), round_to_int(units.y), round_to_int(units.z));
-  }
-
- private:
-  __device__ void add_to(std::uint32_t field, int x, int y, int z) const {
-    Memory::add(at, field * field_bytes, x);
-    Memory::add(at, (field + 1) * field_bytes, y);
-    Memory::add(at, (field + 2) * field_bytes, z);
+  __device__ void add_to_sum(Vec3 units) const {
+    add_to_sum(round_to_int(units.x), round_to_int(units.y), round_to_int(units.z));
   }
 };
 

@@ -190,14 +190,13 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   const bool viscous =
       std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.highest_length_rate > 0; });
   launch_ = choose_launch_configuration(configuration, view(), same_materials, viscous, batch_size, table_chunks_);
-  const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip, launch_.sums_water);
+  const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(address_fields_, launch_.on_chip ? fields : 0);
   address_masses(0, old_fields, address_fields_);
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
-  if (sums_water(configuration) && !launch_.sums_water) workspace += velocity_bytes(sizes_.tiles);
   reserve_workspace(workspace);
 }
 

@@ -45,7 +45,7 @@ __global__ void __maxnreg__(72)
         __syncthreads();
       stepper.predict(step);
       __syncthreads();
-    } else if (stepper.accelerates_first()) {
+    } else if (stepper.sums_apart()) {
       __syncthreads();
       stepper.accelerate(step);
       __syncthreads();
@@ -79,10 +79,7 @@ auto kernel_for(const LaunchConfiguration& launch) {
       return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
   if constexpr (std::is_same_v<EnvironmentModel, GeneralModel>)
     if (!launch.on_chip) return step_kernel<solver, EnvironmentModel, OffChip, record_words>;
-  if constexpr (solver == Solver::force && std::is_same_v<EnvironmentModel, ResistiveModel>)
-    return step_kernel<solver, EnvironmentModel, OnChipWithWater, record_words>;
-  else
-    return step_kernel<solver, EnvironmentModel, OnChip, record_words>;
+  return step_kernel<solver, EnvironmentModel, OnChip, record_words>;
 }
 
 template <Solver solver, class EnvironmentModel>

@@ -32,7 +32,6 @@ class RobotStepper {
       const float* from = robot_.state(tile);
       for (std::uint32_t field = 0; field < state_fields; ++field) mass.set_value(field, from[field * lanes]);
       mass.set_sum(solver == Solver::force ? robot_.incoming_bias(tile) : 0);
-      if constexpr (Memory::sums_water) mass.set_sum(0, field_water);
       if constexpr (solver == Solver::xpbd && Memory::keeps_valence)
         mass.set_value(field_valence, robot_.load_valence(robot_.own_slot(tile)));
     }
@@ -72,15 +71,15 @@ class RobotStepper {
     if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
   }
 
-  // Whether the environment needs sums of its own without a field for them, so that accelerate() comes before springs.
-  __device__ bool accelerates_first() const {
-    if constexpr (EnvironmentModel::real_bodies && solver == Solver::force && !Memory::sums_water)
+  // Whether the forces of the environment are to be summed apart from those of springs, by accelerate().
+  __device__ bool sums_apart() const {
+    if constexpr (EnvironmentModel::real_bodies)
       return model_.sums_apart();
     else
       return false;
   }
 
-  // Force solver: takes the forces of the environment out of the sums, and keeps v + dt F for end().
+  // Force solver: adds the forces of the environment to the velocity.
   __device__ void accelerate(std::uint32_t step) {
     if constexpr (EnvironmentModel::real_bodies) {
       if (failure_->before(step, phase_prediction)) return;
@@ -92,11 +91,7 @@ class RobotStepper {
         // The bias of the reactions that are to come has been in the sum.
         const int bias = robot_.incoming_bias(tile);
         const Vec3 force = sum_of(mass, bias, inverse_scale);
-        const Vec3 driven = accelerated(v, acceleration(force, v, point_at(tile)), constants());
-        float* const kept = driven_velocity(tile);
-        kept[0] = driven.x;
-        kept[lanes] = driven.y;
-        kept[2 * lanes] = driven.z;
+        mass.set_vector(field_v, accelerated(v, acceleration(force, v, point_at(tile)), constants()));
         mass.set_sum(bias);
       }
     }
@@ -146,17 +141,7 @@ class RobotStepper {
       if constexpr (solver == Solver::force) {
         const int bias = Robot::bias_of(incoming);
         const Vec3 force = sum_of(mass, 0, 1 / robot_.header().force_scale);
-        if constexpr (Memory::sums_water) {
-          const Vec3 water = sum_of(mass, 0, 1 / environment_scale(), field_water);
-          mass.set_sum(0, field_water);
-          v = accelerated(v, acceleration(water, v, point), constants());
-          v = accelerated(v, point.inverse_inertia * force, constants());
-        } else if (accelerates_first()) {
-          const float* const kept = driven_velocity(tile);
-          v = accelerated({kept[0], kept[lanes], kept[2 * lanes]}, point.inverse_inertia * force, constants());
-        } else {
-          v = accelerated(v, acceleration(force, v, point), constants());
-        }
+        v = accelerated(v, sums_apart() ? point.inverse_inertia * force : acceleration(force, v, point), constants());
         x = multiply_add(constants().dt, v, x);
         mass.set_sum(bias);
       } else {
@@ -187,13 +172,6 @@ class RobotStepper {
     return springs.template add_all<Viscosity::none>();
   }
 
-  // Of this thread's mass in a tile, between accelerate() and end() [m/s]: the last bytes of the workspace.
-  __device__ float* driven_velocity(std::uint32_t tile) const {
-    char* const end = batch().workspace + std::size_t{robot_.context().robot + 1} * batch().workspace_stride;
-    return reinterpret_cast<float*>(end - velocity_bytes(batch().tile_stride)) + 3 * lanes * tile +
-           robot_.context().lane;
-  }
-
   __device__ PointProperties point_at(std::uint32_t tile) const {
     if constexpr (EnvironmentModel::real_bodies)
       return robot_.point(tile);
@@ -217,7 +195,7 @@ class RobotStepper {
       if (perturbation.robot != robot_.context().robot) continue;
       const Vec3 units = perturbation.stiffness * environment_scale() *
                          (perturbation.target - robot_.mass_at(perturbation.slot).vector(field_x));
-      if (fits(units)) robot_.mass_at(perturbation.slot).add_to_environment(units);
+      if (fits(units)) robot_.mass_at(perturbation.slot).add_to_sum(units);
     }
   }
 
@@ -243,11 +221,10 @@ class RobotStepper {
   }
 
   // The sum above `bias`.
-  __device__ static Vec3 sum_of(const Mass<Memory>& mass, int bias, float inverse_scale,
-                                std::uint32_t field = field_sum) {
-    return {static_cast<float>(mass.sum(0, field) - bias) * inverse_scale,
-            static_cast<float>(mass.sum(1, field) - bias) * inverse_scale,
-            static_cast<float>(mass.sum(2, field) - bias) * inverse_scale};
+  __device__ static Vec3 sum_of(const Mass<Memory>& mass, int bias, float inverse_scale) {
+    return {static_cast<float>(mass.sum(0) - bias) * inverse_scale,
+            static_cast<float>(mass.sum(1) - bias) * inverse_scale,
+            static_cast<float>(mass.sum(2) - bias) * inverse_scale};
   }
 
   // Stores a mass's new state if it is finite. If not, the mass stays where it is, and the robot has exploded.

@@ -23,12 +23,11 @@ struct StepArguments {
 };
 
 // The model whose kernel a launch uses. Robots in device memory wait for it most of the time, so they have one kernel
-// for all environments. So have robots for whose own sums of the environment the chip has no room.
+// for all environments.
 inline AnyEnvironmentModel step_model_of(const Configuration& configuration, bool real_bodies,
                                          const LaunchConfiguration& launch) {
   const Environment& environment = configuration.environment;
-  if (!launch.on_chip || (sums_water(configuration) && !launch.sums_water)) return GeneralModel(environment);
-  return solver_model_of(environment, real_bodies);
+  return launch.on_chip ? solver_model_of(environment, real_bodies) : GeneralModel(environment);
 }
 
 // Robots that the current device steps at the same time.

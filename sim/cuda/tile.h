@@ -11,7 +11,6 @@
 //                        +----------+----------+-----+----------+
 //   field_sum    (6..8)  | integers | integers |     | integers |    working memory adds these while a robot is stepped
 //   field_valence  (9)   | count    | count    |     | count    |    XPBD only
-//   field_water (9..11)  | integers | integers |     | integers |    force solver, where the environment has own sums
 //                        +----------+----------+-----+----------+
 //   bank                     0          1       ...      31
 //
@@ -34,15 +33,14 @@ namespace mercury::cuda {
 inline constexpr std::uint32_t lanes = 32;
 inline constexpr std::uint32_t field_bytes = lanes * 4;
 
-enum Field : std::uint32_t { field_x = 0, field_v = 3, field_sum = 6, field_valence = 9, field_water = 9 };
+enum Field : std::uint32_t { field_x = 0, field_v = 3, field_sum = 6, field_valence = 9 };
 
 // Fields of a tile in device memory: positions and velocities.
 inline constexpr std::uint32_t state_fields = 6;
 
 // Fields of a tile in working memory.
-MERCURY_HOST_DEVICE constexpr std::uint32_t working_fields(Solver solver, bool keeps_valence, bool sums_water) {
-  if (solver == Solver::xpbd) return keeps_valence ? 10 : 9;
-  return sums_water ? 12 : 9;
+MERCURY_HOST_DEVICE constexpr std::uint32_t working_fields(Solver solver, bool keeps_valence) {
+  return solver == Solver::xpbd && keeps_valence ? 10 : 9;
 }
 
 // Tiles that this many masses fill; the last one may be partly empty.

@@ -11,8 +11,9 @@
 //   x'   = x + dt w                                 x'   = p + c
 //   v'   = flow + zeta (w - flow)                   v'   = flow + zeta (w - flow)         end_step()
 //
-// Resistive water sums the forces of the environment and those of the springs apart, in units of their own
-// (fixed_point.h). Both are those at x and v.
+// Resistive water accelerates masses by the forces of the environment first, w = v + dt F / m, and then by those of the
+// springs; both were summed at x^n, in units of their own (fixed_point.h). Springs with a relaxation time see w: with v
+// instead, slow bodies tilt, since the rounding of their springs repeats from step to step.
 //
 // zeta = exp(-damping dt); the flow is that of the water, 0 without water. Where the ground resolves a contact, x' and
 // w change together.

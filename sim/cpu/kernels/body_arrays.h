@@ -43,7 +43,7 @@ HWY_INLINE void add(Integers3 a, Pointers3<std::int32_t> to, std::size_t slot) {
 }
 
 struct BodyArrays {
-  Pointers3<float> x, v, driven_v;
+  Pointers3<float> x, v;
   float *x_aos, *v_aos;
   Pointers3<std::int32_t> own, reaction, taken;
   std::int32_t* scattered;
@@ -53,9 +53,9 @@ struct BodyArrays {
   std::size_t reaction_stride;  // from one reaction array to the next
 
   explicit BodyArrays(Body& body)
-      : x(pointers(body.x)), v(pointers(body.v)), driven_v(pointers(body.driven_v)), x_aos(body.x_aos.data()),
-        v_aos(body.v_aos.data()), own(pointers(body.sums.own)), reaction(pointers(body.sums.reaction)),
-        taken(pointers(body.sums.taken)), scattered(body.sums.scattered.data()), bias(body.springs.bias.data()),
+      : x(pointers(body.x)), v(pointers(body.v)), x_aos(body.x_aos.data()), v_aos(body.v_aos.data()),
+        own(pointers(body.sums.own)), reaction(pointers(body.sums.reaction)), taken(pointers(body.sums.taken)),
+        scattered(body.sums.scattered.data()), bias(body.springs.bias.data()),
         inverse_inertia(body.inverse_inertia.data()), weight(body.weight.data()), slots(body.slots.mass_at.size()),
         reaction_stride(body.slots.size_with_spare()) {}
 

@@ -16,8 +16,6 @@ class BodyStepper {
  public:
   BodyStepper(Body& body, const EnvironmentModel& model, const StepSetting& setting)
       : body_(body), model_(model), constants_(setting.constants) {
-    if (model.sums_apart() && setting.solver == Solver::force && body.driven_v.x.size() != body.x.x.size())
-      body.driven_v.assign(body.x.x.size(), 0);
     if (needs_aos != body.sums.with_scattered) {
       clear(body.sums);
       body.sums.with_scattered = needs_aos;

@@ -62,7 +62,7 @@ class LockstepStepper {
  private:
   // Algorithm 1.
   bool step_force(const float* factors) {
-    const float* const driven_v = v_driven_by_environment();
+    const bool apart = accelerate_by_environment();
     Box box;
     const bool compact = is_compact(load_aligned(group_.squared_diagonal.data()));
     const bool within_limit = add_springs(factors, compact, [&](std::size_t slot, Integers3 sum) HWY_ATTR {
@@ -70,8 +70,8 @@ class LockstepStepper {
       const PointLanes point = point_at(slot);
       Lanes3 v;
       if constexpr (EnvironmentModel::real_bodies)
-        v = driven_v ? accelerated_by_springs(sum, per_force_, load_nth_slot(driven_v, slot), point, constants_)
-                     : accelerated_by(sum, per_force_, v0, point, model_, constants_);
+        v = apart ? accelerated_by_springs(sum, per_force_, v0, point, constants_)
+                  : accelerated_by(sum, per_force_, v0, point, model_, constants_);
       else
         v = accelerated_by(sum, per_force_, v0, point, model_, constants_);
       Lanes3 x = multiply_add(constants_.dt, v, x0);
@@ -83,18 +83,16 @@ class LockstepStepper {
     return within_limit && is_within_reach(box);
   }
 
-  // Algorithm 1, where the forces of the environment are summed apart: v + dt F by slot, else null.
-  const float* v_driven_by_environment() {
-    if constexpr (!EnvironmentModel::real_bodies) return nullptr;
-    if (!model_.sums_apart()) return nullptr;
-    group_.driven_v.resize(group_.v.size());
-    float* const driven_v = group_.driven_v.data();
+  // Algorithm 1, where the forces of the environment are summed apart. Returns whether they are.
+  bool accelerate_by_environment() {
+    if constexpr (!EnvironmentModel::real_bodies) return false;
+    if (!model_.sums_apart()) return false;
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
       const Lanes3 v =
           accelerated_by(take(slot), per_environment_, load_nth_slot(v_, slot), point_at(slot), model_, constants_);
-      store_aligned(v, slot_at(driven_v, 3 * lane_count * slot), 0);
+      store_aligned(v, slot_at(v_, 3 * lane_count * slot), 0);
     }
-    return driven_v;
+    return true;
   }
 
   // Algorithm 2.

@@ -109,9 +109,8 @@ class Motion {
     Lanes3 v;
     if constexpr (EnvironmentModel::real_bodies) {
       const Integers3 sum = take<true>(slot);
-      v = model_.sums_apart()
-              ? accelerated_by_springs(sum, inverse_scale_, load_aligned(arrays_.driven_v, slot), point, constants_)
-              : accelerated_by(sum, inverse_scale_, v0, point, model_, constants_);
+      v = model_.sums_apart() ? accelerated_by_springs(sum, inverse_scale_, v0, point, constants_)
+                              : accelerated_by(sum, inverse_scale_, v0, point, model_, constants_);
     } else {
       v = accelerated_by(take<true>(slot), inverse_scale_, v0, point, model_, constants_);
     }
@@ -122,12 +121,12 @@ class Motion {
     store_aos_of(x, v, slot);
   }
 
-  // Algorithm 1: adds the forces of the environment, where they are summed apart. Springs still see the velocity
-  // without them.
+  // Algorithm 1: adds the forces of the environment to the velocity, where they are summed apart.
   HWY_INLINE void accelerate(std::size_t slot) {
     const Lanes3 v = accelerated_by(take<false>(slot), inverse_scale_, load_aligned(arrays_.v, slot), point_at(slot),
                                     model_, constants_);
-    store_aligned(v, arrays_.driven_v, slot);
+    store_aligned(v, arrays_.v, slot);
+    if constexpr (gathered_springs) arrays_.store_v_aos(v, slot);
   }
 
   // Algorithm 2: replaces the position by the prediction and the velocity by v + dt F.

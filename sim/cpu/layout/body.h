@@ -103,9 +103,8 @@ struct Body {
   // What only contacts need: from prepare_contacts() on.
   NearPairs near_pairs;
 
-  StateLocation location;   // while a group holds the state, x and v are undefined
-  Triples<float> x, v;      // between XPBD's prediction and correction: the prediction and v + dt F
-  Triples<float> driven_v;  // the force solver in resistive water: v + dt F of the environment
+  StateLocation location;  // while a group holds the state, x and v are undefined
+  Triples<float> x, v;     // between XPBD's prediction and correction: the prediction and v + dt F
 
   float squared_diagonal = std::numeric_limits<float>::infinity();  // of the box around all masses [m2], if known
   bool aos_is_current = false;                                      // x_aos and v_aos

@@ -76,7 +76,6 @@ struct LockstepGroup {
   // [slot][x, y, z][lane]
   Aligned<float> x, v;         // between XPBD's prediction and correction: the prediction and v + dt F
   Aligned<std::int32_t> sums;  // what acts on the masses, in units; zero between steps
-  Aligned<float> driven_v;     // as in Body
   Aligned<float> checkpoint_x, checkpoint_v;
   Aligned<float> searched_x;            // positions when near pairs were last searched, for contacts
   std::vector<std::uint64_t> searches;  // NearPairs::searches() at that time, by lane; empty = not searched
