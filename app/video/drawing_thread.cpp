@@ -92,12 +92,16 @@ void DrawingThread::end() {
   if (parts_->thread.joinable()) parts_->thread.join();
 }
 
-std::future<void> DrawingThread::post(Task task) {
-  Parts& parts = *parts_;
-  if (parts.forked())
+void DrawingThread::require_no_fork() const {
+  if (parts_->forked())
     throw DeviceError(
         "this process was forked from one that had drawn, and OpenGL does not work after that; start processes before "
         "the first picture, or with the method \"spawn\"");
+}
+
+std::future<void> DrawingThread::post(Task task) {
+  require_no_fork();
+  Parts& parts = *parts_;
   const std::lock_guard lock(parts.mutex);
   if (parts.ending) throw DeviceError("nothing is drawn any more; the program ends");
   if (!parts.thread.joinable()) {

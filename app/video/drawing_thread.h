@@ -46,6 +46,10 @@ class DrawingThread {
   // DeviceError in a process that was forked from one that has drawn. Every thread may call it, except in a task.
   std::future<void> post(Task task);
 
+  // Throws that DeviceError. To be called before what would wait for other threads that are not in a forked process
+  // either, such as those that measure robots.
+  void require_no_fork() const;
+
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;

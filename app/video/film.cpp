@@ -78,6 +78,7 @@ VideoSettings video_settings(const std::string& output, const FilmOptions& optio
 
 render::Image picture_of(DrawingThread& thread, const Simulation& simulation, const PictureOptions& options) {
   require_drawable(options.size);
+  thread.require_no_fork();
   const auto drawing = std::make_shared<GroupDrawing>(simulation, options.view, aspect_of(options.size));
   const auto bridge = make_host_bridge();
   FrameSnapshot snapshot = drawing->take(*bridge);
@@ -93,11 +94,20 @@ render::Image picture_of(DrawingThread& thread, const Simulation& simulation, co
   return picture;
 }
 
+namespace {
+
+DrawingThread& usable(DrawingThread& thread) {
+  thread.require_no_fork();
+  return thread;
+}
+
+}  // namespace
+
 struct Film::Parts {
   Parts(DrawingThread& drawing_thread, const Simulation& filmed, const std::string& output, const FilmOptions& given)
-      : thread(drawing_thread), simulation(filmed), options(given), settings(video_settings(output, given, filmed)),
-        pixels(pixel_format_of(video_kind_of(output))), writer(open_frame_writer(output, settings)),
-        encoder(std::make_unique<FrameEncoder>(*writer)) {}
+      : thread(usable(drawing_thread)), simulation(filmed), options(given),
+        settings(video_settings(output, given, filmed)), pixels(pixel_format_of(video_kind_of(output))),
+        writer(open_frame_writer(output, settings)), encoder(std::make_unique<FrameEncoder>(*writer)) {}
 
   const pid_t process = getpid();
   DrawingThread& thread;
