@@ -65,7 +65,7 @@ MERCURY_HOST_DEVICE Real length_rate(Real squared, Real approach, Real most) {
   return larger(smaller(approach * inverse_sqrt(squared), most), -most);
 }
 
-// The length L of which a spring with a relaxation time behaves as if it were. As in constraint_ratio(), `length` and
+// The rest length that a spring with a relaxation time seems to have. As in constraint_ratio(), `length` and
 // `relaxation_time` may be multiplied by a power of two.
 template <class Real>
 MERCURY_HOST_DEVICE Real viscous_length(Real length, Real relaxation_time, Real rate) {
