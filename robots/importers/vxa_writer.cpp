@@ -96,10 +96,9 @@ class VxaWriter {
 
   double modulus(const Substance& substance) const { return substance.stiffness * scale_ / scaling_.stiffness(1); }
 
-  // What the importer makes of the robot's relaxation time. Its programs need some damping of bonds, so a robot that
-  // has none gets 1, as is usual there.
+  // The inverse of what the importer makes of BondDampingZ.
   double bond_damping() const {
-    if (relaxation_time_ == 0) return 1;
+    if (relaxation_time_ == 0) return 0;
     double sum = 0;
     int voxels = 0;
     for (const std::uint32_t cell : body_.cells)

@@ -94,6 +94,17 @@ TEST(VxaRoundTrip, DampingOfBondsIsARelaxationTime) {
   EXPECT_EQ(import_text(vxa_document(robot), "vxa", "test").robots.front().materials, robot.materials);
 }
 
+// A damping of bonds that the robot does not have would be one when it is imported again.
+TEST(VxaRoundTrip, RobotsWithoutDampingHaveNoneAgain) {
+  VxaParts parts;
+  parts.materials = VxaParts::material("Muscle", 4e5, 0.01);
+  parts.data = "<Layer>11</Layer><Layer>11</Layer>";
+  const Robot robot = import_of(parts).robots.front();
+  for (const Material& material : robot.materials) ASSERT_EQ(material.relaxation_time, 0);
+  EXPECT_NE(vxa_document(robot).find("<BondDampingZ>0</BondDampingZ>"), std::string::npos);
+  EXPECT_EQ(import_text(vxa_document(robot), "vxa", "test").robots.front().materials, robot.materials);
+}
+
 // Numbers such as 1e-05, which JSON can write in several ways.
 TEST(VxaRoundTrip, OriginsAreTheSameInBothKindsOfRobotFiles) {
   VxaParts parts;
