@@ -43,7 +43,15 @@ constexpr std::array<Stiffness, type_count> stiffnesses{{{0, 0},
 constexpr double evogym_gravity = 110;  // [m/s2]
 constexpr double evogym_drag = 0.1;     // viscous_drag [1/s]
 constexpr double earth_gravity = 9.81;  // [m/s2]
-constexpr double friction = 0.5;        // static_friction_const
+// Of the ground (get_pos_vel_slope): 10 dynamic_friction_const, reached at speeds of some mm/s. static_friction_const
+// is not used there.
+constexpr double friction = 2;
+// An edge has a new length at rest once per step of 1e-4 s, near the length that it has then. Within the step the edge
+// resists what moves it from there: by k v dt / 2 in the mean, beside k pull times its deviation.
+constexpr double relaxation_time = 1e-4 / 2 / pull;  // [s]
+// Diagonals that leave the plane have no counterpart there, and every muscle would have to stretch them. So they are
+// soft: they keep the layers of a robot side by side.
+constexpr double share_across = 0.1;
 
 // Actuators go from 0.6 to 1.6 of their length there.
 constexpr double actuator_amplitude = 0.4, actuator_frequency = 2 * std::numbers::pi;
@@ -270,7 +278,11 @@ class EvogymImport {
     }
     if (!object.is_robot()) {
       for (std::uint32_t& cell : object.body.cells) cell = cell == fixed ? std::uint32_t{rigid} : cell;
+      const std::size_t before = import_.robots.size();
       add_bodies(object.body, name, provenance(), options_, import_);
+      for (std::size_t i = before; i < import_.robots.size(); ++i)
+        for (std::size_t id = 1; id < import_.robots[i].materials.size(); ++id)
+          import_.robots[i].materials[id].relaxation_time = static_cast<float>(relaxation_time * time_);
       return;
     }
     const std::vector<VoxelBody> bodies = separate_bodies(object.body);
@@ -289,8 +301,9 @@ class EvogymImport {
   }
 
   // Springs along the axis of an actuator are muscles of their own; all others do not move. A spring that two actuators
-  // share follows the one whose index is lower; EvoGym takes the mean. Passive springs of an actuator's voxel alone
-  // have its name, and so its color, as long as the table has room for them.
+  // share is two springs, each half as stiff: their forces add up to that of one spring with the mean of both lengths,
+  // as in EvoGym. Passive springs of an actuator's voxel alone have its name, and so its color, as long as the table
+  // has room for them.
   Robot robot_of(const VoxelBody& body, const std::string& name) {
     try {
       return robot_of(body, name, true);
@@ -323,35 +336,45 @@ class EvogymImport {
       robot.actuators.push_back(
           {fmt::format("{} {},{}", type == horizontal ? "horizontal" : "vertical", cell % nx, cell / nx), {}});
     }
-    for (Spring& one : robot.springs) {
-      const std::array<int, 3> direction = voxels.direction(one);
-      const bool is_edge = direction[1] == 0 && (direction[0] == 0 || direction[2] == 0);
-      const std::vector<std::size_t> shared = voxels.of(one);
-      double stiffness = 0;
-      std::size_t actuator = 0;
-      for (const std::size_t cell : shared) {
-        const std::uint32_t type = body.cells[cell];
-        stiffness +=
-            (is_edge ? stiffnesses[type].edge : stiffnesses[type].diagonal) / static_cast<double>(shared.size());
-        if (!acts_along(type, direction)) continue;
-        const std::size_t number = actuators.at(flat(body, cell)) + 1;
-        actuator = actuator == 0 ? number : std::min(actuator, number);
-      }
+    const auto material_of = [&](std::size_t actuator, bool moves, double stiffness) {
       const auto own = static_cast<float>(spring(stiffness));
-      const bool moves = actuator > 0;
-      if (!moves && named_passive && is_of_one_actuator(body, shared))
-        actuator = actuators.at(flat(body, shared[0])) + 1;
       const auto [known, is_new] = materials.try_emplace({actuator, moves, own}, MaterialId{0});
       if (is_new) {
         if (robot.materials.size() == max_materials)
           throw TooManyMaterials(fmt::format("{} needs more than 255 materials", name));
         known->second = static_cast<MaterialId>(robot.materials.size());
         robot.materials.push_back(moves ? muscle(own, body, actuators, actuator - 1) : Material{.stiffness = own});
+        robot.materials.back().relaxation_time = static_cast<float>(relaxation_time * time_);
         robot.material_names.push_back(actuator == 0 ? "passive" : robot.actuators[actuator - 1].name);
         if (moves) robot.actuators[actuator - 1].materials.push_back(known->second);
       }
-      one.material = known->second;
+      return known->second;
+    };
+    std::vector<Spring> springs;
+    for (Spring one : robot.springs) {
+      const std::array<int, 3> direction = voxels.direction(one);
+      const bool is_edge = direction[1] == 0 && (direction[0] == 0 || direction[2] == 0);
+      const std::vector<std::size_t> shared = voxels.of(one);
+      double stiffness = 0;
+      std::set<std::size_t> moving;
+      for (const std::size_t cell : shared) {
+        const std::uint32_t type = body.cells[cell];
+        stiffness +=
+            (is_edge ? stiffnesses[type].edge : stiffnesses[type].diagonal) / static_cast<double>(shared.size());
+        if (acts_along(type, direction)) moving.insert(actuators.at(flat(body, cell)) + 1);
+      }
+      if (direction[1] != 0 && (direction[0] != 0 || direction[2] != 0)) stiffness *= share_across;
+      if (moving.empty()) {
+        const bool is_named = named_passive && is_of_one_actuator(body, shared);
+        one.material = material_of(is_named ? actuators.at(flat(body, shared[0])) + 1 : 0, false, stiffness);
+        springs.push_back(one);
+      }
+      for (const std::size_t actuator : moving) {
+        one.material = material_of(actuator, true, stiffness / static_cast<double>(moving.size()));
+        springs.push_back(one);
+      }
     }
+    robot.springs = std::move(springs);
     std::erase_if(robot.actuators, [](const Actuator& actuator) { return actuator.materials.empty(); });
     robot.origin = import_origin(body, provenance());
     return robot;

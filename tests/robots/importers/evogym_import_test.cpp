@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
+#include <vector>
 
 #include "mercury/voxel.h"
 #include "robots/importers/encodings.h"
@@ -76,6 +78,62 @@ TEST(Evogym, ActuatorsReachTheShortestLengthOfEvogym) {
   const Robot robot = evogym().robots[1];
   for (const Actuator& actuator : robot.actuators)
     for (const MaterialId id : actuator.materials) EXPECT_FLOAT_EQ(robot.materials[id].amplitude, 0.4f);
+}
+
+// In EvoGym a shared edge has the mean of the lengths that both actuators want. Two springs of half the stiffness pull
+// like one of that length.
+TEST(Evogym, SharedEdgesFollowBothActuators) {
+  const Robot robot = import_text(R"({"grid_width": 2, "grid_height": 1, "objects": {
+      "robot": {"indices": [0, 1], "types": [4, 4], "neighbors": {"0": [1], "1": [0]}}}})",
+                                  "evogym", "world")
+                          .robots.at(0);
+  ASSERT_EQ(robot.actuators.size(), 2u);
+  std::map<std::pair<int, int>, std::vector<Spring>> upright;
+  for (const Spring& spring : robot.springs)
+    if (robot.materials[spring.material].amplitude != 0) upright[{spring.a, spring.b}].push_back(spring);
+  ASSERT_EQ(upright.size(), 6u);
+  float own = 0;
+  for (const auto& [ends, springs] : upright)
+    if (springs.size() == 1) own = robot.materials[springs[0].material].stiffness;
+  std::size_t shared = 0;
+  for (const auto& [ends, springs] : upright) {
+    if (springs.size() == 1) continue;
+    ++shared;
+    ASSERT_EQ(springs.size(), 2u);
+    EXPECT_NEAR(robot.masses[springs[0].a].x, 0, 1e-6);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_FLOAT_EQ(robot.materials[springs[i].material].stiffness, own / 2);
+      const auto& ids = robot.actuators[i].materials;
+      EXPECT_NE(std::ranges::find(ids, springs[i].material), ids.end());
+    }
+  }
+  EXPECT_EQ(shared, 2u);
+}
+
+// PhysicsEngine.cpp: the ground pulls with at most 10 x 0.2 times the normal force; length at rest and edge start each
+// step of 1e-4 s together, so that k dt / 2 resists motion beside 0.006 k that pulls to the goal.
+TEST(Evogym, FrictionAndDampingAreThoseOfItsProgram) {
+  const Import import = evogym();
+  EXPECT_DOUBLE_EQ(import.settings.friction, 2);
+  for (const Robot& robot : import.robots)
+    for (std::size_t id = 1; id < robot.materials.size(); ++id)
+      EXPECT_NEAR(robot.materials[id].relaxation_time, 1e-4 / 2 / 0.006 * std::sqrt(110 / 9.81), 1e-6);
+}
+
+// A diagonal across the plane is a tenth as stiff as one within it, of the same voxels.
+TEST(Evogym, DiagonalsAcrossThePlaneAreSoft) {
+  const Robot robot = import_text(R"({"grid_width": 1, "grid_height": 1, "objects": {
+      "robot": {"indices": [0], "types": [3], "neighbors": {"0": []}}}})",
+                                  "evogym", "world")
+                          .robots.at(0);
+  float within = 0, across = 0;
+  for (const Spring& spring : robot.springs) {
+    const Vec3 &a = robot.masses[spring.a], &b = robot.masses[spring.b];
+    if (a.x != b.x && a.z != b.z && a.y == b.y) within = robot.materials[spring.material].stiffness;
+    if (a.x != b.x && a.z == b.z && a.y != b.y) across = robot.materials[spring.material].stiffness;
+  }
+  EXPECT_GT(within, 0);
+  EXPECT_FLOAT_EQ(across, within / 10);
 }
 
 TEST(Evogym, DepthExtrudes) {
