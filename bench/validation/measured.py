@@ -46,7 +46,7 @@ EVOSORO: dict[str, tuple[list[float], str]] = {
     "flapping_passive_tissue": ([0.2918, 0.2919, 0.2920], "a lattice of springs bends otherwise than beams"),
     "hopper": ([1.5043, 1.5097, 1.5102], "a lattice of springs bends otherwise than beams"),
     "pusher_land": ([2.4985, 2.4998, 2.5002], "a lattice of springs bends otherwise than beams"),
-    "quadruped_land": ([1.3979, 1.4050, 1.4115], "sinks into its soft legs and walks another way, for a reason not found"),
+    "quadruped_land": ([1.3979, 1.4050, 1.4115], "its legs fold, and it walks on contacts between spheres of 1.5 voxels, which Mercury does not have"),
 }
 EVOSORO_SOURCE = (
     "evosoro at commit b95ec95, `_voxcad_land_water`, built with its Makefile; S. Kriegman, F. Corucci and others, "

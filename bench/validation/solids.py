@@ -50,39 +50,39 @@ def oscillator(short: bool) -> Result:
     return Result(rows)
 
 
-def timoshenko(clamped: bool) -> tuple[float, float]:
-    """The sag of the tip under 1 m/s2 [m] and the first frequency [rad/s] of a bar, by Ritz's method.
+def timoshenko(clamped: bool, length: float = LENGTH, modulus: float = MODULUS) -> tuple[float, float]:
+    """The sag of the tip under 1 m/s2 [m] and the first frequency [rad/s] of a bar of that length, by Ritz's method.
 
     Energies 1/2 integral of E I theta'^2 + kappa G A (w' - theta)^2 and of rho A w'^2 + rho I theta'^2 in time, with
     Legendre polynomials for the deflection w and the rotation theta; kappa by Cowper (1966). A clamped end multiplies them by x.
     """
     kappa = 10 * (1 + POISSON) / (12 + 11 * POISSON)
-    shear = kappa * MODULUS / (2 * (1 + POISSON)) * AREA
+    shear = kappa * modulus / (2 * (1 + POISSON)) * AREA
     count = 12
     nodes, weights = legendre.leggauss(40)
-    weights = weights * LENGTH / 2
+    weights = weights * length / 2
     basis = np.array([legendre.legval(nodes, np.eye(count)[i]) for i in range(count)])
-    slope = np.array([legendre.legval(nodes, legendre.legder(np.eye(count)[i])) for i in range(count)]) * 2 / LENGTH
+    slope = np.array([legendre.legval(nodes, legendre.legder(np.eye(count)[i])) for i in range(count)]) * 2 / length
     if clamped:
-        x = (nodes + 1) * LENGTH / 2
+        x = (nodes + 1) * length / 2
         basis, slope = basis * x, slope * x + basis
     zero = np.zeros_like(basis)
     bend, strain = np.vstack([zero, slope]), np.vstack([slope, -basis])
     w, theta = np.vstack([basis, zero]), np.vstack([zero, basis])
-    stiffness = MODULUS * INERTIA * (bend * weights) @ bend.T + shear * (strain * weights) @ strain.T
+    stiffness = modulus * INERTIA * (bend * weights) @ bend.T + shear * (strain * weights) @ strain.T
     mass = DENSITY * AREA * (w * weights) @ w.T + DENSITY * INERTIA * (theta * weights) @ theta.T
     inverse = np.linalg.inv(np.linalg.cholesky(mass))
     squares = np.linalg.eigvalsh(inverse @ stiffness @ inverse.T)
     if not clamped:
         return 0.0, math.sqrt(squares[2])  # after two rigid motions
-    tip = np.array([legendre.legval(1.0, np.eye(count)[i]) for i in range(count)]) * LENGTH
+    tip = np.array([legendre.legval(1.0, np.eye(count)[i]) for i in range(count)]) * length
     load = (w * weights).sum(axis=1) * DENSITY * AREA
     return float(tip @ np.linalg.solve(stiffness, load)[:count]), math.sqrt(squares[0])
 
 
-def euler_bernoulli(root: float) -> float:
+def euler_bernoulli(root: float, length: float = LENGTH, modulus: float = MODULUS) -> float:
     """The frequency of a bar without shear [rad/s]; root = beta L of the mode."""
-    return root**2 / LENGTH**2 * math.sqrt(MODULUS * INERTIA / (DENSITY * AREA))
+    return root**2 / length**2 * math.sqrt(modulus * INERTIA / (DENSITY * AREA))
 
 
 def bar(across: int):
