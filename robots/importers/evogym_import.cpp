@@ -50,8 +50,8 @@ constexpr double friction = 2;
 // resists what moves it from there: by k v dt / 2 in the mean, beside k pull times its deviation.
 constexpr double relaxation_time = 1e-4 / 2 / pull;  // [s]
 // Diagonals that leave the plane have no counterpart there, and every muscle would have to stretch them. So they are
-// soft: they keep the layers of a robot side by side.
-constexpr double share_across = 0.1;
+// soft, but not so soft that robots fold sideways, as they do at 0.1.
+constexpr double share_across = 0.3;
 
 // Actuators go from 0.6 to 1.6 of their length there.
 constexpr double actuator_amplitude = 0.4, actuator_frequency = 2 * std::numbers::pi;
