@@ -60,7 +60,8 @@ class Orbit {
   distance = 5;        // [m]
   zoom = 1;            // the user's, on top of what shows everything
   aspect = 1;
-  covered = 0;
+  covered = 0;         // by the controls, a share of the picture at its lower edge
+  headed = 0;          // by the title, at its upper edge
   constructor(azimuth, elevation, fieldOfView) {
     Object.assign(this, { azimuth, elevation, fieldOfView });
   }
@@ -71,9 +72,9 @@ class Orbit {
   get right() { return [-Math.sin(this.azimuth), Math.cos(this.azimuth), 0]; }
   get up() { return cross(this.back, this.right); }
   get range() { return this.distance * this.zoom; }  // from the eye to the target [m]
-  // The controls cover a share of the picture at its lower edge; the target is in the middle of the rest.
+  // The target is in the middle of what nothing covers.
   get eye() {
-    return add(this.target, add(scaled(this.back, this.range), scaled(this.up, -this.covered * this.halfHeight * this.range)));
+    return add(this.target, add(scaled(this.back, this.range), scaled(this.up, (this.headed - this.covered) * this.halfHeight * this.range)));
   }
   get halfHeight() { return Math.tan(this.fieldOfView / 2); }  // of the picture at distance 1
   get near() { return 0.02 * this.range; }
@@ -82,7 +83,7 @@ class Orbit {
   // The least distance from which all corners are in the picture.
   distanceFor(corners) {
     // On a phone held upright, the width decides.
-    const y = this.halfHeight * 0.92 * (1 - this.covered), x = this.halfHeight * this.aspect * 0.94;
+    const y = this.halfHeight * 0.92 * (1 - this.covered - this.headed), x = this.halfHeight * this.aspect * 0.94;
     let distance = 0;
     for (const corner of corners) {
       const p = subtract(corner, this.target);

@@ -77,6 +77,7 @@ class Player {
     this.labels = indices.map((index, i) => this.makeLabel(this.page.robots[index], i));
     element("labels").replaceChildren(...this.labels);
     element("robots").textContent = this.subtitleOf(robots);
+    this.resize();
     this.resetCamera();
     this.showLegend();
     this.showTime();
@@ -264,6 +265,9 @@ class Player {
     this.canvas.height = height;
     this.orbit.aspect = width / height;
     this.orbit.covered = clamp(element("bar").offsetHeight / this.canvas.clientHeight, 0, 0.3);
+    // Names stand above robots.
+    const head = document.querySelector("header").getBoundingClientRect().bottom - this.canvas.getBoundingClientRect().top;
+    this.orbit.headed = clamp((head + (this.shown.length > 1 ? 44 : 0)) / this.canvas.clientHeight, 0, 0.14);
     this.changed = true;
   }
 
@@ -456,6 +460,7 @@ class Gestures {
     } catch {}  // the pointer is already gone
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.moved = this.pointers.size > 1 ? Infinity : 0;
+    this.drift = [0, 0];  // of the middle of two fingers [pixels]
   }
   move(event) {
     const pointer = this.pointers.get(event.pointerId);
@@ -467,7 +472,9 @@ class Gestures {
     if (this.pointers.size === 2) {
       const after = this.spread();
       if (before > 0 && after > 0) player.zoom(before / after);
-      if (Math.hypot(dx, dy) > 0) player.pan(-dx / (2 * height), dy / (2 * height));
+      // A pinch moves its middle a little, which is not meant: the camera would no longer follow.
+      if (Math.hypot(...this.drift) > 24) player.pan(-dx / (2 * height), dy / (2 * height));
+      else this.drift = [this.drift[0] + dx / 2, this.drift[1] + dy / 2];
     } else if (event.buttons & 2 || event.shiftKey) {
       player.pan(-dx / height, dy / height);
     } else if (this.pointers.size === 1) {

@@ -131,7 +131,14 @@ class Group(Case):
     def test_page_of_robots(self):
         mercury("new", "voxel", "--seed", 7, "--voxels", "2x2x2", "--count", 3, "-o", self.folder / "robots")
         self.export(self.folder / "robots", "--environment", "land", "--seconds", 1, "-o", self.folder / "three.html")
-        page = self.open("three.html", size=(360, 640), touch=True)
+        page = self.open("three.html", size=(390, 844), touch=True, scale=3)
+        with self.subTest("all is within reach"):
+            self.assertEqual(page.value("document.documentElement.scrollWidth"), 390)
+            for x, y, width, height in page.value("""[...document.querySelectorAll('#bar > *')].filter((e) => e.offsetWidth)
+                .map((e) => e.getBoundingClientRect()).map((r) => [r.x, r.y, r.width, r.height])"""):
+                self.assertGreaterEqual(min(x, y), 0)
+                self.assertLessEqual(x + width, 390)
+                self.assertLessEqual(y + height, 844)
         self.assertEqual(page.value("player.shown.length"), 3)
         self.assertAlmostEqual(page.value("player.end"), 1)  # 30 frames per second, between steps of 1 ms
         page.press(" ")
@@ -142,8 +149,9 @@ class Group(Case):
             centers = [[(l + h) / 2 for l, h in zip(low, high)] for low, high in boxes]
             self.assertEqual(len({tuple(round(x, 1) for x in center[:2]) for center in centers}), 3)
         with self.subTest("a finger turns, two fingers zoom"):
+            # Names are buttons, and none is to be in the way.
+            page.value("player.labels.forEach((label) => (label.style.pointerEvents = 'none'))")
             azimuth, zoom = page.value("[player.orbit.azimuth, player.orbit.zoom]")
-            # Not on a name, which is a button.
             page.touch("touchStart", (100, 450))
             for x in (130, 160, 190):
                 page.touch("touchMove", (x, 450))
@@ -153,6 +161,12 @@ class Group(Case):
             page.touch("touchMove", (110, 450), (250, 450))
             page.touch("touchEnd")
             page.wait_for(f"player.orbit.zoom < 0.8 * {zoom}")
+            self.assertTrue(page.value("player.follow"))
+            page.touch("touchStart", (150, 450), (210, 450))
+            for y in (430, 400, 370):
+                page.touch("touchMove", (150, y), (210, y))
+            page.touch("touchEnd")
+            page.wait_for("!player.follow")  # a move of both is meant
         with self.subTest("a name chooses its robot"):
             page.value("player.labels[1].click()")
             self.assertEqual(page.value("player.selected"), 1)
