@@ -64,6 +64,13 @@ void create(const std::string& output, const UnfinishedFile& file) {
   ::close(descriptor);
 }
 
+// ffmpeg ends with status 0 where only the end of the file did not fit on the disk: a short video lacks all frames
+// then.
+bool lost_the_end(const std::string& messages) {
+  return messages.find("Error writing trailer") != std::string::npos ||
+         messages.find("Error closing file") != std::string::npos;
+}
+
 }  // namespace
 
 std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& settings, const std::string& file) {
@@ -136,7 +143,9 @@ void FfmpegWriter::write(const render::Image& frame) {
 void FfmpegWriter::finish() {
   const int status = encoder_->finish();
   std::error_code error;
-  if (status != 0 || std::filesystem::file_size(file_.path(), error) == 0 || error) fail(status);
+  if (status != 0 || lost_the_end(encoder_->messages()) || std::filesystem::file_size(file_.path(), error) == 0 ||
+      error)
+    fail(status);
   try {
     file_.keep();
   } catch (const std::filesystem::filesystem_error& failure) {
@@ -152,7 +161,9 @@ void FfmpegWriter::fail(int status) {
     throw VideoError(output_ + ": " + reason_of(ENOSPC) + "; nothing was kept");
   if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) || messages.find("File too large") != std::string::npos)
     throw VideoError(output_ + ": " + reason_of(EFBIG) + "; nothing was kept");
-  const std::string end = status == 0 ? "wrote nothing" : describe_exit(status);
+  const std::string end = status != 0              ? describe_exit(status)
+                          : lost_the_end(messages) ? "could not write to the end"
+                                                   : "wrote nothing";
   const std::string line = failure_line(messages);
   throw VideoError(output_ + ": the encoder " + program_ + " " + end + (line.empty() ? "" : ": " + line));
 }
