@@ -207,7 +207,7 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
     for (const std::string& note : simulation.notes()) warn(note);
     Progress progress("simulating", "frames", motion_frames(seconds, rate));
     chosen_notes.final_states = record_motion(
-                                    simulation, seconds, recording.path(), options.robots.seed(),
+                                    simulation, seconds, recording, options.robots.seed(),
                                     [&](std::int64_t frames) {
                                       throw_if_interrupted();
                                       progress.update(frames);

@@ -38,10 +38,10 @@ void Checkpoints::write(const Simulation& simulation, const TrialProgress& progr
       notes_.recording->frames = recorder->frames();
     }
     save_checkpoint(path_, simulation, notes_);
-    failed_ = false;
+    problem_.clear();
   } catch (const std::exception& error) {
-    failed_ = true;
-    warn(fmt::format("no checkpoint at {:.6g} s: {}", simulation.time(), error.what()));
+    if (problem_ != error.what()) warn(fmt::format("no checkpoint at {:.6g} s: {}", simulation.time(), error.what()));
+    problem_ = error.what();
   }
   last_ = Clock::now();
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "app/recording/trajectory_writer.h"
@@ -68,16 +69,17 @@ class StepsAround {
 }  // namespace
 
 TemporaryRecording::TemporaryRecording(const std::filesystem::path& beside)
-    : path_(beside.parent_path() / fmt::format(".{}.{}.h5", beside.filename().string(), getpid())) {}
+    : beside_(beside), path_(beside.parent_path() / fmt::format(".{}.{}.h5", beside.filename().string(), getpid())) {}
 
 TemporaryRecording::~TemporaryRecording() {
   std::error_code ignored;
   std::filesystem::remove(path_, ignored);
 }
 
-SimulatedMotion record_motion(Simulation& simulation, double seconds, const std::filesystem::path& path,
-                              std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch,
-                              double rate) {
+namespace {
+
+SimulatedMotion record(Simulation& simulation, double seconds, const std::filesystem::path& path,
+                       std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch, double rate) {
   const double dt = simulation.configuration().dt, start_time = simulation.time();
   const std::int64_t first = simulation.steps(), last = first + std::llround(seconds / dt),
                      frames = motion_frames(seconds, rate);
@@ -108,6 +110,18 @@ SimulatedMotion record_motion(Simulation& simulation, double seconds, const std:
     motion.final_states.push_back(fmt::format("{:016x} at {:.6g} s", simulation.hash(robot), simulation.time()));
   writer.finish(simulation.telemetry());
   return motion;
+}
+
+}  // namespace
+
+SimulatedMotion record_motion(Simulation& simulation, double seconds, const TemporaryRecording& file,
+                              std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch,
+                              double rate) {
+  try {
+    return record(simulation, seconds, file.path(), seed, watch, rate);
+  } catch (const RecordingFailure& failure) {  // the frames so far are of no use without the rest
+    throw std::runtime_error(fmt::format("{}: {}; nothing was kept", file.beside().string(), failure.reason()));
+  }
 }
 
 std::int64_t motion_frames(double seconds, double rate) {

@@ -83,7 +83,7 @@ void reserve(hid_t file, hsize_t begin, hsize_t end) {
 std::string text_of(const Error& error) { return error.number() != 0 ? reason_of(error.number()) : error.what(); }
 
 RecordingFailure write_failure(const std::filesystem::path& path, const std::string& reason, const std::string& kept) {
-  return RecordingFailure(path.string() + ": " + reason + "; " + kept);
+  return RecordingFailure(path.string() + ": " + reason + "; " + kept, reason);
 }
 
 }  // namespace
@@ -117,7 +117,11 @@ void TrajectoryWriter::give_up(const std::string& reason) {
   const bool complete = reserved_ > 0 && failure_->number == 0 && is_completed();
   if (!complete && failure_->number == 0) failure_->number = EIO;  // nothing more is written
   for (Handle* handle : {&particles_, &connectivity_, &parameters_, &file_}) Handle(std::move(*handle));
-  if (flushed_ == 0 || !(complete || survives_kill())) throw write_failure(path_, reason, "nothing was kept");
+  if (flushed_ == 0 || !(complete || survives_kill())) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished_.path(), ignored);  // now, since other files may need its room
+    throw write_failure(path_, reason, "nothing was kept");
+  }
   unfinished_.keep();
   throw write_failure(
       path_, reason,

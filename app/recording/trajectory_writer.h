@@ -45,7 +45,12 @@ struct TrajectoryHeader {
 // frames were kept.
 class RecordingFailure : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  RecordingFailure(const std::string& what, std::string reason)
+      : std::runtime_error(what), reason_(std::move(reason)) {}
+  const std::string& reason() const { return reason_; }  // "the disk is full"
+
+ private:
+  std::string reason_;
 };
 
 // Whether to flush now, so that at most two periods pass between flushes: the next frame may take as long as the last.

@@ -160,7 +160,7 @@ void export_simulated(Simulation& simulation, const ExportFormat& format, const 
     request.prepare(format);
     const TemporaryRecording recording(request.path);
     SimulatedMotion motion =
-        record_motion(simulation, seconds, recording.path(), std::nullopt, [&](std::int64_t) { work.check(); });
+        record_motion(simulation, seconds, recording, std::nullopt, [&](std::int64_t) { work.check(); });
     const auto reader = std::make_shared<TrajectoryReader>(recording.path());
     std::vector<RecordedMotion> motions;
     for (std::size_t i = 0; i < simulation.size(); ++i) motions.emplace_back(reader, i);

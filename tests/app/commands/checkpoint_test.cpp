@@ -82,6 +82,19 @@ TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
   EXPECT_THAT(listing(), SizeIs(1));
 }
 
+// A full disk fills no log: its line comes with the first of the many checkpoints that fail.
+TEST_F(Checkpoint, WhatPreventsItIsReportedOnce) {
+  const json whole = robots_of(mercury(run_));
+  const Outcome outcome =
+      run_program("sh", Arguments{"-c", "ulimit -f 40; exec \"$0\" \"$@\"", MERCURY_PROGRAM} + run_ +
+                            Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.messages, HasSubstr("no checkpoint at "));
+  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+  EXPECT_EQ(json::parse(outcome.output)["robots"], whole);
+  EXPECT_THAT(listing(), SizeIs(0));
+}
+
 TEST_F(Checkpoint, ItCanGoOnForLonger) {
   Arguments longer = run_;
   *(std::ranges::find(longer, "1.23")) = "1.5";
