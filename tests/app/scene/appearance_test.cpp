@@ -83,6 +83,45 @@ TEST(MaterialLegend, MusclesOfOneNameAndManyPhasesAreAWheel) {
               render::muscle_color(static_cast<float>(quarter) * turn / 4, 0.5f));
 }
 
+// Mixtures of materials that have names of their own need none, as the pairs of the paper's robots.
+TEST(MaterialLegend, LeavesMixturesOutAndStaysShort) {
+  const Material soft{.stiffness = 40}, muscle{.stiffness = 50, .amplitude = 0.1f, .frequency = 1, .phase = 1};
+  const render::Legend pairs =
+      legend_of({{}, muscle, soft, muscle, soft, soft},
+                {"air", "muscle 1", "bone", "muscle 1 + bone", "bone + muscle 1", "bone + gristle"});
+  std::vector<std::string> names;
+  for (const auto& [color, name] : pairs.swatches) names.push_back(name);
+  EXPECT_EQ(names, (std::vector<std::string>{"muscle 1", "bone", "bone + gristle"}));
+
+  std::vector<Material> many(1);
+  std::vector<std::string> many_names{"air"};
+  for (int i = 0; i < 20; ++i) {
+    many.push_back(muscle);
+    many_names.push_back("muscle " + std::to_string(i));
+    many.push_back(soft);
+    many_names.push_back("tissue " + std::to_string(i));
+  }
+  const render::Legend legend = legend_of(many, many_names);
+  EXPECT_FALSE(legend.wheel.empty());
+  EXPECT_LE(legend.swatches.size(), 7u);
+  EXPECT_EQ(legend.swatches.back().second, "and 14 more");
+}
+
+// The 20 muscles of the default table.
+TEST(MaterialLegend, ManyDefaultMusclesAreAWheel) {
+  Robot robot;
+  for (std::uint16_t id = 1; id <= 22; ++id) {
+    robot.masses.insert(robot.masses.end(), {{0, 0, 0}, {1, 0, 0}});
+    robot.springs.push_back({static_cast<std::uint16_t>(2 * id - 2), static_cast<std::uint16_t>(2 * id - 1),
+                             static_cast<MaterialId>(id), 1});
+  }
+  const Robot* const pointer = &robot;
+  const std::shared_ptr<const RobotShape> shape = shape_of(robot);
+  const render::Legend legend = material_legend(std::span(&pointer, 1), std::span(&shape, 1));
+  EXPECT_FALSE(legend.wheel.empty());
+  EXPECT_EQ(legend.swatches.size(), 2u);  // tissue and bone
+}
+
 TEST(FaceMaterials, FaceWithoutSpringsIsAir) {
   const Robot robot{.masses = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .faces = {{0, 1, 2}}};
   EXPECT_EQ(face_materials(robot), std::vector<MaterialId>{air});
