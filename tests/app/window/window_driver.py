@@ -148,11 +148,14 @@ class Window:
         self.frame()
 
     def dialog(self, text):
-        """Types into the open dialog and accepts it."""
+        """Types into the open dialog, accepts it and waits for the answer: it closes, another one opens, or it objects."""
         self.place("dialog.text")
         self.frame()  # it has the keyboard focus now
+        field, since = self.items["dialog.text"], self.mark()
         self.type(text)
         self.key("Return")
+        self.until("answer of the dialog", lambda: self.items.get("dialog.text") is not field or any(
+            event["event"] in ("asks", "message") for event in self.events[since:]))
 
     def key(self, *keys):
         self.do("key", "--delay", "30", *keys)
