@@ -6,7 +6,7 @@
 //   mutated, crossed        children; `genes` says what may change
 //   grown                   the robot
 //   write, read             the encoding without its head; read() throws InputError
-//   add_identity            what makes the robot what it is
+//   add_identity            what makes the robot what it is; without it, all that write() writes
 //
 // and names genes_kind<its struct>() in its entry of the registry (Generator::genes). Nothing else knows it.
 #pragma once
@@ -63,7 +63,15 @@ class GenesOf : public BodyGenes {
     return values_.grown(name, environment);
   }
   void write(ByteWriter& writer) const override { values_.write(writer); }
-  void add_identity(IdentityHash& hash) const override { values_.add_identity(hash); }
+  void add_identity(IdentityHash& hash) const override {
+    if constexpr (requires { values_.add_identity(hash); }) {
+      values_.add_identity(hash);
+    } else {
+      ByteWriter writer;
+      values_.write(writer);
+      hash.add(std::move(writer).take());
+    }
+  }
 
  private:
   Values values_;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields of CSV lines (RFC 4180).
+// Numbers in tables of CSV, whose texts are robots/csv.h's.
 #pragma once
 
 #include <string>
 
-namespace mercury {
+#include "robots/csv.h"
 
-// A text, in quotes where the standard requires them.
-std::string csv_field(const std::string& text);
+namespace mercury {
 
 // The shortest text that reads back as this number; empty if it is not finite, which programs read as missing.
 std::string csv_number(double value);

@@ -7,10 +7,10 @@
 #include <set>
 #include <string>
 
-#include "evolution/run_folder/csv_lines.h"
 #include "evolution/run_folder/derived_files.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "robots/csv.h"
 #include "robots/file/whole_file.h"
 #include "robots/number_text.h"
 

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "evolution/run_folder/champion_checks.h"
-#include "evolution/run_folder/csv_lines.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/progress_plot.h"
 #include "mercury/error.h"
@@ -17,6 +16,7 @@
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
+#include "robots/csv.h"
 #include "robots/file/whole_file.h"
 #include "robots/number_text.h"
 

@@ -71,12 +71,6 @@ struct ShellGenes {
     validate(genes.genome);
     return genes;
   }
-
-  void add_identity(IdentityHash& hash) const {
-    ByteWriter writer;
-    write(writer);
-    hash.add(std::move(writer).take());
-  }
 };
 
 }  // namespace

@@ -66,12 +66,6 @@ struct TaperedGenes {
     validate(genes.genome);
     return genes;
   }
-
-  void add_identity(IdentityHash& hash) const {
-    ByteWriter writer;
-    write(writer);
-    hash.add(std::move(writer).take());
-  }
 };
 
 }  // namespace

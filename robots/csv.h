@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of CSV (RFC 4180), as the files of a run folder have them.
+// Lines of CSV (RFC 4180).
 #pragma once
 
 #include <concepts>
@@ -11,18 +11,20 @@
 
 namespace mercury {
 
+// A text as a field: in quotes where the standard requires them.
+inline std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\n\r") == std::string_view::npos) return std::string(text);
+  std::string field = "\"";
+  for (const char letter : text) field.append(letter == '"' ? 2 : 1, letter);
+  return field + '"';
+}
+
 class CsvLines {
  public:
   CsvLines& cell(std::string_view text) {
     if (!at_line_start_) text_ += ',';
     at_line_start_ = false;
-    if (text.find_first_of(",\"\n\r") == std::string_view::npos) {
-      text_ += text;
-      return *this;
-    }
-    text_ += '"';
-    for (const char letter : text) text_.append(letter == '"' ? 2 : 1, letter);
-    text_ += '"';
+    text_ += csv_field(text);
     return *this;
   }
   CsvLines& cell(double value) { return cell(shortest_text(value)); }
