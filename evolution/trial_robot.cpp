@@ -61,7 +61,11 @@ Robot trial_robot(const Robot& robot, const TrialSettings& settings, std::uint64
   const std::span<const Material> materials = materials_of(robot);
   changed.materials.assign(materials.begin(), materials.end());
   changed.material_names = robot.material_names;
+  if (robot.materials.empty() && robot.brain)  // whose sensors may name muscles of the default table
+    for (std::size_t id = 0; id < materials.size(); ++id)
+      changed.material_names.push_back(default_material_name(static_cast<MaterialId>(id)));
   changed.actuators = robot.actuators;
+  carry_brain(robot, changed);
   if (delay > 0) delay_muscles(changed, delay);
   if (settings.noise > 0) disturb_materials(changed, settings.noise, random);
   return changed;

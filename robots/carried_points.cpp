@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robots/carried_points.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
+
+#include "mercury/error.h"
 
 namespace mercury {
 namespace {
@@ -18,6 +21,21 @@ Place place_of(Vec3 rest) {
 }
 
 }  // namespace
+
+void carry_brain(const Robot& from, Robot& to) {
+  if (from.sensors.empty() && !from.brain) return;
+  const bool by_index = std::ranges::any_of(
+      from.sensors, [](const Sensor& sensor) { return !sensor.springs.empty() || !sensor.masses.empty(); });
+  if (by_index && !same_topology(from, to)) return;
+  to.sensors = from.sensors;
+  to.brain = from.brain;
+  try {
+    validate_brain(to);
+  } catch (const InputError&) {
+    to.sensors.clear();
+    to.brain.reset();
+  }
+}
 
 void carry_points(const Robot& from, Robot& to) {
   if (from.mass.empty() && from.velocity.empty() && from.fixed.empty()) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot says of its masses, handed on to a body that is made from it.
+// What a robot says of its masses, and its brain, handed on to a body that is made from it.
 #pragma once
 
 #include "mercury/robot.h"
@@ -9,5 +9,9 @@ namespace mercury {
 // Gives `to` the masses, velocities and fixed points of `from`, by place: a point where `from` has one gets what that
 // one has. Other points have the mean mass, and are at rest. A list that `to` has already stays.
 void carry_points(const Robot& from, Robot& to);
+
+// Gives `to` the sensors and the brain of `from`, if they fit it: a brain that drives its actuators, and sensors that
+// name springs or masses by index only where the topology is the same.
+void carry_brain(const Robot& from, Robot& to);
 
 }  // namespace mercury

@@ -25,11 +25,13 @@ Generator tapered_generator();
 namespace {
 
 // Actuators name materials by id. A robot that grew from another keeps them if these ids have not changed their
-// meaning: the table has as many materials as before, with the same names. Their values may differ.
+// meaning: the table has as many materials as before, with the same names. Their values may differ. It keeps the brain,
+// too, if that fits.
 void keep_actuators(Robot& grown, const Robot& from) {
   const bool same_table =
       materials_of(grown).size() == materials_of(from).size() && grown.material_names == from.material_names;
   if (same_table) grown.actuators = from.actuators;
+  carry_brain(from, grown);
 }
 
 // The robot with the real body that another has, if it has one.

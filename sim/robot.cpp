@@ -227,6 +227,7 @@ void validate(const Robot& robot) {
   for (std::size_t i = 0; i < robot.faces.size(); ++i)
     if (!is_valid(robot.faces[i], masses)) refuse_face(robot, i);
   validate_actuators(robot);
+  validate_brain(robot);
 }
 
 std::vector<Actuator> actuators_of(const Robot& robot) {

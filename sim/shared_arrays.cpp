@@ -147,6 +147,18 @@ void SharedActuation::attach(Backend& backend) {
                                        .actuator_of = actuator_of_});
 }
 
+void SharedActuation::set_drives(const Backend& backend, std::span<const DriveSetting> settings) {
+  const SharedArray<float>& drive = arrays_.drive;
+  if (settings.empty()) return;
+  const auto write = [&](float* to) {
+    for (const DriveSetting& setting : settings) to[setting.robot * drive.columns + setting.actuator] = setting.drive;
+  };
+  if (drive.cuda_device < 0) return write(drive.data.get());
+  std::vector<float> values = read(backend, drive);
+  write(values.data());
+  backend.copy_shared(drive.data.get(), values.data(), values.size() * sizeof(float));
+}
+
 // Robots are written whose settings are not, bit for bit, those of the last step.
 void SharedActuation::apply(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
                             std::span<const std::unique_ptr<MaterialTable>> tables) {

@@ -35,6 +35,13 @@ class SharedState {
   SharedArray<std::uint8_t> exploded_;
 };
 
+// The drive of one actuator.
+struct DriveSetting {
+  std::size_t robot;
+  std::uint32_t actuator;
+  float drive;
+};
+
 // Once a program has asked for the arrays, they drive the actuators.
 class SharedActuation {
  public:
@@ -47,6 +54,8 @@ class SharedActuation {
   // Changes the materials of the backend, unless it reads the arrays itself. To be called before every step.
   void apply(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
              std::span<const std::unique_ptr<MaterialTable>> tables);
+  // Writes drives into arrays that have been made.
+  void set_drives(const Backend& backend, std::span<const DriveSetting> settings);
   // Lets the backend read the arrays again, after it failed to exchange robots.
   void attach(Backend& backend);
   // The robots' own materials have changed in the backend.

@@ -89,6 +89,7 @@ void Simulation::Parts::append(std::span<const std::shared_ptr<const Robot>> add
   changed_tables.resize(size());
   explosions.resize(size());
   cells.resize(size());
+  brains.append(added);
 }
 
 void Simulation::Parts::truncate(std::size_t size) {
@@ -99,6 +100,7 @@ void Simulation::Parts::truncate(std::size_t size) {
   explosions.resize(size);
   cells.resize(size);
   lifts.resize(std::min(lifts.size(), size));
+  brains.truncate(size);
 }
 
 std::span<const float> Simulation::Parts::rest_lifts() {
@@ -200,6 +202,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   parts_->cells = std::move(cells);
   parts_->offsets = std::move(offsets);
   parts_->changed_tables = std::move(tables);
+  parts_->brains.keep(robots);
   parts_->lifts.clear();
   parts_->after_exchange(robots);
 }
@@ -275,15 +278,47 @@ void Simulation::set_clock(const Clock& clock) {
 void Simulation::step(std::int64_t steps) {
   if (steps < 0) throw std::invalid_argument("the number of steps must be 0 or more");
   if (steps > 0 && size() > 0) {
-    parts_->before_step();
-    parts_->backend->step(parts_->clock, steps);
+    parts_->advance(steps);
     parts_->after_change();
+  } else {
+    parts_->clock.step += steps;
   }
-  parts_->clock.step += steps;
+}
+
+std::int64_t Simulation::Parts::before_step() {
+  std::int64_t steps = std::numeric_limits<std::int64_t>::max();
+  if (!brains.empty()) {
+    shared_actuation.arrays(*backend, robots, changed_tables);
+    if (brains.steps_to_thought(clock) == 0) {
+      std::vector<Vec3> positions, velocities;
+      if (brains.need_state(clock)) {
+        positions.resize(offsets.back());
+        velocities.resize(offsets.back());
+        backend->read_positions(positions);
+        backend->read_velocities(velocities);
+      }
+      brains.think(clock, robots, offsets, positions, velocities, configuration.environment);
+    }
+    shared_actuation.set_drives(*backend, brains.take_drives());
+    Clock next = clock;
+    ++next.step;
+    steps = brains.steps_to_thought(next) + 1;
+  }
+  shared_actuation.apply(*backend, robots, changed_tables);
+  return steps;
+}
+
+void Simulation::Parts::advance(std::int64_t steps) {
+  while (steps > 0) {
+    const std::int64_t at_once = std::min(steps, before_step());
+    backend->step(clock, at_once);
+    clock.step += at_once;
+    steps -= at_once;
+  }
 }
 
 void Simulation::step_in_stream(std::int64_t steps, void* cuda_stream) {
-  if (cuda_device() < 0) return step(steps);
+  if (cuda_device() < 0 || has_brains()) return step(steps);
   if (steps < 0) throw std::invalid_argument("the number of steps must be 0 or more");
   if (steps > 0 && size() > 0)
     parts_->backend->step_in_stream(parts_->clock, steps, parts_->shared_state.targets(), cuda_stream);
@@ -294,7 +329,7 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
   if (every <= 0 || steps < 0 || steps % every != 0)
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
-  if (measures_folding()) {  // which takes the positions of every sample
+  if (measures_folding() || has_brains()) {  // which may take the positions of every sample, or think between them
     for (std::size_t first = 0; first < samples.size(); first += size()) {
       step(every);
       std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));
@@ -316,6 +351,7 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
 void Simulation::reset() {
   parts_->clock = Clock{.dt = parts_->configuration.dt};
   parts_->explosions.assign(size(), {});
+  for (std::size_t i = 0; i < size(); ++i) parts_->brains.reset(i);
   parts_->put_at_rest(0);
   parts_->after_change();
 }
@@ -324,6 +360,7 @@ void Simulation::reset_to(std::span<const Vec3> positions) {
   if (positions.size() != mass_count()) throw std::invalid_argument("one position per mass is needed");
   parts_->clock = Clock{.dt = parts_->configuration.dt};
   parts_->explosions.assign(size(), {});
+  for (std::size_t i = 0; i < size(); ++i) parts_->brains.reset(i);
   // Robots of which backends use nothing but the start.
   std::vector<Robot> starts(size());
   std::vector<const Robot*> pointers(size());
@@ -346,7 +383,10 @@ void Simulation::reset(std::span<const std::uint8_t> mask) {
   const std::span<const float> lifts = parts_->rest_lifts();
   for (std::size_t begin = 0, end = 0; begin < size(); begin = end + 1) {
     while (begin < size() && !mask[begin]) ++begin;
-    for (end = begin; end < size() && mask[end];) parts_->explosions[end++] = {};
+    for (end = begin; end < size() && mask[end]; ++end) {
+      parts_->explosions[end] = {};
+      parts_->brains.reset(end);
+    }
     if (begin < end)
       parts_->backend->put_at_rest(std::span(parts_->pointers).subspan(begin, end - begin), begin,
                                    lifts.subspan(begin, end - begin));
@@ -357,6 +397,11 @@ void Simulation::reset(std::span<const std::uint8_t> mask) {
 // What is known of an explosion ends with the next one, which is at a later step.
 void Simulation::reset_in_stream(const std::uint8_t* mask, void* cuda_stream) {
   if (cuda_device() < 0) return reset(std::span(mask, size()));
+  if (has_brains()) {
+    std::vector<std::uint8_t> copy(size());
+    parts_->backend->copy_shared(copy.data(), mask, copy.size());
+    return reset(copy);
+  }
   if (size() > 0)
     parts_->backend->put_at_rest_in_stream(parts_->pointers, parts_->rest_lifts(), mask, parts_->shared_state.targets(),
                                            cuda_stream);

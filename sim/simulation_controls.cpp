@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program may change between steps of a Simulation: materials and perturbations.
+// What a program may change between steps of a Simulation: materials, brains and perturbations.
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -61,6 +61,38 @@ std::vector<Material> Simulation::materials() const {
   for (std::size_t i = 0; i < size(); ++i)
     std::ranges::copy(parts_->table(i), all.begin() + static_cast<std::ptrdiff_t>(i * max_materials));
   return all;
+}
+
+bool Simulation::has_brains() const { return !parts_->brains.empty(); }
+
+BrainState Simulation::brain_state(std::size_t robot) const {
+  parts_->require(robot);
+  return parts_->brains.state(robot);
+}
+
+void Simulation::set_brain_state(std::size_t robot, const BrainState& state) {
+  parts_->require(robot);
+  parts_->brains.set_state(robot, state);
+}
+
+void Simulation::set_brain_weights(std::size_t robot, std::span<const float> weights) {
+  parts_->require(robot);
+  parts_->brains.set_weights(robot, weights);
+}
+
+void Simulation::clamp_neuron(std::size_t robot, std::size_t neuron, std::optional<float> value) {
+  parts_->require(robot);
+  parts_->brains.clamp(robot, neuron, value);
+}
+
+void Simulation::set_target(std::size_t robot, std::optional<Vec3> target) {
+  parts_->require(robot);
+  parts_->brains.set_target(robot, target);
+}
+
+void Simulation::set_noise_seed(std::size_t robot, std::uint64_t seed) {
+  parts_->require(robot);
+  parts_->brains.set_noise_seed(robot, seed);
 }
 
 void Simulation::set_perturbations(std::span<const Perturbation> perturbations) {

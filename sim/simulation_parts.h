@@ -11,6 +11,7 @@
 
 #include "mercury/folding.h"
 #include "mercury/simulation.h"
+#include "sim/brains.h"
 #include "sim/shared_arrays.h"
 
 namespace mercury {
@@ -40,6 +41,7 @@ struct Simulation::Parts {
   std::vector<float> lifts;  // by which robots at rest stand higher; empty = not known
   SharedState shared_state;
   SharedActuation shared_actuation;
+  Brains brains;
   std::unique_ptr<Backend> backend;  // last: released before the robots
 
   // Throws as Simulation's constructors do.
@@ -81,8 +83,10 @@ struct Simulation::Parts {
   }
   void change_clock(const Clock& changed);
 
-  // To be called before the backend steps, and after it has changed the state.
-  void before_step() { shared_actuation.apply(*backend, robots, changed_tables); }
+  // Steps the backend, and lets the brains think meanwhile.
+  void advance(std::int64_t steps);
+  // To be called before the backend steps, and after it has changed the state. Returns how many steps it may take.
+  std::int64_t before_step();
   // Says that XPBD softens springs by more than a twentieth; empty if it does not.
   std::string softening_note() const;
   std::string stability_note() const;

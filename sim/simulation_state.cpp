@@ -95,7 +95,8 @@ BatchState Simulation::save() const {
   BatchState state{.clock = parts_->clock,
                    .positions = std::vector<Vec3>(mass_count()),
                    .velocities = std::vector<Vec3>(mass_count()),
-                   .explosions = {}};
+                   .explosions = {},
+                   .brains = {}};
   parts_->backend->read_positions(state.positions);
   parts_->backend->read_velocities(state.velocities);
   const std::vector<RobotStatus> statuses = parts_->backend->statuses();
@@ -104,12 +105,17 @@ BatchState Simulation::save() const {
     const KnownExplosion& known = parts_->explosion(i, statuses[i]);
     state.explosions.push_back({i, known.step, known.at, known.culprit_spring});
   }
+  if (has_brains())
+    for (std::size_t i = 0; i < size(); ++i) state.brains.push_back(parts_->brains.state(i));
   return state;
 }
 
 void Simulation::restore(const BatchState& state) {
   if (state.positions.size() != mass_count() || state.velocities.size() != mass_count())
     throw std::invalid_argument("one position and one velocity per mass are needed");
+  if (!state.brains.empty() && state.brains.size() != size())
+    throw std::invalid_argument("the state of one brain per robot is needed, or none");
+  for (std::size_t i = 0; i < state.brains.size(); ++i) parts_->brains.require_state(i, state.brains[i]);
   std::vector<RobotStatus> wanted(size());
   std::vector<KnownExplosion> known(size());
   for (const BatchState::Explosion& explosion : state.explosions) {
@@ -121,6 +127,8 @@ void Simulation::restore(const BatchState& state) {
   require_clock(state.clock, parts_->configuration);
   parts_->clock = state.clock;
   parts_->explosions = std::move(known);
+  for (std::size_t i = 0; i < size(); ++i)
+    state.brains.empty() ? parts_->brains.reset(i) : parts_->brains.set_state(i, state.brains[i]);
   const std::vector<RobotStatus> present = parts_->backend->statuses();
   for (std::size_t i = 0; i < size(); ++i) {
     const std::size_t first = parts_->offsets[i], masses = parts_->masses(i);

@@ -62,6 +62,20 @@ void print_actuators(const Inspection& inspection) {
   if (actuators.size() > shown) print_line("", fmt::format("and {} more", actuators.size() - shown));
 }
 
+// What the robot senses, and the brain that drives its actuators.
+void print_brain(const Robot& robot) {
+  std::vector<std::string_view> kinds;
+  for (const Sensor& sensor : robot.sensors)
+    if (const auto kind = description_of(sensor.kind).name; std::ranges::find(kinds, kind) == kinds.end())
+      kinds.push_back(kind);
+  if (!kinds.empty()) print_line("senses", fmt::format("{}", fmt::join(kinds, ", ")));
+  if (!robot.brain) return;
+  const BrainLayout layout = brain_layout(robot);
+  print_line("brain", fmt::format("{} senses, {} neurons, {} weights, drives {} actuator{}, thinks every {:.3g} s",
+                                  layout.senses.size(), layout.neurons.size(), layout.weights, layout.driven.size(),
+                                  layout.driven.size() == 1 ? "" : "s", robot.brain->period));
+}
+
 // "1200 muscles", "1200 muscles, 300 by half waves"
 std::string muscles_text(const Inspection& inspection) {
   std::size_t by_half_waves = 0;
@@ -146,6 +160,7 @@ void describe(const Robot& robot, const std::filesystem::path&) {
   print_line("surface", surface_text(found));
   print_line("materials", materials_text(found));
   if (!robot.actuators.empty()) print_actuators(found);
+  print_brain(robot);
   print_line("size", fmt::format("{:.3g} x {:.3g} x {:.3g} m", found.extent.x, found.extent.y, found.extent.z));
   describe_mechanics(robot);
   describe_fit(robot);

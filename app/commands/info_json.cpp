@@ -138,6 +138,12 @@ Json info_of(const Robot& robot, const std::filesystem::path& file) {
   if (!robot.actuators.empty())
     for (const auto& [actuator, springs] : found.actuators)
       actuators.push_back({{"name", actuator.name}, {"materials", actuator.materials}, {"springs", springs}});
+  const BrainLayout layout = brain_layout(robot);
+  const Json brain = robot.brain ? Json{{"senses", layout.senses},
+                                        {"neurons", layout.neurons},
+                                        {"weights", layout.weights},
+                                        {"period", shortest(robot.brain->period)}}
+                                 : Json();
   return {{"file", file.string()},
           {"name", robot.name},
           {"kind", text_or_null(kind_of(robot))},
@@ -148,6 +154,7 @@ Json info_of(const Robot& robot, const std::filesystem::path& file) {
           {"muscles", found.muscles},
           {"materials", materials},
           {"actuators", actuators},
+          {"brain", brain},
           {"lowest", json_of(found.lowest)},
           {"highest", json_of(found.highest)},
           {"extent", json_of(found.extent)},

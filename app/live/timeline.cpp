@@ -16,12 +16,20 @@ bool same_base(const Clock& a, const Clock& b) {
   return a.dt == b.dt && a.base_time == b.base_time && a.base_step == b.base_step;
 }
 
+std::size_t brain_bytes(std::span<const BrainState> brains) {
+  std::size_t sum = 0;
+  for (const BrainState& brain : brains)
+    sum +=
+        sizeof(brain) + (brain.neurons.capacity() + brain.senses.capacity() + brain.weights.capacity()) * sizeof(float);
+  return sum;
+}
+
 }  // namespace
 
 std::size_t Keyframe::bytes() const {
   const auto bytes_of = [](const BatchState& all) {
     return (all.positions.capacity() + all.velocities.capacity()) * sizeof(Vec3) +
-           all.explosions.capacity() * sizeof(BatchState::Explosion);
+           all.explosions.capacity() * sizeof(BatchState::Explosion) + brain_bytes(all.brains);
   };
   std::size_t sum = sizeof(Keyframe) + bytes_of(state);
   for (const auto& companion : companions)

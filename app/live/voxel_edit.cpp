@@ -121,6 +121,7 @@ Robot with_voxel(const Robot& robot, const VoxelSide& side, const VoxelEdit& edi
   else
     changed.actuators = robot.actuators;
   carry_points(robot, changed);
+  carry_brain(robot, changed);
   return changed;
 }
 

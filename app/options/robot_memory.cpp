@@ -41,6 +41,7 @@ std::size_t content_bytes(const Robot& robot) {
                       robot.faces.size() * sizeof(Face) + robot.mass.size() * sizeof(float) +
                       robot.velocity.size() * sizeof(Vec3) + robot.fixed.size() * sizeof(std::uint16_t);
   for (const Actuator& actuator : robot.actuators) bytes += sizeof(Actuator) + actuator.materials.size();
+  if (robot.brain) bytes += weights_of(*robot.brain).size() * sizeof(float);
   return bytes;
 }
 

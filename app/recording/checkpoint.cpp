@@ -147,6 +147,53 @@ void read_foldings(hid_t parent, std::span<TrialMeasures::Sums> measures) {
   }
 }
 
+// The states of all brains, robot after robot. Earlier versions wrote none.
+void write_brain_states(hid_t parent, const Simulation& simulation) {
+  if (!simulation.has_brains()) return;
+  BrainState all;
+  std::vector<std::uint64_t> thoughts;
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const BrainState state = simulation.brain_state(i);
+    for (const auto numbers : {&BrainState::neurons, &BrainState::senses, &BrainState::weights})
+      (all.*numbers).insert((all.*numbers).end(), (state.*numbers).begin(), (state.*numbers).end());
+    thoughts.push_back(state.thoughts);
+  }
+  const Handle group = create_group(parent, "brains");
+  const auto write = [&](const char* name, const std::vector<float>& numbers) {
+    write_dataset(group, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {numbers.size()}, numbers.data());
+  };
+  write("neurons", all.neurons);
+  write("senses", all.senses);
+  write("weights", all.weights);
+  write_dataset(group, "thoughts", H5T_STD_U64LE, H5T_NATIVE_UINT64, {thoughts.size()}, thoughts.data());
+}
+
+std::vector<BrainState> read_brain_states(hid_t parent, std::span<const RecordedRobot> robots) {
+  if (!has_member(parent, "brains")) return {};
+  const Handle group = open_group(parent, "brains");
+  std::vector<BrainState> states;
+  for (const RecordedRobot& recorded : robots) states.push_back(brain_at_start(recorded.robot));
+  const auto read = [&](const char* name, std::vector<float> BrainState::*numbers) {
+    const auto all = read_rows<float>(group, name, H5T_NATIVE_FLOAT, {});
+    auto next = all.begin();
+    for (BrainState& state : states) {
+      std::vector<float>& own = state.*numbers;
+      if (static_cast<std::size_t>(all.end() - next) < own.size())
+        throw Error(fmt::format("/checkpoint/brains/{}: it is shorter than the robots' brains", name));
+      std::copy_n(next, own.size(), own.begin());
+      next += static_cast<std::ptrdiff_t>(own.size());
+    }
+  };
+  read("neurons", &BrainState::neurons);
+  read("senses", &BrainState::senses);
+  read("weights", &BrainState::weights);
+  const auto thoughts = read_rows<std::uint64_t>(group, "thoughts", H5T_NATIVE_UINT64, {});
+  if (thoughts.size() != states.size())
+    throw Error("/checkpoint/brains/thoughts: it has another length than the robots");
+  for (std::size_t i = 0; i < states.size(); ++i) states[i].thoughts = thoughts[i];
+  return states;
+}
+
 void write_robots(hid_t parent, const std::string& name, std::span<const CheckpointRobot> robots) {
   const Handle group = create_group(parent, name);
   std::vector<std::uint64_t> indices;
@@ -195,6 +242,7 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   write_dataset(group, "measures", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {rows.size(), row_numbers}, rows.data());
   write_ways(group, notes.measures);
   write_foldings(group, notes.measures);
+  write_brain_states(group, simulation);
   if (!notes.recording) return;
   const Handle recording = create_group(group, "recording");
   write_text(recording, "path", notes.recording->path);
@@ -270,6 +318,7 @@ Checkpoint load_checkpoint(const std::filesystem::path& path) {
                         .device_name = reader.device_name(),
                         .state = {},
                         .notes = {}};
+  std::vector<BrainState> brains;
   try {
     bool unfinished = false;
     const Handle file = open_file(path, unfinished);
@@ -283,12 +332,14 @@ Checkpoint load_checkpoint(const std::filesystem::path& path) {
     checkpoint.notes = read_notes(group);
     checkpoint.notes.seed = reader.seed();
     validate_notes(checkpoint.notes, reader.robots().size(), reader.step(0));
+    brains = read_brain_states(group, reader.robots());
   } catch (const Error& error) {
     throw InputError(path.string(), error.what());
   } catch (const InputError& error) {
     throw InputError(path.string(), error.what());
   }
   checkpoint.state = reader.state(0);
+  checkpoint.state.brains = std::move(brains);
   for (const RecordedRobot& recorded : reader.robots()) checkpoint.robots.push_back(recorded.robot);
   return checkpoint;
 }

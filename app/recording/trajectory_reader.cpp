@@ -10,6 +10,7 @@
 #include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
+#include "robots/file/brain_document.h"
 
 namespace mercury {
 namespace {
@@ -253,6 +254,8 @@ RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group)
   read_materials(group, robot);
   read_actuators(group, robot);
   if (has_member(group, "origin")) robot.origin = read_text_dataset(group, "origin");
+  if (has_member(group, "sensors")) read_sensors(read_text_dataset(group, "sensors"), robot);
+  if (has_member(group, "brain")) read_brain(read_text_dataset(group, "brain"), robot);
   validate(robot);
   if (has_attribute(group, "exploded_at")) recorded.exploded_at = read_attribute<double>(group, "exploded_at");
   if (has_attribute(group, "first_bad_spring"))
@@ -291,7 +294,7 @@ Clock TrajectoryReader::clock(std::size_t frame) const {
 }
 
 BatchState TrajectoryReader::state(std::size_t frame) {
-  BatchState state{.clock = clock(frame), .positions = {}, .velocities = {}, .explosions = {}};
+  BatchState state{.clock = clock(frame), .positions = {}, .velocities = {}, .explosions = {}, .brains = {}};
   const auto copied = [](std::span<const Vec3> values) { return std::vector<Vec3>(values.begin(), values.end()); };
   state.positions = copied(positions(frame));
   state.velocities = copied(velocities(frame));

@@ -20,6 +20,7 @@
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
 #include "mercury/real_body.h"
+#include "robots/file/brain_document.h"
 
 namespace mercury {
 namespace {
@@ -256,6 +257,7 @@ void TrajectoryWriter::write_robot(std::size_t index, const Robot& robot, std::s
   write_connectivity(name, robot, group);
   write_materials(group, robot, materials);
   write_actuators(group, robot);
+  write_brains(group, robot);
   if (!robot.origin.empty()) write_text_dataset(group, "origin", robot.origin);
 }
 
@@ -325,6 +327,18 @@ void TrajectoryWriter::write_actuators(hid_t particles, const Robot& robot) {
   write_text_dataset(particles, "actuators", names);
   write_dataset(particles, "actuator_materials", H5T_STD_U8LE, H5T_NATIVE_UINT8, {materials.size(), 2},
                 materials.data());
+}
+
+// As in a robot's file, in JSON.
+void TrajectoryWriter::write_brains(hid_t particles, const Robot& robot) {
+  const auto write = [&](const char* name, const auto& send) {
+    std::string text;
+    JsonWriter json(text);
+    send(json);
+    write_text_dataset(particles, name, text);
+  };
+  if (!robot.sensors.empty()) write("sensors", [&](JsonWriter& json) { write_sensors(robot, json); });
+  if (robot.brain) write("brain", [&](JsonWriter& json) { write_brain(*robot.brain, json); });
 }
 
 // All elements share one time axis, as H5MD allows.

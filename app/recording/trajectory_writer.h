@@ -110,6 +110,7 @@ class TrajectoryWriter {
   void write_connectivity(const std::string& group, const Robot& robot, hdf5::Id particles);
   void write_materials(hdf5::Id particles, const Robot& robot, std::span<const Material> materials);
   void write_actuators(hdf5::Id particles, const Robot& robot);
+  void write_brains(hdf5::Id particles, const Robot& robot);
   void start_frames();
   void create_frames(hdf5::Id particles, std::size_t masses);
   void reserve_block();

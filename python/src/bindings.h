@@ -48,6 +48,7 @@ void bind_voxel(nb::module_& module);
 void bind_environments(nb::module_& module);
 void bind_array(nb::module_& module);
 void bind_batch(nb::module_& module);
+void bind_brains(nb::module_& module);
 void bind_evaluate(nb::module_& module);
 void bind_pictures(nb::module_& module);
 void bind_recording(nb::module_& module);

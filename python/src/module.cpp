@@ -12,6 +12,7 @@ NB_MODULE(_mercury, module) {
   bind_environments(module);
   bind_array(module);
   bind_batch(module);
+  bind_brains(module);
   bind_evaluate(module);
   bind_pictures(module);
   bind_recording(module);

@@ -65,8 +65,8 @@ class ActuatorReader : public DocumentEvents {
 // What a file may say that it requires ("requires"): the parts of a robot that a version without them would leave out,
 // and then run another robot. Files name those that they have. Parts that came before there was this list are not in
 // it.
-inline constexpr std::array<std::string_view, 5> known_requirements{"mass", "velocity", "fixed", "relaxation_time",
-                                                                    "modulus"};
+inline constexpr std::array<std::string_view, 6> known_requirements{"mass",    "velocity", "fixed", "relaxation_time",
+                                                                    "modulus", "brain"};
 // Those of them that a robot has, in their order.
 std::vector<std::string_view> requirements_of(const Robot& robot);
 
@@ -106,12 +106,14 @@ class RobotReader : public DocumentEvents {
     mass,
     fixed,
     actuators,
-    origin,
+    origin,  // it and the rest are taken as texts
+    sensors,
+    brain,
     unknown
   };
   static constexpr std::string_view section_names[] = {"format",  "version",   "name",     "materials", "masses",
                                                        "springs", "faces",     "velocity", "requires",  "mass",
-                                                       "fixed",   "actuators", "origin"};
+                                                       "fixed",   "actuators", "origin",   "sensors",   "brain"};
   struct MaterialEntry {
     Material material;
     std::string name;
@@ -125,6 +127,7 @@ class RobotReader : public DocumentEvents {
   [[noreturn]] void refuse(const std::string& what) const;
   [[noreturn]] void wrong_type(const std::string& given) const;
   bool passes_by(int change_of_depth);
+  JsonWriter* text_part();
   DocumentEvents* part(int change_of_depth);
   void begin_list(std::size_t announced);
   void begin_row(bool is_array);
@@ -158,6 +161,8 @@ class RobotReader : public DocumentEvents {
   std::vector<Substance> substances_;  // one per material
   ActuatorReader actuators_;
   JsonWriter origin_{robot_.origin};
+  std::string sensors_text_, brain_text_;
+  JsonWriter sensors_{sensors_text_}, brain_{brain_text_};
 };
 
 }  // namespace mercury

@@ -5,6 +5,7 @@
 
 #include "mercury/error.h"
 #include "mercury/real_body.h"
+#include "robots/file/brain_document.h"
 #include "robots/file/robot_document.h"
 
 namespace mercury {
@@ -29,7 +30,7 @@ std::string RobotReader::place() const {
   if (depth_ == 0 || section_ == unknown) return "";
   std::string place("/");
   place += section_names[section_];
-  if (section_ == origin || (depth_ < 3 && !in_values())) return place;
+  if (section_ >= origin || (depth_ < 3 && !in_values())) return place;
   place.append("/").append(std::to_string(row_));
   if (section_ == materials && field_ < unknown_key) place.append("/").append(material_keys[field_]);
   return place;
@@ -45,7 +46,8 @@ void RobotReader::wrong_type(const std::string& given) const {
   if (depth_ == 1) {
     if (section_ == format || section_ == name) refuse("must be a text, not " + given);
     if (section_ == version) refuse("must be a whole number, not " + given);
-    refuse(std::string(section_ == origin ? "must be an object" : "must be an array") + ", not " + given);
+    refuse(std::string(section_ == origin || section_ == brain ? "must be an object" : "must be an array") + ", not " +
+           given);
   }
   if (in_values())
     refuse(std::string(section_ == mass    ? "must be a number"
@@ -77,12 +79,17 @@ bool RobotReader::passes_by(int change_of_depth) {
   return true;
 }
 
-// What takes an event within the origin, or within the list of actuators; nullptr for others. Follows the depth.
+JsonWriter* RobotReader::text_part() {
+  return section_ == origin ? &origin_ : section_ == sensors ? &sensors_ : section_ == brain ? &brain_ : nullptr;
+}
+
+// What takes an event within the origin, sensors, a brain or the list of actuators; nullptr for others. Follows the
+// depth.
 DocumentEvents* RobotReader::part(int change_of_depth) {
   const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
-  DocumentEvents* const part = section_ == origin && depth_ >= 2      ? static_cast<DocumentEvents*>(&origin_)
-                               : section_ == actuators && inside >= 2 ? &actuators_
-                                                                      : nullptr;
+  DocumentEvents* const part = section_ == actuators && inside >= 2 ? static_cast<DocumentEvents*>(&actuators_)
+                               : section_ >= origin && depth_ >= 2  ? text_part()
+                                                                    : nullptr;
   if (part) depth_ += change_of_depth;
   return part;
 }
@@ -105,7 +112,7 @@ void RobotReader::boolean(bool value) {
 
 void RobotReader::bytes(std::string_view value) {
   if (passes_by(0)) return;
-  if (section_ == origin && depth_ >= 2) refuse("holds a byte string, which JSON cannot hold");
+  if (text_part() && depth_ >= 2) refuse("holds a byte string, which JSON cannot hold");
   if (DocumentEvents* const to = part(0)) return to->bytes(value);
   wrong_type("a byte string");
 }
@@ -137,7 +144,7 @@ float RobotReader::finite(const Number& value) const {
 
 void RobotReader::number(const Number& value) {
   if (passes_by(0)) return;
-  if (section_ == origin && depth_ >= 2 && !std::isfinite(value.real)) refuse("a number is not finite");
+  if (text_part() && depth_ >= 2 && !std::isfinite(value.real)) refuse("a number is not finite");
   if (DocumentEvents* const to = part(0)) return to->number(value);
   if (depth_ == 1 && section_ == version) {
     if (value.kind != Number::Kind::natural || value.natural != 1)
@@ -250,6 +257,10 @@ void RobotReader::begin_array(std::size_t announced) {
   if (passes_by(1)) return;
   if (DocumentEvents* const to = part(1)) return to->begin_array(announced);
   if (depth_ == 1 && section_ >= materials && section_ <= actuators) return begin_list(announced);
+  if (depth_ == 1 && section_ == sensors) {
+    ++depth_;
+    return sensors_.begin_array(announced);
+  }
   if (depth_ == 2 && !in_values()) return begin_row(true);
   wrong_type("an array");
 }
@@ -260,9 +271,9 @@ void RobotReader::begin_object(std::size_t announced) {
     return;
   }
   if (passes_by(1)) return;
-  if (section_ == origin && depth_ == 1) {
+  if ((section_ == origin || section_ == brain) && depth_ == 1) {
     ++depth_;
-    return origin_.begin_object(announced);
+    return text_part()->begin_object(announced);
   }
   if (DocumentEvents* const to = part(1)) return to->begin_object(announced);
   if (depth_ == 2 && !in_values()) return begin_row(false);
@@ -395,6 +406,9 @@ Robot RobotReader::take() {
   validate(robot_);
   actuators_.give_to(robot_);
   make_real();
+  if (has(sensors)) read_sensors(sensors_text_, robot_);
+  if (has(brain)) read_brain(brain_text_, robot_);
+  validate_brain(robot_);
   return std::move(robot_);
 }
 

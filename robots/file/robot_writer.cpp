@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mercury/error.h"
+#include "robots/file/brain_document.h"
 #include "robots/file/robot_document.h"
 
 namespace mercury {
@@ -52,10 +53,11 @@ class RobotWriter {
   void run() {
     const bool has_materials = !robot_.materials.empty(), has_mass = !robot_.mass.empty(),
                has_velocity = !robot_.velocity.empty(), has_fixed = !robot_.fixed.empty(),
-               has_actuators = !robot_.actuators.empty(), has_origin = !robot_.origin.empty();
+               has_actuators = !robot_.actuators.empty(), has_origin = !robot_.origin.empty(),
+               has_sensors = !robot_.sensors.empty(), has_brain = robot_.brain.has_value();
     const std::vector<std::string_view> requirements = requirements_of(robot_);
     events_.begin_object(6u + !requirements.empty() + has_materials + has_mass + has_velocity + has_fixed +
-                         has_actuators + has_origin);
+                         has_actuators + has_sensors + has_brain + has_origin);
     field("format", "mercury-robot");
     field("version", 1u);
     if (!requirements.empty())
@@ -87,6 +89,8 @@ class RobotWriter {
       natural(face.a), natural(face.b), natural(face.c);
     });
     if (has_actuators) write_actuators();
+    if (has_sensors) events_.key("sensors"), write_sensors(robot_, events_);
+    if (has_brain) events_.key("brain"), write_brain(*robot_.brain, events_);
     if (has_origin) write_origin();
     events_.end_object();
   }
@@ -168,8 +172,8 @@ class RobotWriter {
 
 std::vector<std::string_view> requirements_of(const Robot& robot) {
   const bool relaxes = std::ranges::any_of(robot.materials, [](const Material& m) { return m.relaxation_time != 0; });
-  const std::array<bool, known_requirements.size()> has{!robot.mass.empty(), !robot.velocity.empty(),
-                                                        !robot.fixed.empty(), relaxes};
+  const std::array<bool, known_requirements.size()> has{
+      !robot.mass.empty(), !robot.velocity.empty(), !robot.fixed.empty(), relaxes, false, robot.brain.has_value()};
   std::vector<std::string_view> found;
   for (std::size_t i = 0; i < has.size(); ++i)
     if (has[i]) found.push_back(known_requirements[i]);

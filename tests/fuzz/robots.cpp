@@ -52,6 +52,19 @@ std::string with_actuators(const Robot& robot) {
   return json;
 }
 
+// With sensors and a brain, dense and sparse.
+std::string with_brain() {
+  std::string json = with_actuators(pair());
+  json.insert(
+      json.find('{') + 1,
+      R"("sensors":[{"kind":"clock","frequency":2},{"kind":"strain","actuator":"tail","noise":0.1,"delay":0.1},)"
+      R"({"kind":"touch","masses":[1]},{"kind":"neuron","layer":"h","neuron":1}],)"
+      R"("brain":{"period":0.01,"layers":[{"name":"h","neurons":2,"alpha":0.5,"bias":[0,1],"inputs":[)"
+      R"({"from":"senses","weights":[[1,2,3,4,5],[6,7,8,9,10]]},{"from":"h","edges":[[0,1,2]],"rate":0.1}]}],)"
+      R"("outputs":[{"actuator":"tail","layer":"h","neuron":0}]},)");
+  return json;
+}
+
 std::string as_cbor(const std::string& json) {
   std::string cbor;
   CborWriter writer(cbor);
@@ -66,12 +79,12 @@ void check_robot_cbor(std::string_view input) { check_robot(input, RobotFormat::
 
 std::vector<std::string> robot_json_seeds() {
   return {serialize_robot(pair(), RobotFormat::json), serialize_robot(small_robot(), RobotFormat::json),
-          with_actuators(pair()), with_actuators(small_robot())};
+          with_actuators(pair()), with_actuators(small_robot()), with_brain()};
 }
 
 std::vector<std::string> robot_cbor_seeds() {
   return {serialize_robot(pair(), RobotFormat::cbor), serialize_robot(small_robot(), RobotFormat::cbor),
-          as_cbor(with_actuators(pair())), as_cbor(with_actuators(small_robot()))};
+          as_cbor(with_actuators(pair())), as_cbor(with_actuators(small_robot())), as_cbor(with_brain())};
 }
 
 void check_repro(std::string_view input) {

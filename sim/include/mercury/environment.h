@@ -4,7 +4,7 @@
 //   water      none, drag on faces (as in the paper, or resistive), or drag on masses
 //   ground     none, or a plane
 //   contacts   none, or masses of one robot that repel each other
-//   gravity, and a factor for every stiffness
+//   gravity, a factor for every stiffness, a target and a light for robots that sense them
 //
 // A part is a struct with a name and a table of its parameters (parameters.h); its equations are in
 // sim/physics/environments.h. Ocean, OceanSimple, Land and Water are presets: names for often used combinations.
@@ -136,13 +136,18 @@ struct Environment {
   std::optional<Contacts> contacts;
   Vec3 gravity;               // [m/s2]
   float stiffness_scale = 1;  // multiplies every stiffness [1]
+  Vec3 target;                // what robots with such sensors see (mercury/brain.h) [m]
+  Vec3 light{0, 0, 1};        // [m]
   friend bool operator==(const Environment&, const Environment&) = default;
 
   // Those that every environment has.
   static constexpr std::tuple parameters{
       Parameter("gravity", &Environment::gravity, "m/s2", Accepts::any, {-20, 20}, "Gravity").or_downward_magnitude(),
       Parameter("stiffness_scale", &Environment::stiffness_scale, "", Accepts::at_least_zero, {0.01f, 1000, true},
-                "Multiplies every stiffness")};
+                "Multiplies every stiffness"),
+      Parameter("target", &Environment::target, "m", Accepts::any, {-5, 5},
+                "Place of the target that robots may sense"),
+      Parameter("light", &Environment::light, "m", Accepts::any, {-5, 5}, "Place of the light that robots may sense")};
 };
 
 // Whether two environments have the same parts, with whatever values.

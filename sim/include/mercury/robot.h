@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "mercury/brain.h"
 #include "mercury/material.h"
 #include "mercury/vec3.h"
 
@@ -48,6 +50,8 @@ struct Robot {
   std::vector<std::uint16_t> fixed;  // points that never move, each once
   std::string origin;                // how the robot was made, as JSON text; empty = unknown
   std::vector<Actuator> actuators;   // empty = those that actuators_of() finds
+  std::vector<Sensor> sensors;
+  std::optional<Brain> brain;  // drives actuators from what the sensors give
   friend bool operator==(const Robot&, const Robot&) = default;
 };
 
@@ -90,7 +94,8 @@ std::uint64_t topology_key(const Robot& robot);
 //   least min_rest_length,
 // - every face has three different masses,
 // - every material is valid,
-// - every actuator has a name of its own and at least one material, and no material belongs to two.
+// - every actuator has a name of its own and at least one material, and no material belongs to two,
+// - validate_brain() accepts its sensors and its brain.
 void validate(const Robot& robot);
 
 }  // namespace mercury

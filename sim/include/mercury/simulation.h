@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -147,6 +148,23 @@ class Simulation {
   // keep() make other arrays with the same values for the robots that stay.
   const Actuation& actuation();
 
+  // Brains (mercury/brain.h) think by themselves while the simulation steps. step_in_stream() waits for a batch with
+  // brains. They drive their actuators through actuation(), where what a program writes for these lasts until the brain
+  // thinks again.
+  bool has_brains() const;
+  BrainState brain_state(std::size_t robot) const;  // empty without a brain
+  // Throws std::invalid_argument if the numbers are not as many as the robot's brain has.
+  void set_brain_state(std::size_t robot, const BrainState& state);
+  // In the order of BrainLayout. A copy of the robot's own; reset() keeps them. Throws as set_brain_state().
+  void set_brain_weights(std::size_t robot, std::span<const float> weights);
+  // The neuron has this value from now on, whatever it reads; nothing = it thinks again. Throws std::out_of_range for a
+  // neuron that the brain does not have.
+  void clamp_neuron(std::size_t robot, std::size_t neuron, std::optional<float> value);
+  // The target of one robot [m]; nothing = the environment's.
+  void set_target(std::size_t robot, std::optional<Vec3> target);
+  // Of the noise in a robot's senses, together with the seed of its brain; 0 at first.
+  void set_noise_seed(std::size_t robot, std::uint64_t seed);
+
   // One element per mass, otherwise throws std::invalid_argument. The robot has not exploded afterwards.
   void set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities);
   // Restores an explosion as well.
@@ -154,8 +172,8 @@ class Simulation {
 
   // The state of all robots, and a return to it: what follows is bit for bit what followed before. Robots,
   // configuration, materials, perturbations and actuation are not part of it. restore() throws std::invalid_argument,
-  // and changes nothing, if the state has another number of masses, an explosion of no robot, or a clock that
-  // set_clock() refuses.
+  // and changes nothing, if the state has another number of masses, an explosion of no robot, brains of another size,
+  // or a clock that set_clock() refuses.
   BatchState save() const;
   void restore(const BatchState& state);
 

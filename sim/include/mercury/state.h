@@ -35,6 +35,7 @@ struct BatchState {
   Clock clock;
   std::vector<Vec3> positions, velocities;  // one per mass of all robots, robot after robot [m], [m/s]
   std::vector<Explosion> explosions;        // of the robots that have exploded, by index
+  std::vector<BrainState> brains;           // one per robot; empty = all as at the start
 };
 
 }  // namespace mercury

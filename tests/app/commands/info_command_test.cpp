@@ -66,10 +66,10 @@ TEST_F(InfoCommand, SaysTheMassAndTheVibrationsOfABody) {
   EXPECT_NEAR(robot["lowest_frequency"], 50 / (2 * 3.14159265358979), 1e-6);
   EXPECT_NEAR(robot["largest_dt"], 0.02, 1e-6);
   EXPECT_EQ(robot["materials"][0]["relaxation_time"], 0.03);
-  write("future.json", R"({"format":"mercury-robot","version":1,"requires":["brain"],"masses":[],"springs":[]})");
+  write("future.json", R"({"format":"mercury-robot","version":1,"requires":["wings"],"masses":[],"springs":[]})");
   const Outcome refused = mercury({"info", path("future.json")});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.messages, HasSubstr("/requires/0: requires \"brain\", which this version does not know"));
+  EXPECT_THAT(refused.messages, HasSubstr("/requires/0: requires \"wings\", which this version does not know"));
 }
 
 TEST_F(InfoCommand, WithoutAFileDescribesTheMachine) {

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Senses and brains from Python (docs/brains.md)."""
+import json
+
+import numpy as np
+import pytest
+
+import mercurysim
+
+
+def swimmer(rng=1, senses=({"kind": "clock", "frequency": 6.3}, {"kind": "target_direction"})):
+    body = mercurysim.random_voxel(1, voxels=(5, 4, 3), seed=4, frequencies=5)[0]
+    assert len(body.actuators) > 2
+    weights = np.random.default_rng(rng).normal(size=(len(body.actuators), 5)).tolist()
+    layer = {"name": "motor", "neurons": len(body.actuators), "inputs": [{"from": "senses", "weights": weights}]}
+    return body.with_brain({"period": 0.02, "layers": [layer]}, sensors=list(senses))
+
+
+def test_a_robot_says_what_its_file_says(tmp_path):
+    robot = swimmer()
+    robot.save(tmp_path / "swimmer.json")
+    document = json.loads((tmp_path / "swimmer.json").read_text())
+    assert robot.sensors == document["sensors"]
+    assert robot.brain["layers"][0]["neurons"] == len(robot.actuators)
+    assert mercurysim.load(tmp_path / "swimmer.json") == robot
+    assert robot.with_brain(robot.brain) == robot
+    assert robot.with_brain(None).brain is None
+    layout = robot.brain_layout
+    assert layout["senses"][:3] == ["clock sine", "clock cosine", "target_direction x"]
+    assert layout["weights"] == 5 * len(robot.actuators)
+
+
+def test_brains_are_arrays_of_a_batch():
+    robots = [swimmer(), mercurysim.random_voxel(1, seed=2)[0], swimmer(2)]
+    batch = mercurysim.Batch(robots, device="cpu")
+    count = robots[0].brain_layout["weights"]
+    weights = batch.brain.weights
+    assert weights.shape == (3, count)
+    assert np.isnan(weights[1]).all()
+    np.testing.assert_allclose(weights[0], np.ravel(robots[0].brain["layers"][0]["inputs"][0]["weights"]), rtol=1e-6)
+
+    batch.brain.set_targets([[5, 0, 0], [0, 0, 0], [0, 5, 0]])
+    batch.step(1)
+    senses, neurons = batch.brain.senses, batch.brain.neurons
+    np.testing.assert_allclose(np.linalg.norm(senses[0, 2:5]), 1, rtol=1e-6)
+    expected = np.tanh(weights[0].reshape(-1, 5).astype(float) @ senses[0].astype(float))
+    np.testing.assert_allclose(neurons[0, :len(expected)], expected, atol=1e-6)
+
+    batch.brain.weights = np.zeros_like(weights)
+    batch.step(20)
+    assert (batch.brain.neurons[0] == 0).all()
+    batch.brain.clamp(0, 1, 0.5)
+    batch.step(20)
+    assert batch.brain.neurons[0, 1] == 0.5
+    assert np.asarray(batch.actuation.drive)[0, 1] == 0.5
+
+
+def test_a_brain_does_what_a_policy_outside_does():
+    robot = swimmer()
+    inside = mercurysim.Batch(robot, device="cpu")
+    outside = mercurysim.Batch(robot.with_brain(None), device="cpu")
+    for _ in range(25):
+        inside.step(20)
+        np.asarray(outside.actuation.drive)[:] = inside.brain.neurons
+        outside.step(20)
+    assert inside.hash(0) == outside.hash(0)
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    (lambda brain: brain["layers"][0].update(neurons=1), "/brain/layers/0/inputs/0/weights: "),
+    (lambda brain: brain["layers"][0]["inputs"][0].update({"from": "eyes"}), "no layer is named \"eyes\""),
+    (lambda brain: brain.update(period=-1), "/brain/period: must be above 0 s"),
+    (lambda brain: brain.pop("layers"), "/brain: layers is missing"),
+])
+def test_errors_say_where(change, message):
+    robot = swimmer()
+    brain = robot.brain
+    change(brain)
+    with pytest.raises(mercurysim.InputError) as error:
+        robot.with_brain(brain)
+    assert message in str(error.value)
+
+
+def test_what_does_not_fit_a_batch_is_refused():
+    batch = mercurysim.Batch(swimmer(), device="cpu")
+    with pytest.raises(mercurysim.InputError):
+        batch.brain.weights = np.zeros((2, 3))
+    with pytest.raises(mercurysim.InputError):
+        batch.brain.weights = np.full_like(batch.brain.weights, np.nan)
+    with pytest.raises(IndexError):
+        batch.brain.clamp(0, 1000, 1)
+    with pytest.raises(IndexError):
+        batch.brain.clamp(3, 0, 1)
+    batch.brain.set_targets(None)

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The brains of a batch: their states, and when they think.
+//
+//   step 0         20        40        60
+//        |thought|steps...|thought|steps...        N = round(period / dt) steps of the robot's clock
+//
+// A thought reads positions and velocities as they are before the step, and leaves drives for the steps that follow. It
+// depends on nothing but the robot, its state and the clock: so a robot behaves alike in any batch.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "mercury/brain.h"
+#include "mercury/configuration.h"
+#include "mercury/robot.h"
+#include "sim/brain_plan.h"
+#include "sim/shared_arrays.h"
+
+namespace mercury {
+
+class Brains {
+ public:
+  bool empty() const { return count_ == 0; }
+
+  // As robots come and go.
+  void append(std::span<const std::shared_ptr<const Robot>> added);
+  void truncate(std::size_t size);
+  void keep(std::span<const std::size_t> robots);
+  // As at the start; weights, clamps and targets stay.
+  void reset(std::size_t robot);
+
+  // The steps until a brain thinks next; 0 = one thinks now.
+  std::int64_t steps_to_thought(const Clock& clock) const;
+  // Whether a brain that thinks now needs the state of its robot.
+  bool need_state(const Clock& clock) const;
+  // All brains think that do so at this instant. `positions` and `velocities` of all robots are empty unless needed.
+  void think(const Clock& clock, std::span<const std::shared_ptr<const Robot>> robots,
+             std::span<const std::size_t> mass_offsets, std::span<const Vec3> positions,
+             std::span<const Vec3> velocities, const Environment& environment);
+  // The drives as the brains left them, if they have changed since the last call.
+  std::vector<DriveSetting> take_drives();
+
+  bool has(std::size_t robot) const { return static_cast<bool>(of_[robot]); }
+  BrainState state(std::size_t robot) const;
+  // Throw std::invalid_argument.
+  void require_state(std::size_t robot, const BrainState& state) const;
+  void set_state(std::size_t robot, const BrainState& state);
+  void set_weights(std::size_t robot, std::span<const float> weights);
+  void clamp(std::size_t robot, std::size_t neuron, std::optional<float> value);
+  void set_target(std::size_t robot, std::optional<Vec3> target) { targets_[robot] = target; }
+  void set_noise_seed(std::size_t robot, std::uint64_t seed) {
+    if (of_[robot]) of_[robot]->noise_seed = seed;
+  }
+
+ private:
+  struct OfRobot {
+    std::shared_ptr<const BrainPlan> plan;
+    BrainState state;
+    std::vector<std::pair<std::uint32_t, float>> clamps;  // neuron and value
+    std::uint64_t noise_seed = 0;
+  };
+  void sample(OfRobot& brain, const Clock& clock, const Robot& robot, std::span<const Vec3> positions,
+              std::span<const Vec3> velocities, const Environment& environment, Vec3 target) const;
+
+  std::vector<std::unique_ptr<OfRobot>> of_;  // one per robot; null = no brain
+  std::vector<std::optional<Vec3>> targets_;  // one per robot
+  std::size_t count_ = 0;                     // of brains
+  bool changed_ = false;                      // neurons, since take_drives()
+};
+
+}  // namespace mercury

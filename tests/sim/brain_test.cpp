@@ -1,0 +1,540 @@
+// SPDX-License-Identifier: Apache-2.0
+// Senses and brains: the equation against float64, and what holds for any batch.
+#include "mercury/brain.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "bodies.h"
+#include "mercury/error.h"
+#include "shared_batch.h"
+#include "sim/brain_plan.h"
+#include "sim/physics/activation.h"
+#include "sim/physics/body_frame.h"
+
+namespace mercury {
+namespace {
+
+using test::SharedBatch;
+
+class BrainOn : public test::SharedBatchTest {};
+INSTANTIATE_TEST_SUITE_P(All, BrainOn, test::every_backend, test::SharedBatchTest::name);
+
+constexpr float dt = 1e-3f;
+
+// Two muscles that pull a bar from both of its halves.
+Robot bar() {
+  Robot robot = bodies::voxels({.x = 4, .y = 1, .z = 1}, {50, 0.2f, 5, 0});
+  robot.materials.push_back(robot.materials[1]);
+  for (Spring& spring : robot.springs) {
+    const float middle = (robot.masses[spring.a].x + robot.masses[spring.b].x) / 2;
+    spring.material = middle < 0.2f ? 1 : 2;
+  }
+  robot.actuators = {{.name = "front", .materials = {1}}, {.name = "back", .materials = {2}}};
+  return robot;
+}
+
+NeuronInput matrix(std::string from, std::vector<float> weights) {
+  return {std::move(from), std::move(weights), {}, 0};
+}
+
+// A clock, the strains and the direction of the target go through two layers.
+Robot thinker() {
+  Robot robot = bar();
+  robot.sensors = {{.kind = SensorKind::clock, .frequency = 7, .phase = 0.3f},
+                   {.kind = SensorKind::strain, .actuator = "front", .gain = 3},
+                   {.kind = SensorKind::strain, .actuator = "back", .gain = 3},
+                   {.kind = SensorKind::target_direction}};
+  Brain& brain = robot.brain.emplace();
+  NeuronLayer hidden{.name = "hidden", .neurons = 3, .alpha = {}, .bias = {0.1f, -0.2f, 0.3f}, .inputs = {}};
+  std::vector<float> weights;
+  for (int i = 0; i < 3 * 7; ++i) weights.push_back(std::sin(static_cast<float>(3 * i + 1)));
+  hidden.inputs = {matrix("senses", weights), matrix("hidden", {0.1f, -0.4f, 0, 0.2f, 0.3f, -0.5f, 0.6f, 0, 0.1f})};
+  NeuronLayer motor{.name = "motor", .neurons = 2, .alpha = {0.5f}, .bias = {}, .inputs = {}};
+  motor.inputs = {matrix("hidden", {1, -1, 0.5f, 0.3f, 0.7f, -0.9f})};
+  brain.layers = {hidden, motor};
+  return robot;
+}
+
+std::vector<float> drives(SharedBatch& batch) { return batch.read(batch->actuation().drive); }
+
+// Layers of doubles: what mercury/brain.h says, from the senses that the batch sampled.
+struct Reference {
+  const Robot& robot;
+  std::vector<std::vector<double>> y;
+
+  explicit Reference(const Robot& of) : robot(of) {
+    for (const NeuronLayer& layer : robot.brain->layers) y.emplace_back(layer.neurons, 0.0);
+  }
+  void think(std::span<const float> senses) {
+    const auto& layers = robot.brain->layers;
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+      std::vector<double> next = y[l];
+      for (std::size_t i = 0; i < layers[l].neurons; ++i) {
+        double sum = layers[l].bias.empty() ? 0.0 : static_cast<double>(layers[l].bias[i]);
+        for (const NeuronInput& input : layers[l].inputs) {
+          std::vector<double> z(senses.begin(), senses.end());
+          for (std::size_t k = 0; k < layers.size(); ++k)
+            if (layers[k].name == input.from) z = y[k];
+          for (std::size_t k = 0; k < z.size() && input.edges.empty(); ++k)
+            sum += static_cast<double>(input.weights[i * z.size() + k]) * z[k];
+          for (const NeuronEdge& edge : input.edges)
+            if (edge.to == i) sum += static_cast<double>(edge.weight) * z[edge.from];
+        }
+        const double alpha = layers[l].alpha.empty() ? 1.0 : static_cast<double>(layers[l].alpha[0]);
+        next[i] = y[l][i] + alpha * (std::tanh(sum) - y[l][i]);
+      }
+      y[l] = next;
+    }
+  }
+};
+
+TEST_P(BrainOn, ThinksAsTheEquationSays) {
+  const Robot robot = thinker();
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+  batch->set_target(0, Vec3{1, 2, 3});
+  Reference reference(robot);
+  for (int thought = 0; thought < 100; ++thought) {
+    batch->step(20);
+    const BrainState state = batch->brain_state(0);
+    ASSERT_EQ(state.thoughts, static_cast<std::uint64_t>(thought + 1));
+    reference.think(state.senses);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(state.neurons[i], reference.y[0][i], 2e-6);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(state.neurons[3 + i], reference.y[1][i], 2e-6);
+      EXPECT_EQ(drives(batch)[i], state.neurons[3 + i]);
+    }
+  }
+  EXPECT_GT(std::abs(reference.y[1][0]), 0.01);
+}
+
+TEST_P(BrainOn, ThinksEveryPeriodWhateverTheTimeStep) {
+  Robot robot = thinker();
+  robot.brain->period = 0.01f;
+  for (const double step : {1e-3, 5e-4, 2.5e-3}) {
+    SharedBatch batch = this->batch({.dt = step, .environment = Ocean{}}, std::span(&robot, 1));
+    batch->step(std::lround(0.1 / step));
+    EXPECT_EQ(batch->brain_state(0).thoughts, 10u);
+  }
+}
+
+TEST_P(BrainOn, MovesTheRobotAsDrivesFromOutsideDo) {
+  const Robot robot = thinker();
+  Robot without = robot;
+  without.sensors.clear();
+  without.brain.reset();
+  SharedBatch thinking = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+  SharedBatch driven = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&without, 1));
+  for (int i = 0; i < 20; ++i) {
+    thinking->step(20);
+    const std::vector<float> u = drives(thinking);
+    driven.write(driven->actuation().drive, u);
+    driven->step(20);
+    ASSERT_EQ(thinking->hash(0), driven->hash(0));
+  }
+}
+
+TEST_P(BrainOn, IsTheSameAloneAndInAnyBatchAndHoweverStepsAreDivided) {
+  Robot slow = thinker();
+  slow.brain->period = 0.033f;
+  const Robot still = bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 5);
+  const std::vector<Robot> robots{still, thinker(), slow, thinker(), still};
+  const Configuration configuration{.dt = dt, .environment = Land{}};
+  SharedBatch all = this->batch(configuration, robots);
+  for (const std::int64_t steps : {1, 19, 20, 7, 53}) all->step(steps);
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    SharedBatch alone = this->batch(configuration, std::span(&robots[i], 1));
+    (void)alone->step_and_sample(100, 25);
+    EXPECT_EQ(alone->hash(0), all->hash(i)) << i;
+    EXPECT_EQ(alone->brain_state(0), all->brain_state(i)) << i;
+  }
+}
+
+TEST_P(BrainOn, GoesOnBitForBitFromASavedState) {
+  Robot robot = thinker();
+  robot.sensors[1].delay = 0.1f;
+  robot.sensors[2].noise = 0.1f;
+  robot.brain->layers[0].inputs[0].rate = 0.01f;
+  const std::vector<Robot> robots{robot, thinker(), bar()};
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, robots);
+  batch->step(133);
+  const BatchState saved = batch->save();
+  batch->step(200);
+  const std::vector<std::uint64_t> hashes = batch->hashes();
+  batch->restore(saved);
+  batch->step(200);
+  EXPECT_EQ(batch->hashes(), hashes);
+
+  SharedBatch other = this->batch({.dt = dt, .environment = Ocean{}}, robots);
+  other->restore(saved);
+  other->step(200);
+  EXPECT_EQ(other->hashes(), hashes);
+  BatchState wrong = saved;
+  wrong.brains[0].neurons.pop_back();
+  EXPECT_THROW(other->restore(wrong), std::invalid_argument);
+}
+
+TEST_P(BrainOn, ResetBeginsFromScratchAndKeepsWeights) {
+  const std::vector<Robot> robots{thinker(), thinker()};
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, robots);
+  std::vector<float> weights = weights_of(*robots[0].brain);
+  for (float& weight : weights) weight = -weight;
+  batch->set_brain_weights(0, weights);
+  batch->step(200);
+  const std::vector<std::uint64_t> hashes = batch->hashes();
+  EXPECT_NE(hashes[0], hashes[1]);
+  batch->reset();
+  batch->step(200);
+  EXPECT_EQ(batch->hashes(), hashes);
+  EXPECT_THROW(batch->set_brain_weights(0, std::span(weights).first(5)), std::invalid_argument);
+
+  Robot changed = thinker();
+  set_weights(*changed.brain, weights);
+  SharedBatch other = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&changed, 1));
+  other->step(200);
+  EXPECT_EQ(other->hash(0), hashes[0]);
+}
+
+TEST_P(BrainOn, KeepsItsBrainAsRobotsComeAndGo) {
+  const std::vector<Robot> robots{bar(), thinker(), thinker()};
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, robots);
+  SharedBatch alone = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robots[1], 1));
+  batch->step(50);
+  const std::size_t kept[] = {2};
+  batch->keep(kept);
+  batch->step(50);
+  batch->add(robots[0]);
+  batch->step(50);
+  alone->step(150);
+  EXPECT_EQ(batch->hash(0), alone->hash(0));
+}
+
+TEST_P(BrainOn, HasSensesInTheBodysFrame) {
+  Robot robot = bodies::random_voxels({.x = 3, .y = 2, .z = 1}, 3);
+  robot.sensors = {
+      {.kind = SensorKind::velocity},        {.kind = SensorKind::turn_rate}, {.kind = SensorKind::up},
+      {.kind = SensorKind::depth},           {.kind = SensorKind::height},    {.kind = SensorKind::target_direction},
+      {.kind = SensorKind::target_distance}, {.kind = SensorKind::light},     {.kind = SensorKind::flow}};
+  Brain& brain = robot.brain.emplace();
+  const auto actuators = static_cast<std::uint32_t>(actuators_of(robot).size());
+  brain.layers = {{.name = "all", .neurons = actuators, .alpha = {}, .bias = {}, .inputs = {}}};
+  const std::array<Vec3, 3> rows = bodies::random_rotation(4);
+  const auto turned = [&](Vec3 x) { return Vec3{dot(rows[0], x), dot(rows[1], x), dot(rows[2], x)}; };
+  const auto turned_back = [&](Vec3 x) { return x.x * rows[0] + x.y * rows[1] + x.z * rows[2]; };
+
+  // The rest shape turned about its center, at a place, with a velocity and a turn rate.
+  Vec3 center;
+  for (const Vec3& x : robot.masses) center += (1.0f / static_cast<float>(robot.masses.size())) * x;
+  const Vec3 place{1, -2, 0.5f}, v{0.3f, -0.1f, 0.2f}, omega{0.5f, 1, -2};
+  State state;
+  for (const Vec3& x : robot.masses) {
+    state.positions.push_back(place + turned(x - center));
+    state.velocities.push_back(v + cross(omega, turned(x - center)));
+  }
+  Ocean ocean{.flow = {0.1f, 0, 0}};
+  Environment environment = ocean;
+  environment.light = {1, -2, 2.5f};
+  environment.target = {4, -2, 4.5f};
+  SharedBatch batch = this->batch({.dt = dt, .environment = environment}, std::span(&robot, 1));
+  batch->set_state(0, state);
+  batch->step(1);
+  const std::vector<float> senses = batch->brain_state(0).senses;
+  const auto expect_vector = [&](std::size_t first, Vec3 expected) {
+    EXPECT_NEAR(senses[first], expected.x, 3e-6);
+    EXPECT_NEAR(senses[first + 1], expected.y, 3e-6);
+    EXPECT_NEAR(senses[first + 2], expected.z, 3e-6);
+  };
+  expect_vector(0, turned_back(v));
+  expect_vector(3, turned_back(omega));
+  expect_vector(6, turned_back({0, 0, 1}));
+  EXPECT_NEAR(senses[9], -0.5, 1e-6);
+  EXPECT_NEAR(senses[10], 0.5, 1e-6);
+  expect_vector(11, turned_back(0.2f * Vec3{3, 0, 4}));
+  EXPECT_NEAR(senses[14], 5, 1e-5);
+  EXPECT_NEAR(senses[15], 0.2, 1e-6);  // 2 m away
+  expect_vector(16, turned_back(ocean.flow - v));
+}
+
+TEST_P(BrainOn, FeelsStrainAndTouchOfAGroup) {
+  Robot robot = bar();
+  robot.sensors = {{.kind = SensorKind::strain, .actuator = "front"},
+                   {.kind = SensorKind::strain_rate, .springs = {0, 3}},
+                   {.kind = SensorKind::touch},
+                   {.kind = SensorKind::touch, .masses = {0, 1}}};
+  robot.brain.emplace().layers = {{.name = "motor", .neurons = 2, .alpha = {}, .bias = {}, .inputs = {}}};
+  // Stretched by a tenth in all directions, and going on with 0.3 of the length per second.
+  State state;
+  for (const Vec3& x : robot.masses) {
+    state.positions.push_back(1.1f * x);
+    state.velocities.push_back(0.3f * x);
+  }
+  SharedBatch batch = this->batch({.dt = dt, .environment = Land{}}, std::span(&robot, 1));
+  batch->set_state(0, state);
+  batch->step(1);
+  const std::vector<float> senses = batch->brain_state(0).senses;
+  EXPECT_NEAR(senses[0], 0.1, 1e-6);
+  EXPECT_NEAR(senses[1], 0.3, 1e-6);
+  EXPECT_FLOAT_EQ(senses[2], 0.5f);  // of two layers of masses, the lower one is on the floor
+  const auto low = [&](std::size_t i) { return robot.masses[i].z == 0 ? 0.5f : 0.0f; };
+  EXPECT_FLOAT_EQ(senses[3], low(0) + low(1));
+}
+
+TEST_P(BrainOn, DelaysSensesByThoughts) {
+  Robot robot = thinker();
+  robot.sensors.push_back({.kind = SensorKind::neuron, .layer = "hidden", .neuron = 1});
+  robot.sensors.push_back({.kind = SensorKind::neuron, .layer = "hidden", .neuron = 1, .delay = 0.06f});
+  NeuronInput& input = robot.brain->layers[0].inputs[0];
+  input.weights.resize(27);
+  // The motors are a linear copy of both.
+  robot.brain->layers[1] = {.name = "motor",
+                            .neurons = 2,
+                            .activation = Activation::linear,
+                            .alpha = {},
+                            .bias = {},
+                            .inputs = {{.from = "senses", .weights = {}, .edges = {{0, 7, 1}, {1, 8, 1}}}}};
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+  std::vector<float> hidden{0};  // as each thought found it
+  for (int thought = 0; thought < 12; ++thought) {
+    batch->step(20);
+    const std::vector<float> neurons = batch->brain_state(0).neurons;
+    const auto now = static_cast<std::size_t>(thought);
+    EXPECT_EQ(neurons[3], hidden[now]);
+    EXPECT_EQ(neurons[4], now < 3 ? 0.0f : hidden[now - 3]);
+    hidden.push_back(neurons[1]);
+  }
+  EXPECT_NE(hidden.back(), 0.0f);
+}
+
+TEST_P(BrainOn, LearnsTheMainDirectionByOjasRule) {
+  Robot robot = bar();
+  robot.sensors = {{.kind = SensorKind::clock, .gain = 1, .frequency = 3},
+                   {.kind = SensorKind::clock, .gain = 0.4f, .frequency = 40}};
+  // It reads one sine of each clock: their variances are 1/2 and 0.08. By averaging theory the weights go to (1, 0) at
+  // a rate of 100 * 0.01 (1/2 - 0.08) = 0.42 1/s, and move there by 100 * 0.01 * 0.4 / 2 (1 / 37 + 1 / 43) = 0.01 in
+  // the rhythm of the product of both sines.
+  robot.brain.emplace().layers = {
+      {.name = "unit",
+       .neurons = 1,
+       .activation = Activation::linear,
+       .alpha = {},
+       .bias = {},
+       .inputs = {{.from = "senses", .weights = {}, .edges = {{0, 0, 0.2f}, {0, 2, 0.6f}}, .rate = 0.01f}}},
+      {.name = "motor", .neurons = 2, .alpha = {}, .bias = {}, .inputs = {}}};
+  robot.brain->period = 0.01f;
+  SharedBatch batch = this->batch({.dt = 0.01, .environment = OceanSimple{}}, std::span(&robot, 1));
+  batch->step(2500);
+  const std::vector<float> weights = batch->brain_state(0).weights;
+  EXPECT_NEAR(weights[0], 1, 0.03);
+  EXPECT_NEAR(weights[1], 0, 0.03);
+}
+
+TEST_P(BrainOn, ClampedNeuronsKeepTheirValue) {
+  const Robot robot = thinker();
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+  batch->clamp_neuron(0, 3, 0.25f);
+  batch->clamp_neuron(0, 0, 0.0f);
+  for (int i = 0; i < 5; ++i) {
+    batch->step(20);
+    EXPECT_EQ(drives(batch)[0], 0.25f);
+    EXPECT_EQ(batch->brain_state(0).neurons[0], 0.0f);
+  }
+  batch->clamp_neuron(0, 3, std::nullopt);
+  batch->step(20);
+  EXPECT_NE(drives(batch)[0], 0.25f);
+  EXPECT_THROW(batch->clamp_neuron(0, 5, 1.0f), std::out_of_range);
+}
+
+TEST_P(BrainOn, PerActuatorReadsItsOwnSensesAndItsNeighbors) {
+  Robot robot = bodies::random_voxels({.x = 3, .y = 1, .z = 1}, 8);
+  const std::vector<Actuator> actuators = actuators_of(robot);
+  ASSERT_GT(actuators.size(), 3u);
+  robot.sensors = {{.kind = SensorKind::strain, .actuator = "self", .gain = 2},
+                   {.kind = SensorKind::neighbors},
+                   {.kind = SensorKind::clock, .frequency = 4}};
+  Brain& brain = robot.brain.emplace();
+  brain.per_actuator = true;
+  brain.layers = {{.name = "motor",
+                   .neurons = 1,
+                   .alpha = {},
+                   .bias = {0.1f},
+                   .inputs = {matrix("senses", {1, 0.5f, -0.3f, 0.7f, 0.2f})}}};
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+  std::vector<float> before(actuators.size());
+  for (int thought = 0; thought < 10; ++thought) {
+    batch->step(20);
+    const BrainState state = batch->brain_state(0);
+    ASSERT_EQ(state.neurons.size(), actuators.size());
+    for (std::size_t a = 0; a < actuators.size(); ++a) {
+      const float* s = state.senses.data() + 5 * a;
+      EXPECT_EQ(s[1], a > 0 ? before[a - 1] : 0);
+      EXPECT_EQ(s[2], a + 1 < actuators.size() ? before[a + 1] : 0);
+      const double sum = 0.1 + static_cast<double>(s[0]) + 0.5 * static_cast<double>(s[1]) -
+                         0.3 * static_cast<double>(s[2]) + 0.7 * static_cast<double>(s[3]) +
+                         0.2 * static_cast<double>(s[4]);
+      EXPECT_NEAR(state.neurons[a], std::tanh(sum), 1e-6);
+    }
+    before = state.neurons;
+  }
+  EXPECT_EQ(brain_layout(robot).senses.size(), 5 * actuators.size());
+}
+
+TEST(Brain, EdgesAreAMatrixWithZeros) {
+  Robot dense = thinker(), sparse = thinker();
+  dense.brain->layers[0].inputs[1].weights = {0, 0, 0.5f, 0, 0, 0, -0.3f, 0, 0};
+  sparse.brain->layers[0].inputs[1] = {.from = "hidden", .weights = {}, .edges = {{2, 0, -0.3f}, {0, 2, 0.5f}}};
+  const std::vector<Robot> robots{dense, sparse};
+  Simulation simulation({.dt = 1e-3, .device = {.kind = DeviceKind::cpu}}, robots);
+  simulation.step(500);
+  EXPECT_EQ(simulation.hash(0), simulation.hash(1));
+}
+
+TEST(Brain, NumbersItsParts) {
+  const BrainLayout layout = brain_layout(thinker());
+  EXPECT_EQ(layout.senses,
+            (std::vector<std::string>{"clock sine", "clock cosine", "strain front", "strain back", "target_direction x",
+                                      "target_direction y", "target_direction z"}));
+  EXPECT_EQ(layout.neurons, (std::vector<std::string>{"hidden 0", "hidden 1", "hidden 2", "motor 0", "motor 1"}));
+  EXPECT_EQ(layout.weights, 3u + 21 + 9 + 6);
+  EXPECT_EQ(layout.outputs, (std::vector<std::uint32_t>{3, 4}));
+  EXPECT_EQ(layout.driven, (std::vector<std::uint32_t>{0, 1}));
+}
+
+TEST(Brain, DifferentSeedsOfTheNoiseGiveDifferentSenses) {
+  Robot robot = thinker();
+  for (Sensor& sensor : robot.sensors) sensor.noise = 1;
+  const auto senses = [&](std::uint64_t seed) {
+    Simulation simulation({.dt = 1e-3, .device = {.kind = DeviceKind::cpu}}, std::span(&robot, 1));
+    simulation.set_noise_seed(0, seed);
+    simulation.step(1);
+    return simulation.brain_state(0).senses;
+  };
+  EXPECT_EQ(senses(1), senses(1));
+  EXPECT_NE(senses(1), senses(2));
+}
+
+TEST(Brain, RefusesWhatDoesNotFit) {
+  const auto error = [](const std::function<void(Robot&)>& damage) {
+    Robot robot = thinker();
+    damage(robot);
+    try {
+      validate(robot);
+    } catch (const InputError& refused) {
+      return std::string(refused.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(error([](Robot&) {}), "accepted");
+  EXPECT_EQ(error([](Robot& r) { r.sensors[1].actuator = "tail"; }),
+            "/sensors/1/actuator: no actuator is named \"tail\"; the robot has front, back");
+  EXPECT_EQ(error([](Robot& r) { r.sensors[2].delay = -1; }), "/sensors/2/delay: -1 is not accepted; give 0 to 100 s");
+  EXPECT_EQ(error([](Robot& r) { r.sensors[3].actuator = "front", r.sensors[3].masses = {1}; }),
+            "/sensors/3: has more than one of actuator, springs and masses; give one of them");
+  EXPECT_EQ(error([](Robot& r) { r.sensors[0].masses = {1}; }),
+            "/sensors/0: clock has no place; leave out actuator, springs and masses");
+  EXPECT_EQ(error([](Robot& r) { r.sensors[0] = {.kind = SensorKind::touch, .masses = {400}}; }),
+            "/sensors/0/masses: mass 400 is out of range, the robot has 20");
+  EXPECT_EQ(error([](Robot& r) { r.sensors[0] = {.kind = SensorKind::neighbors}; }),
+            "/sensors/0: neighbors are of a brain per actuator");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].inputs[0].weights.pop_back(); }),
+            "/brain/layers/0/inputs/0/weights: 20 weights; 3 neurons with 7 inputs have 21");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[1].inputs[0].from = "eyes"; }),
+            "/brain/layers/1/inputs/0/from: no layer is named \"eyes\"; the brain has hidden, motor");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].alpha = {0}; }),
+            "/brain/layers/0/alpha: an alpha is above 0 and at most 1");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].bias[1] = INFINITY; }),
+            "/brain/layers/0/bias: must be a finite number");
+  EXPECT_EQ(
+      error([](Robot& r) { r.brain->layers.pop_back(); }),
+      "/brain/layers/0: the last layer has 3 neurons, the robot has 2 actuators; name outputs, or make them equal");
+  EXPECT_EQ(error([](Robot& r) {
+              r.brain->outputs = {{"front", "motor", 7}};
+            }),
+            "/brain/outputs/0/neuron: neuron 7 is out of range, layer \"motor\" has 2");
+  EXPECT_EQ(error([](Robot& r) {
+              r.brain->layers[0].inputs[1] = {"hidden", {}, {{0, 3, 1.0f}}, 0};
+            }),
+            "/brain/layers/0/inputs/1/edges/0: input 3 is out of range, there are 3");
+  EXPECT_EQ(error([](Robot& r) { r.brain->period = 0; }), "/brain/period: must be above 0 s");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[1].name = "hidden"; }), "/brain/layers/1: has the name of layer 0");
+}
+
+// Units in the last place between a float and the true value.
+double error_in_ulps(float got, double expected) {
+  const float nearest = static_cast<float>(expected);
+  const double ulp =
+      static_cast<double>(std::nextafter(std::abs(nearest), INFINITY)) - static_cast<double>(std::abs(nearest));
+  return std::abs(static_cast<double>(got) - expected) / ulp;
+}
+
+TEST(Activations, AreWithinARoundingOfTheTrueFunctions) {
+  double worst_tanh = 0, worst_sigmoid = 0;
+  for (int i = -200000; i <= 200000; ++i) {
+    const float x =
+        std::copysign(std::pow(std::abs(static_cast<float>(i)) / 200000.0f, 3.0f) * 30, static_cast<float>(i));
+    const auto exact = static_cast<double>(x);
+    worst_tanh = std::max(worst_tanh, error_in_ulps(tanh_of(x), std::tanh(exact)));
+    worst_sigmoid = std::max(worst_sigmoid, error_in_ulps(sigmoid_of(x), 1 / (1 + std::exp(-exact))));
+  }
+  EXPECT_LE(worst_tanh, 0.5001);
+  EXPECT_LE(worst_sigmoid, 0.5001);
+  EXPECT_EQ(activation_of(Activation::relu, -2), 0);
+  EXPECT_EQ(activation_of(Activation::linear, -2), -2);
+  EXPECT_NEAR(activation_of(Activation::sine, 1.25f), std::sin(1.25), 1e-6);
+}
+
+TEST(Activations, ExponentialAndLogarithmAreExactToFourteenDigits) {
+  for (double x = -600; x < 600; x += 0.37) EXPECT_NEAR(exponential(x) / std::exp(x), 1, 1e-14) << x;
+  for (double x = 1; x > 1e-300; x *= 0.83) EXPECT_NEAR(logarithm(x), std::log(x), 1e-14 * (1 + std::abs(std::log(x))));
+}
+
+TEST(Activations, NoiseIsNormal) {
+  constexpr int count = 200000;
+  double sum = 0, squares = 0, fourth = 0, products = 0;
+  float previous = 0;
+  int beyond_two = 0;
+  for (int i = 0; i < count; ++i) {
+    const float x = normal_number(3, static_cast<std::uint64_t>(i) / 10, static_cast<std::uint64_t>(i) % 10);
+    const auto y = static_cast<double>(x);
+    sum += y;
+    squares += y * y;
+    fourth += y * y * y * y;
+    products += y * static_cast<double>(previous);
+    beyond_two += std::abs(y) > 2;
+    previous = x;
+  }
+  // Within five standard deviations of what theory says.
+  const double n = count;
+  EXPECT_NEAR(sum / n, 0, 5 / std::sqrt(n));
+  EXPECT_NEAR(squares / n, 1, 5 * std::sqrt(2 / n));
+  EXPECT_NEAR(fourth / n, 3, 5 * std::sqrt(96 / n));
+  EXPECT_NEAR(products / n, 0, 5 / std::sqrt(n));
+  const double share = std::erfc(std::numbers::sqrt2);
+  EXPECT_NEAR(beyond_two / n, share, 5 * std::sqrt(share / n));
+}
+
+TEST(BodyFrame, IsTheRotationOfATurnedBody) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const std::array<Vec3, 3> rows = bodies::random_rotation(seed);
+    std::array<double, 9> s{};
+    for (int i = 0; i < (seed % 2 == 0 ? 8 : 4); ++i) {  // a cube, or a flat square
+      const double x[] = {(i & 1) - 0.5, 1.5 * ((i >> 1 & 1) - 0.5), seed % 2 == 0 ? 0.7 * ((i >> 2) - 0.5) : 0.0};
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b)
+          s[3 * a + b] += x[a] * (static_cast<double>(rows[b].x) * x[0] + static_cast<double>(rows[b].y) * x[1] +
+                                  static_cast<double>(rows[b].z) * x[2]);
+    }
+    const Rotation rotation = rotation_of(s);
+    for (std::size_t a = 0; a < 3; ++a) {
+      EXPECT_NEAR(rotation.r[3 * a], rows[a].x, 1e-6);
+      EXPECT_NEAR(rotation.r[3 * a + 1], rows[a].y, 1e-6);
+      EXPECT_NEAR(rotation.r[3 * a + 2], rows[a].z, 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mercury
