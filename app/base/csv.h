@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers in tables of CSV, whose texts are robots/csv.h's.
+// Numbers in tables of CSV, whose texts are mercury/csv.h's.
 #pragma once
 
 #include <string>
 
-#include "robots/csv.h"
+#include "mercury/csv.h"
 
 namespace mercury {
 

@@ -10,7 +10,7 @@
 #include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
-#include "robots/file/brain_document.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -254,8 +254,8 @@ RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group)
   read_materials(group, robot);
   read_actuators(group, robot);
   if (has_member(group, "origin")) robot.origin = read_text_dataset(group, "origin");
-  if (has_member(group, "sensors")) read_sensors(read_text_dataset(group, "sensors"), robot);
-  if (has_member(group, "brain")) read_brain(read_text_dataset(group, "brain"), robot);
+  if (has_member(group, "sensors")) set_sensors(robot, read_text_dataset(group, "sensors"));
+  if (has_member(group, "brain")) set_brain(robot, read_text_dataset(group, "brain"));
   validate(robot);
   if (has_attribute(group, "exploded_at")) recorded.exploded_at = read_attribute<double>(group, "exploded_at");
   if (has_attribute(group, "first_bad_spring"))

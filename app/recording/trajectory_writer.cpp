@@ -20,7 +20,7 @@
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
 #include "mercury/real_body.h"
-#include "robots/file/brain_document.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -331,14 +331,8 @@ void TrajectoryWriter::write_actuators(hid_t particles, const Robot& robot) {
 
 // As in a robot's file, in JSON.
 void TrajectoryWriter::write_brains(hid_t particles, const Robot& robot) {
-  const auto write = [&](const char* name, const auto& send) {
-    std::string text;
-    JsonWriter json(text);
-    send(json);
-    write_text_dataset(particles, name, text);
-  };
-  if (!robot.sensors.empty()) write("sensors", [&](JsonWriter& json) { write_sensors(robot, json); });
-  if (robot.brain) write("brain", [&](JsonWriter& json) { write_brain(*robot.brain, json); });
+  if (!robot.sensors.empty()) write_text_dataset(particles, "sensors", sensors_as_json(robot));
+  if (robot.brain) write_text_dataset(particles, "brain", brain_as_json(*robot.brain));
 }
 
 // All elements share one time axis, as H5MD allows.

@@ -103,6 +103,7 @@ class GroupScene {
   void hide_wrecks(std::span<const Telemetry> telemetry);
   void lengthen_paths(double time);
   void race(double time);
+  void mark_targets();
   void write_labels(std::span<const Telemetry> telemetry);
   void fit_scale(double time);
   void color(double time, SceneDetails details);
@@ -136,6 +137,8 @@ class GroupScene {
   Later later_ = Later::forget;
   std::vector<render::Path> paths_;
   std::vector<std::vector<float>> marks_;  // of the paths
+  std::vector<bool> seeks_target_;         // robots with a sensor of the target
+  std::vector<float> target_circles_;      // around the target, in the robots' coordinates
   std::vector<render::Label> labels_;
   std::vector<render::Patch> patches_;
   std::vector<render::Tile> tiles_;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <numbers>
 
 #include "app/scene/group_scene.h"
 #include "mercury/distance.h"
@@ -39,6 +41,9 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
     race(time);
   else if (settings_.shown.path)
     lengthen_paths(time);
+  else
+    scene_.paths = {};
+  mark_targets();
   if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
   color(time, std::move(details));
 }
@@ -118,6 +123,34 @@ void GroupScene::lengthen_paths(double time) {
       paths_.push_back(
           {.body = body, .points = std::span(marks_.back()).subspan(at, 6), .color = color, .fades = false});
   }
+  scene_.paths = paths_;
+}
+
+// Three circles around the target of each robot that senses it. In cells, where robots stay, there is no place for it.
+void GroupScene::mark_targets() {
+  if (motion_.layout() == Layout::cells || std::ranges::find(seeks_target_, true) == seeks_target_.end()) return;
+  constexpr int corners = 32;
+  constexpr float share = 0.12f;  // of a room's radius
+  const auto first = std::ranges::find(seeks_target_, true) - seeks_target_.begin();
+  const float radius = share * rooms_[static_cast<std::size_t>(first)].radius;
+  const Vec3 target = environment_.target;
+  target_circles_.clear();
+  for (std::size_t plane = 0; plane < 3; ++plane)
+    for (int k = 0; k <= corners; ++k) {
+      const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / corners;
+      const float u = radius * std::cos(angle), v = radius * std::sin(angle);
+      const std::array<std::array<float, 3>, 3> offsets{{{0, u, v}, {u, 0, v}, {u, v, 0}}};
+      const auto& [x, y, z] = offsets[plane];
+      target_circles_.insert(target_circles_.end(), {target.x + x, target.y + y, target.z + z});
+    }
+  std::vector<render::Path> paths(scene_.paths.begin(), scene_.paths.end());
+  for (std::size_t i = 0; i < seeks_target_.size(); ++i)
+    for (std::size_t plane = 0; plane < 3 && seeks_target_[i] && !placements_[i].hidden; ++plane)
+      paths.push_back({.body = static_cast<std::uint32_t>(i),
+                       .points = std::span(target_circles_).subspan(plane * 3 * (corners + 1), 3 * (corners + 1)),
+                       .color = render::rgb(0xffc233),
+                       .fades = false});
+  paths_ = std::move(paths);
   scene_.paths = paths_;
 }
 

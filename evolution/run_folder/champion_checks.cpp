@@ -8,9 +8,9 @@
 #include <string>
 
 #include "evolution/run_folder/derived_files.h"
+#include "mercury/csv.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
-#include "robots/csv.h"
 #include "robots/file/whole_file.h"
 #include "robots/number_text.h"
 

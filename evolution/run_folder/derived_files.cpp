@@ -11,12 +11,12 @@
 #include "evolution/run_folder/champion_checks.h"
 #include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/progress_plot.h"
+#include "mercury/csv.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
-#include "robots/csv.h"
 #include "robots/file/whole_file.h"
 #include "robots/number_text.h"
 

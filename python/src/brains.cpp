@@ -9,6 +9,7 @@
 
 #include "mercury/brain.h"
 #include "mercury/error.h"
+#include "mercury/robot_file.h"
 #include "python/src/arguments.h"
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
@@ -16,7 +17,6 @@
 #include "python/src/owned_array.h"
 #include "python/src/robot_arrays.h"
 #include "python/src/values.h"
-#include "robots/file/brain_document.h"
 
 namespace mercury::python {
 namespace {
@@ -27,29 +27,17 @@ std::string to_json(nb::handle value) {
   return nb::cast<std::string>(nb::module_::import_("json").attr("dumps")(value, nb::arg("allow_nan") = false));
 }
 
-nb::object sensors(const SharedRobot& self) {
-  std::string text;
-  JsonWriter json(text);
-  write_sensors(*self.robot, json);
-  return from_json(text);
-}
+nb::object sensors(const SharedRobot& self) { return from_json(sensors_as_json(*self.robot)); }
 
 nb::object brain(const SharedRobot& self) {
-  if (!self.robot->brain) return nb::none();
-  std::string text;
-  JsonWriter json(text);
-  write_brain(*self.robot->brain, json);
-  return from_json(text);
+  return self.robot->brain ? from_json(brain_as_json(*self.robot->brain)) : nb::none();
 }
 
 SharedRobot with_brain(const SharedRobot& self, nb::handle given, nb::handle senses) {
   Robot robot = *self.robot;
-  if (!senses.is_none()) {
-    robot.sensors.clear();
-    read_sensors(to_json(senses), robot);
-  }
+  if (!senses.is_none()) set_sensors(robot, to_json(senses));
   robot.brain.reset();
-  if (!given.is_none()) read_brain(to_json(given), robot);
+  if (!given.is_none()) set_brain(robot, to_json(given));
   validate_brain(robot);
   return {std::make_shared<const Robot>(std::move(robot))};
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs every block of docs/python.md, one after another, as a reader would."""
+"""Runs every block of docs/python.md and docs/brains.md, one after another, as a reader would."""
 import importlib.util
 import os
 import re
@@ -11,7 +11,7 @@ import pytest
 
 import mercurysim
 
-PAGE = Path(__file__).resolve().parents[2] / "docs/python.md"
+DOCS = Path(__file__).resolve().parents[2] / "docs"
 BLOCK = re.compile(r"(?:<!-- needs: (\w+) -->\n)?```python\n(.*?)```", re.DOTALL)
 
 
@@ -48,23 +48,24 @@ NEEDS = {
 }
 
 
-def test_every_block_runs(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize(("page", "least"), [("python.md", 9), ("brains.md", 2)])
+def test_every_block_runs(page, least, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    text, names, skipped = PAGE.read_text(), {}, []
+    text, names, skipped = (DOCS / page).read_text(), {}, []
     blocks = list(BLOCK.finditer(text))
-    assert len(blocks) == text.count("```python") > 8
+    assert len(blocks) == text.count("```python") >= least
     for block in blocks:
         needs, program = block.groups()
         if needs and not NEEDS[needs]():
             skipped.append(needs)
             continue
         line = text.count("\n", 0, block.start(2)) + 1
-        exec(compile("\n" * (line - 1) + program, str(PAGE), "exec"), names)  # errors name the line of the page
+        exec(compile("\n" * (line - 1) + program, page, "exec"), names)  # errors name the line of the page
     assert set(skipped) <= NEEDS.keys() and len(skipped) < len(blocks) / 2
     capsys.readouterr()
 
 
 def test_the_examples_are_listed():
-    folder = PAGE.parents[1] / "examples/python"
+    folder = DOCS.parent / "examples/python"
     found = {path.name for path in folder.iterdir() if path.suffix in (".py", ".ipynb")}
-    assert found == set(re.findall(r"\(\.\./examples/python/([\w.]+)\)", PAGE.read_text()))
+    assert found == set(re.findall(r"\(\.\./examples/python/([\w.]+)\)", (DOCS / "python.md").read_text()))

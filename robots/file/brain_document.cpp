@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mercury/error.h"
+#include "mercury/robot_file.h"
 #include "robots/number_text.h"
 
 namespace mercury {
@@ -263,15 +264,16 @@ void write_input(const NeuronInput& input, std::size_t neurons, Writer& to) {
 
 }  // namespace
 
-void read_sensors(std::string_view text, Robot& robot) {
+void set_sensors(Robot& robot, std::string_view text) {
   const Json document = parsed(text, "/sensors");
+  robot.sensors.clear();
   Part(document, "/sensors").for_each([&](const Part& sensor) {
     if (robot.sensors.size() == max_senses) sensor.refuse("more than 4096 sensors, at most 4096 are accepted");
     robot.sensors.push_back(sensor_of(sensor));
   });
 }
 
-void read_brain(std::string_view text, Robot& robot) {
+void set_brain(Robot& robot, std::string_view text) {
   const Json document = parsed(text, "/brain");
   const Part part(document, "/brain");
   part.object();
@@ -292,6 +294,20 @@ void read_brain(std::string_view text, Robot& robot) {
                              .neuron = static_cast<std::uint32_t>(output.at("neuron").whole(max_neurons))});
   });
   if (brain.outputs.empty()) part.at("outputs").refuse("an empty list; leave it out for one output per actuator");
+}
+
+std::string sensors_as_json(const Robot& robot) {
+  std::string text;
+  JsonWriter json(text);
+  write_sensors(robot, json);
+  return text;
+}
+
+std::string brain_as_json(const Brain& brain) {
+  std::string text;
+  JsonWriter json(text);
+  write_brain(brain, json);
+  return text;
 }
 
 void write_sensors(const Robot& robot, DocumentEvents& events) {

@@ -5,7 +5,7 @@
 
 #include "mercury/error.h"
 #include "mercury/real_body.h"
-#include "robots/file/brain_document.h"
+#include "mercury/robot_file.h"
 #include "robots/file/robot_document.h"
 
 namespace mercury {
@@ -406,8 +406,8 @@ Robot RobotReader::take() {
   validate(robot_);
   actuators_.give_to(robot_);
   make_real();
-  if (has(sensors)) read_sensors(sensors_text_, robot_);
-  if (has(brain)) read_brain(brain_text_, robot_);
+  if (has(sensors)) set_sensors(robot_, sensors_text_);
+  if (has(brain)) set_brain(robot_, brain_text_);
   validate_brain(robot_);
   return std::move(robot_);
 }

@@ -13,6 +13,8 @@
 // muscle that shortens by x on a body of width w curves it by 2 x / w, and a = 2 x / (w k), as long as the body's own
 // slowest vibration is not slower than the beat. That takes some MPa: the water's pressure is of the order of rho (1 -
 // s)^2 (c a)^2, the body's inertia several times as large.
+#include <cmath>
+
 #include "mercury/real_body.h"
 #include "mercury/tapered.h"
 #include "robots/library/designs.h"
@@ -73,8 +75,34 @@ Robot real_inchworm() {
                         {.modulus = 4e5f, .relaxation_time = 0.005f});
 }
 
+// The eel with a brain: its own wave, at 0.6 of the amplitude, and all muscles a little to the side where the target
+// is. The sum of a sine and a cosine of the clock is a wave of any phase.
+Robot hunter() {
+  Robot robot = real_eel();
+  robot.name = "hunter";
+  const std::vector<Actuator> actuators = actuators_of(robot);
+  const auto muscle = [&](std::size_t i) { return robot.materials[actuators[i].materials.front()]; };
+  robot.sensors = {{.kind = SensorKind::clock, .frequency = muscle(0).frequency},
+                   {.kind = SensorKind::target_direction}};
+  NeuronLayer turn{.name = "turn", .neurons = 1, .alpha = {0.1f}};
+  turn.inputs = {{.from = "senses", .edges = {{0, 3, -4}}}};  // its y, to the left
+  NeuronLayer wave{
+      .name = "wave", .neurons = static_cast<std::uint32_t>(actuators.size()), .activation = Activation::linear};
+  NeuronInput clock{.from = "senses"}, side{.from = "turn"};
+  const auto rounded = [](double weight) { return static_cast<float>(std::round(weight * 1e4) / 1e4); };
+  for (std::uint32_t i = 0; i < wave.neurons; ++i) {
+    const auto phase = static_cast<double>(muscle(i).phase);
+    clock.edges.push_back({i, 0, rounded(0.6 * std::cos(phase))});
+    clock.edges.push_back({i, 1, rounded(0.6 * std::sin(phase))});
+    side.weights.push_back(0.4f);
+  }
+  wave.inputs = {clock, side};
+  robot.brain = Brain{.period = 0.01f, .layers = {turn, wave}};
+  return robot;
+}
+
 }  // namespace
 
-std::vector<Robot> animals() { return {real_eel(), real_fish(), real_inchworm()}; }
+std::vector<Robot> animals() { return {real_eel(), real_fish(), real_inchworm(), hunter()}; }
 
 }  // namespace mercury::library

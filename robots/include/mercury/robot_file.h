@@ -46,6 +46,14 @@ class RobotDocuments {
 // origin is not a JSON object, or a text is not UTF-8.
 std::string serialize_robot(const Robot& robot, RobotFormat format);
 
+// The senses and the brain of a robot as JSON text, as in its document.
+std::string sensors_as_json(const Robot& robot);
+std::string brain_as_json(const Brain& brain);
+// Give them to a robot. Throw InputError with the place as a JSON pointer for a text that describes none;
+// validate_brain() says whether they fit the robot.
+void set_sensors(Robot& robot, std::string_view json);
+void set_brain(Robot& robot, std::string_view json);
+
 // Reads a file. Throws InputError as parse_robot, with the path before the message ("eel.json: /springs/7: ..."), and
 // for a file that cannot be read. A robot without a name gets the name of its file. "sample:eel" is a sample robot
 // (mercury/samples.h).

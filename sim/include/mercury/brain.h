@@ -97,10 +97,10 @@ struct Sensor {
   SensorKind kind = SensorKind::clock;
   // At most one of them says where it is; the whole robot without. The masses of an actuator or of springs are those at
   // their ends.
-  std::string actuator;                // one of the robot's; in a brain per actuator, "self" is the one it drives
-  std::vector<std::uint32_t> springs;  // indices
-  std::vector<std::uint16_t> masses;   // indices
-  std::string layer;                   // whose `neuron` a sensor of that kind gives
+  std::string actuator{};                // one of the robot's; in a brain per actuator, "self" is the one it drives
+  std::vector<std::uint32_t> springs{};  // indices
+  std::vector<std::uint16_t> masses{};   // indices
+  std::string layer{};                   // whose `neuron` a sensor of that kind gives
   std::uint32_t neuron = 0;
   float gain = 1, noise = 0, delay = 0, frequency = 0, phase = 0;
   friend bool operator==(const Sensor&, const Sensor&) = default;
@@ -126,25 +126,25 @@ struct NeuronEdge {
 
 // What the neurons of a layer read: all of a vector through a matrix, or some of it through edges.
 struct NeuronInput {
-  std::string from;            // "senses", or the name of a layer
-  std::vector<float> weights;  // [neuron of the layer][element of `from`]; empty if there are edges
-  std::vector<NeuronEdge> edges;
+  std::string from{};            // "senses", or the name of a layer
+  std::vector<float> weights{};  // [neuron of the layer][element of `from`]; empty if there are edges
+  std::vector<NeuronEdge> edges{};
   float rate = 0;  // of learning
   friend bool operator==(const NeuronInput&, const NeuronInput&) = default;
 };
 
 struct NeuronLayer {
-  std::string name;
+  std::string name{};
   std::uint32_t neurons = 0;
   Activation activation = Activation::tanh;
-  std::vector<float> alpha;  // of each neuron, or one for all; empty = 1
-  std::vector<float> bias;   // of each neuron; empty = 0
-  std::vector<NeuronInput> inputs;
+  std::vector<float> alpha{};  // of each neuron, or one for all; empty = 1
+  std::vector<float> bias{};   // of each neuron; empty = 0
+  std::vector<NeuronInput> inputs{};
   friend bool operator==(const NeuronLayer&, const NeuronLayer&) = default;
 };
 
 struct NeuronOutput {
-  std::string actuator, layer;
+  std::string actuator{}, layer{};
   std::uint32_t neuron = 0;
   friend bool operator==(const NeuronOutput&, const NeuronOutput&) = default;
 };
@@ -153,8 +153,8 @@ struct Brain {
   float period = 0.02f;       // how often it thinks [s]: every N = round(period / dt) steps, at least 1
   bool per_actuator = false;  // the layers exist once per actuator, with the same weights; the last one has one neuron
   std::uint64_t seed = 0;     // of the noise
-  std::vector<NeuronLayer> layers;
-  std::vector<NeuronOutput> outputs;  // empty = the last layer drives all actuators in their order
+  std::vector<NeuronLayer> layers{};
+  std::vector<NeuronOutput> outputs{};  // empty = the last layer drives all actuators in their order
   friend bool operator==(const Brain&, const Brain&) = default;
 };
 

@@ -136,7 +136,7 @@ struct Environment {
   std::optional<Contacts> contacts;
   Vec3 gravity;               // [m/s2]
   float stiffness_scale = 1;  // multiplies every stiffness [1]
-  Vec3 target;                // what robots with such sensors see (mercury/brain.h) [m]
+  Vec3 target{};              // what robots with such sensors see (mercury/brain.h) [m]
   Vec3 light{0, 0, 1};        // [m]
   friend bool operator==(const Environment&, const Environment&) = default;
 
