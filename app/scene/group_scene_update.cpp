@@ -73,6 +73,8 @@ void GroupScene::place_boxes() {
     if (exploded_[i] && !all_exploded) continue;
     bounds_[i] = last_boxes_[i];
     camera_boxes_[i] = motion_.camera_box(bounds_[i], offsets_[i], rooms_[i]);
+    if (seeks_target_[i] && motion_.layout() == Layout::grid)
+      camera_boxes_[i].extend(render::Vector3(environment_.target) + shown_offsets_[i]);
   }
 }
 
