@@ -97,6 +97,7 @@ TEST(VxaRoundTrip, DampingOfBondsIsARelaxationTime) {
 // A damping of bonds that the robot does not have would be one when it is imported again.
 TEST(VxaRoundTrip, RobotsWithoutDampingHaveNoneAgain) {
   VxaParts parts;
+  parts.simulator = "<Damping><BondDampingZ>0</BondDampingZ></Damping>";  // without the element, evosoro has 0.1
   parts.materials = VxaParts::material("Muscle", 4e5, 0.01);
   parts.data = "<Layer>11</Layer><Layer>11</Layer>";
   const Robot robot = import_of(parts).robots.front();
