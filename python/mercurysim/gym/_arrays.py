@@ -17,7 +17,7 @@ class Arrays:
         self.device = device
         self.xp: Any = np
         if torch:
-            import torch as xp
+            import torch as xp  # type: ignore[import-not-found, unused-ignore]
 
             self.xp = xp
 
