@@ -176,6 +176,11 @@ int describe_machine(const std::string& ffmpeg) {
   return 0;
 }
 
+std::string rhythm_text(const TrajectoryReader& trajectory) {
+  if (trajectory.frame_rate()) return fmt::format("{:.6g} per second", *trajectory.frame_rate());
+  return fmt::format("every {} steps", trajectory.every());
+}
+
 void describe(const TrajectoryReader& trajectory) {
   constexpr std::size_t shown = 20;
   const Configuration& configuration = trajectory.configuration();
@@ -189,11 +194,10 @@ void describe(const TrajectoryReader& trajectory) {
                            temporary ? "; to keep it, rename it to " + path.stem().stem().filename().string() : ""));
   }
   print_line("recorded by", trajectory.program() + " on " + trajectory.device_name());
-  print_line("frames",
-             trajectory.frames() == 0
-                 ? "none"
-                 : fmt::format("{}, every {} steps, {:.6g} s to {:.6g} s", trajectory.frames(), trajectory.every(),
-                               trajectory.time(0), trajectory.time(trajectory.frames() - 1)));
+  print_line("frames", trajectory.frames() == 0
+                           ? "none"
+                           : fmt::format("{}, {}, {:.6g} s to {:.6g} s", trajectory.frames(), rhythm_text(trajectory),
+                                         trajectory.time(0), trajectory.time(trajectory.frames() - 1)));
   print_line("solver", solver_text(configuration));
   print_line("environment", environment_text(configuration));
   if (trajectory.seed()) print_line("seed", fmt::to_string(*trajectory.seed()));

@@ -199,6 +199,7 @@ Json info_of(const TrajectoryReader& recording) {
           {"unfinished", recording.unfinished()},
           {"frames", frames},
           {"every", recording.every()},
+          {"frame_rate", value_or_null(recording.frame_rate())},
           {"first_time", frames > 0 ? Json(recording.time(0)) : Json()},
           {"last_time", frames > 0 ? Json(recording.time(frames - 1)) : Json()},
           {"seed", value_or_null(recording.seed())},

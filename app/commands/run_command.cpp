@@ -45,6 +45,7 @@ struct RunOptions {
   std::string resume;    // the checkpoint to go on from; empty = none
   bool goes_on = false;  // --resume
   std::optional<std::int64_t> every;
+  std::optional<double> rate;  // --fps, instead of --every
   std::optional<double> checkpoint_every;
   bool compress = false;
   bool json = false, strict = false;
@@ -83,8 +84,9 @@ void prepare_outputs(const RunOptions& options, const std::string& continued = {
 void validate_recording(const RunOptions& options) {
   if (options.every && *options.every < 1)
     throw InputError("--every", fmt::format("{} is not accepted; give a number of steps, 1 or more", *options.every));
-  if (options.record.empty() && (options.every || options.compress))
-    throw InputError(options.every ? "--every" : "--compress", "goes with --record FILE.h5");
+  if (options.every && options.rate) throw InputError("--fps", "not together with --every, which counts steps");
+  if (options.record.empty() && (options.every || options.rate || options.compress))
+    throw InputError(options.every ? "--every" : options.rate ? "--fps" : "--compress", "goes with --record FILE.h5");
   if (options.checkpoint_every && options.checkpoint.empty())
     throw InputError("--checkpoint-every", "goes with --checkpoint FILE.h5");
   if (options.checkpoint_every && !(*options.checkpoint_every >= 0 && std::isfinite(*options.checkpoint_every)))
@@ -98,15 +100,20 @@ std::int64_t recorded_every(const RunOptions& options, const Configuration& conf
   return options.every.value_or(static_cast<std::int64_t>(usual + 0.5));
 }
 
+RecordingOptions recording_options(const RunOptions& options, const Configuration& configuration) {
+  return {.every = recorded_every(options, configuration),
+          .rate = options.rate,
+          .last_step = options.simulation.steps(),
+          .seed = options.robots.seed(),
+          .deflate = options.compress ? 1 : 0};
+}
+
 // Null if none is wanted, or if the disk is full already.
 std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const Simulation& simulation) {
   if (options.record.empty()) return nullptr;
   try {
     return std::make_unique<Recorder>(simulation, options.record,
-                                      RecordingOptions{.every = recorded_every(options, simulation.configuration()),
-                                                       .last_step = options.simulation.steps(),
-                                                       .seed = options.robots.seed(),
-                                                       .deflate = options.compress ? 1 : 0});
+                                      recording_options(options, simulation.configuration()));
   } catch (const RecordingFailure& failure) {  // tables may go elsewhere
     warn_without_recording(failure);
     return nullptr;
@@ -148,21 +155,23 @@ int report_results(const RunOptions& options, const RunReport& report) {
 // Robots, or a repro, whose configuration and length are its own.
 int describe_work(const RunOptions& options, const Configuration& configuration, std::int64_t steps,
                   const std::string& robots) {
-  const std::int64_t every = recorded_every(options, configuration);
+  const FramePlaces places = options.rate ? FramePlaces(0, *options.rate, configuration.dt)
+                                          : FramePlaces(0, recorded_every(options, configuration));
   return print_dry_run(
-      "run", {{"robots", robots},
-              {"simulate", time_text(configuration, steps) +
-                               (options.trials.trials > 1 ? fmt::format(", {} trials", options.trials.trials) : "")},
-              {"in", environment_text(configuration)},
-              {"by", solver_text(configuration)},
-              {"on", device_text(configuration.device)},
-              {"record",
-               options.record.empty() ? "" : options.record + ": " + count_text(steps / every + 1, "frame", "frames")},
-              {"checkpoint", options.checkpoint},
-              {"write", options.csv},
-              {"print", is_standard_output(options.csv) ? "CSV"
-                        : options.json                  ? "JSON"
-                                                        : "a table"}});
+      "run",
+      {{"robots", robots},
+       {"simulate", time_text(configuration, steps) +
+                        (options.trials.trials > 1 ? fmt::format(", {} trials", options.trials.trials) : "")},
+       {"in", environment_text(configuration)},
+       {"by", solver_text(configuration)},
+       {"on", device_text(configuration.device)},
+       {"record",
+        options.record.empty() ? "" : options.record + ": " + count_text(places.count(steps), "frame", "frames")},
+       {"checkpoint", options.checkpoint},
+       {"write", options.csv},
+       {"print", is_standard_output(options.csv) ? "CSV"
+                 : options.json                  ? "JSON"
+                                                 : "a table"}});
 }
 
 // Runs until the robot has exploded, or for --seconds from the start of the repro.
@@ -170,7 +179,8 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   const Device device = options.simulation.configuration().device;
   if (options.simulation.configuration() != Configuration{.device = device})
     throw InputError(file.string(), "has its own configuration; give only --device, --threads and --seconds with it");
-  if (!options.record.empty() || options.every) throw InputError("--record", "does not work with a repro; give robots");
+  if (!options.record.empty() || options.every || options.rate)
+    throw InputError("--record", "does not work with a repro; give robots");
   if (options.trials.settle != 0) throw InputError("--settle", "does not work with a repro; give robots");
   if (options.trials.trials != 1) throw InputError("--trials", "does not work with a repro; give robots");
   if (options.trials.jitter != 0) throw InputError("--jitter", "does not work with a repro; give robots");
@@ -208,6 +218,7 @@ CheckpointNotes notes_of(const RunOptions& options, const Configuration& configu
   if (!options.record.empty())
     notes.recording = {.path = std::filesystem::absolute(options.record).string(),
                        .every = recorded_every(options, configuration),
+                       .rate = options.rate,
                        .compressed = options.compress};
   return notes;
 }
@@ -275,8 +286,10 @@ void validate_resume(const RunOptions& options) {
       !options.simulation.chosen_environment().empty())
     throw InputError(
         "--resume", options.resume + " has its own configuration; give only --device, --threads and --seconds with it");
-  if (options.every || options.compress)
-    throw InputError(options.every ? "--every" : "--compress",
+  if (options.every || options.rate || options.compress)
+    throw InputError(options.every  ? "--every"
+                     : options.rate ? "--fps"
+                                    : "--compress",
                      "is that of " + options.resume + " in a resumed run; leave it out");
 }
 
@@ -290,6 +303,7 @@ std::unique_ptr<Recorder> continue_recording(const RunOptions& options, const Re
   const auto reader = recording_before(*before);
   return std::make_unique<Recorder>(run.simulation, options.record,
                                     RecordingOptions{.every = before->every,
+                                                     .rate = before->rate,
                                                      .first_step = 0,
                                                      .last_step = last_step,
                                                      .seed = run.notes.seed,
@@ -317,7 +331,10 @@ int run_resumed(RunOptions options) {
     throw InputError("--seconds", fmt::format("{} is not accepted; {} has come to {:.6g} s", trials.seconds,
                                               options.resume, time_of(checkpoint.state.clock)));
   if (options.output.dry_run()) {
-    if (checkpoint.notes.recording) options.every = checkpoint.notes.recording->every;
+    if (checkpoint.notes.recording) {
+      options.every = checkpoint.notes.recording->every;
+      options.rate = checkpoint.notes.recording->rate;
+    }
     return describe_work(options, configuration, static_cast<std::int64_t>(steps), size_text(checkpoint.robots));
   }
   const Device device = options.simulation.configuration().device;
@@ -356,6 +373,7 @@ int run(RunOptions& options) {  // its robots count what is left out
   std::vector<std::string> notes;
   const Configuration configuration = options.simulation.configuration(robots.environments, notes, robots.physics);
   print_notes(notes);
+  if (options.rate) require_frame_rate("--fps", *options.rate, configuration.dt);
   if (options.output.dry_run())
     return describe_work(options, configuration, options.simulation.steps(), size_text(robots));
   if (in_one) return run_in_one(options, robots, configuration, trials);
@@ -380,6 +398,8 @@ void add_run_command(const Command& program, const Choose& choose) {
            "FILE.h5")
       .on_first_screen();
   add_number(command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
+  add_number(command, "--fps", options->rate,
+             "Instead: frames per second, exactly; interpolated where they fall between two steps", "N");
   add_text(command, "--checkpoint", options->checkpoint,
            "Save the run now and then, so that --resume goes on with it after a crash", "FILE.h5");
   add_number(command, "--checkpoint-every", options->checkpoint_every, "Wall time between two checkpoints (default 60)",
@@ -402,6 +422,7 @@ void add_run_command(const Command& program, const Choose& choose) {
       "Examples:\n"
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
       "  mercury run eel.json --record eel.h5 --every 10\n"
+      "  mercury run eel.json --record eel.h5 --fps 30\n"
       "  mercury run my-robots --seconds 3600 --checkpoint long.h5\n"
       "  mercury run --resume --checkpoint long.h5                (goes on after a crash)\n"
       "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"

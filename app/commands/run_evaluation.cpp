@@ -48,7 +48,7 @@ class Advance {
       if (recorder) stop = std::min(stop, recorder->next_step());
       if (checkpoints) stop = std::min(stop, simulation_.steps() + stride_);
       const bool goes_on = stepper_.advance_to(stop);
-      if (goes_on && recorder) observe(*recorder);
+      if (recorder) observe(*recorder);  // also on the way out: a frame between two steps needs both
       if (!goes_on) return false;
       if (checkpoints && checkpoints->due()) checkpoints->write(simulation_, trial_, working_recorder(observers_));
       progress_.update(simulation_.steps() - first_);

@@ -103,30 +103,49 @@ Simulation simulation_of(TrajectoryReader& recording, const Device& device) {
 class Comparison {
  public:
   Comparison(const Simulation& simulation, TrajectoryReader& recording)
-      : simulation_(simulation), recording_(recording), values_(simulation.mass_count()) {}
+      : simulation_(simulation), recording_(recording), now_(simulation.mass_count()), next_(simulation.mass_count()) {}
+
+  // Steps to a frame. Returns false if the user interrupts.
+  bool advance_to(FramePlace place, Stepper& stepper) {
+    if (!stepper.advance_to(place.step)) return false;
+    read(now_);
+    if (!place.is_between_steps()) return true;
+    if (!stepper.advance_to(place.step + 1)) return false;
+    read(next_);
+    interpolate(now_.positions, next_.positions, place.share);
+    interpolate(now_.velocities, next_.velocities, place.share);
+    return true;
+  }
 
   FrameDifference at(std::size_t frame) {
     FrameDifference difference{.step = recording_.step(frame), .time = recording_.time(frame)};
-    simulation_.read_positions(values_);
     const std::span<const Vec3> positions = recording_.positions(frame);
-    difference.same = same_bits(values_, positions);
+    difference.same = same_bits(now_.positions, positions);
     std::size_t mass = 0;
-    if (!difference.same) std::tie(difference.position, mass) = largest_distance(values_, positions);
+    if (!difference.same) std::tie(difference.position, mass) = largest_distance(now_.positions, positions);
     const auto offsets = recording_.mass_offsets();
     difference.robot = static_cast<std::size_t>(std::ranges::upper_bound(offsets, mass) - offsets.begin()) - 1;
-    simulation_.read_velocities(values_);
     const std::span<const Vec3> velocities = recording_.velocities(frame);
-    if (!same_bits(values_, velocities)) {
+    if (!same_bits(now_.velocities, velocities)) {
       difference.same = false;
-      difference.velocity = largest_distance(values_, velocities).first;
+      difference.velocity = largest_distance(now_.velocities, velocities).first;
     }
     return difference;
   }
 
  private:
+  struct Moment {
+    explicit Moment(std::size_t masses) : positions(masses), velocities(masses) {}
+    std::vector<Vec3> positions, velocities;
+  };
+  void read(Moment& moment) const {
+    simulation_.read_positions(moment.positions);
+    simulation_.read_velocities(moment.velocities);
+  }
+
   const Simulation& simulation_;
   TrajectoryReader& recording_;
-  std::vector<Vec3> values_;
+  Moment now_, next_;
 };
 
 Verification verify(TrajectoryReader& recording, const Device& device) {
@@ -134,10 +153,13 @@ Verification verify(TrajectoryReader& recording, const Device& device) {
   Verification result{.device = simulation.device_name(), .robots = simulation.size(), .frames = {}};
   Comparison comparison(simulation, recording);
   Stepper stepper(simulation);
+  const FramePlaces places = recording.places();
   const std::int64_t first = recording.step(0);
   Progress progress("comparing", "steps", recording.step(recording.frames() - 1) - first);
   for (std::size_t frame = 0; frame < recording.frames(); ++frame) {
-    if (!stepper.advance_to(recording.step(frame))) {
+    const FramePlace place = recording.frame_rate() ? places.of(static_cast<std::int64_t>(frame))
+                                                    : FramePlace{.step = recording.step(frame)};
+    if (!comparison.advance_to(place, stepper)) {
       result.stopped = true;
       break;
     }
@@ -242,9 +264,9 @@ void add_verify_command(const Command& program, const Choose& choose) {
   command.find_option("--threads")->on_first_screen();
   command.set_footer(
       "Starts at the first frame and compares positions and velocities at all others. On the kind of device that made\n"
-      "the recording they are the same bit for bit; elsewhere the table says how far they part. What a program "
-      "changed\n"
-      "while it recorded, such as materials or actuators, is not repeated.\n\n"
+      "the recording they are the same bit for bit; elsewhere the table says how far they part. Frames between\n"
+      "two steps are interpolated again. What a program changed while it recorded, such as materials or actuators, is\n"
+      "not repeated.\n\n"
       "Exit status: 0 the same, 1 different, 2 the file is no recording.\n\n"
       "Examples:\n"
       "  mercury verify swim.h5\n"

@@ -8,10 +8,6 @@
 namespace mercury {
 namespace {
 
-void mix(std::vector<Vec3>& now, std::span<const Vec3> next, float share) {
-  for (std::size_t i = 0; i < now.size(); ++i) now[i] += share * (next[i] - now[i]);
-}
-
 std::vector<LivePerturbation> live_perturbations(RobotId robot, const std::vector<Perturbation>& perturbations) {
   std::vector<LivePerturbation> live;
   for (const Perturbation& perturbation : perturbations)
@@ -40,8 +36,8 @@ void RecordingPlayer::show(double time) {
   BatchState state = reader.state(frame);
   if (frame + 1 < reader.frames() && time > reader.time(frame)) {
     const double share = (time - reader.time(frame)) / (reader.time(frame + 1) - reader.time(frame));
-    mix(state.positions, reader.positions(frame + 1), static_cast<float>(share));
-    mix(state.velocities, reader.velocities(frame + 1), static_cast<float>(share));
+    interpolate(state.positions, reader.positions(frame + 1), static_cast<float>(share));
+    interpolate(state.velocities, reader.velocities(frame + 1), static_cast<float>(share));
     state.clock.step += std::llround(share * static_cast<double>(reader.step(frame + 1) - reader.step(frame)));
   }
   batch_.restore(state, time < time_);

@@ -249,6 +249,7 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   write_text(recording, "unfinished", notes.recording->unfinished);
   write_attribute(recording, "frames", notes.recording->frames);
   write_attribute(recording, "every", notes.recording->every);
+  if (notes.recording->rate) write_attribute(recording, "frame_rate", *notes.recording->rate);
   write_attribute(recording, "compressed", std::uint8_t{notes.recording->compressed});
 }
 
@@ -274,6 +275,10 @@ CheckpointNotes read_notes(hid_t group) {
                      .frames = read_attribute<std::int64_t>(recording, "frames"),
                      .every = read_attribute<std::int64_t>(recording, "every"),
                      .compressed = read_attribute<std::uint8_t>(recording, "compressed") != 0};
+  if (has_attribute(recording, "frame_rate")) {
+    notes.recording->rate = read_attribute<double>(recording, "frame_rate");
+    require(*notes.recording->rate > 0 && std::isfinite(*notes.recording->rate), "its frame_rate is out of range");
+  }
   require(notes.recording->frames >= 1 && notes.recording->every >= 1, "the frames of its recording are out of range");
   return notes;
 }

@@ -31,6 +31,7 @@ struct CheckpointRecording {
   std::string path, unfinished;  // the name it was to get, and the one it had
   std::int64_t frames = 0;       // that it has up to the checkpoint
   std::int64_t every = 1;        // steps
+  std::optional<double> rate;    // instead: frames per second
   bool compressed = false;
   friend bool operator==(const CheckpointRecording&, const CheckpointRecording&) = default;
 };

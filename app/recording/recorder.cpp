@@ -2,7 +2,6 @@
 #include "app/recording/recorder.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "app/base/progress.h"
 #include "mercury/error.h"
@@ -16,13 +15,20 @@ std::vector<const Robot*> robots_of(const Simulation& simulation) {
   return robots;
 }
 
+FramePlaces places_of(const Simulation& simulation, const RecordingOptions& options, std::int64_t first) {
+  return options.rate ? FramePlaces(first, *options.rate, simulation.configuration().dt)
+                      : FramePlaces(first, options.every);
+}
+
 TrajectoryHeader header_of(const Simulation& simulation, const RecordingOptions& options) {
-  const std::int64_t steps = options.last_step.value_or(0) - options.first_step.value_or(simulation.steps());
+  const std::int64_t first = options.first_step.value_or(simulation.steps());
+  const FramePlaces places = places_of(simulation, options, first);
   return {.configuration = simulation.configuration(),
           .device_name = simulation.device_name(),
           .seed = options.seed,
-          .every = options.every,
-          .expected_frames = options.last_step ? steps / options.every + 1 : 0,
+          .every = places.every(),
+          .frame_rate = options.rate,
+          .expected_frames = options.last_step ? places.count(*options.last_step - first) : 0,
           .time = simulation.clock(),
           .deflate = options.deflate,
           .watch = shown_work()};
@@ -30,19 +36,22 @@ TrajectoryHeader header_of(const Simulation& simulation, const RecordingOptions&
 
 }  // namespace
 
-Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options)
-    : simulation_(simulation), every_(options.every), next_(simulation.steps()),
-      writer_(path, header_of(simulation, options), robots_of(simulation), simulation.materials(), "--record") {
+Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options,
+                   const char* option)
+    : simulation_(simulation), places_(places_of(simulation, options, simulation.steps())), next_(simulation.steps()),
+      start_time_(simulation.time()), rate_(options.rate),
+      writer_(path, header_of(simulation, options), robots_of(simulation), simulation.materials(), option) {
   take();
 }
 
 Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options,
                    const RecordingStart& start)
-    : simulation_(simulation), every_(options.every), next_(simulation.steps()),
+    : simulation_(simulation), places_(places_of(simulation, options, simulation.steps())), next_(simulation.steps()),
+      start_time_(simulation.time()), rate_(options.rate),
       writer_(path, header_of(simulation, options), robots_of(simulation), simulation.materials(), "--record") {
   TrajectoryReader& before = start.recording;
   const auto frames = static_cast<std::size_t>(start.frames);
-  if (frames < 1 || before.frames() < frames || before.every() != every_ ||
+  if (frames < 1 || before.frames() < frames || before.every() != places_.every() || before.frame_rate() != rate_ ||
       before.mass_count() != simulation.mass_count() || before.robots().size() != simulation.size() ||
       before.step(frames - 1) > simulation.steps())
     throw InputError(before.path().string(), "is not the beginning of this recording");
@@ -52,23 +61,54 @@ Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& pa
     std::ranges::copy(before.velocities(i), frame.velocities.begin());
     writer_.commit();
   }
-  set_next(before.step(frames - 1));
+  places_ = places_of(simulation, options, before.step(0));
+  start_time_ = before.time(0);
+  set_next();
 }
 
 void Recorder::observe() {
-  if (simulation_.steps() >= next_) take();
+  const FramePlace place = places_.of(writer_.frames());
+  if (simulation_.steps() < next_) return;
+  if (place.is_between_steps() && !before_ && simulation_.steps() == place.step) return hold();
+  take();
+}
+
+// A frame between two steps: the first of them.
+void Recorder::hold() {
+  before_.emplace();
+  before_->positions.resize(simulation_.mass_count());
+  before_->velocities.resize(simulation_.mass_count());
+  simulation_.read_positions(before_->positions);
+  simulation_.read_velocities(before_->velocities);
+  next_ = simulation_.steps() + 1;
 }
 
 void Recorder::take() {
-  const TrajectoryWriter::Frame frame = writer_.add(simulation_.steps(), simulation_.time());
+  const std::int64_t number = writer_.frames();
+  const FramePlace place = places_.of(number);
+  const TrajectoryWriter::Frame frame =
+      rate_ ? writer_.add(place.step, start_time_ + static_cast<double>(number) / *rate_)
+            : writer_.add(simulation_.steps(), simulation_.time());
   simulation_.read_positions(frame.positions);
   simulation_.read_velocities(frame.velocities);
+  if (before_) {
+    const auto mix = [&](std::vector<Vec3>& earlier, std::span<Vec3> now) {
+      interpolate(earlier, now, place.share);
+      std::ranges::copy(earlier, now.begin());
+    };
+    mix(before_->positions, frame.positions);
+    mix(before_->velocities, frame.velocities);
+    before_.reset();
+  }
   writer_.commit();
-  set_next(simulation_.steps());
+  set_next();
 }
 
-void Recorder::set_next(std::int64_t last_frame) {
-  next_ = last_frame + std::min(every_, std::numeric_limits<std::int64_t>::max() - last_frame);
+// The later step of one frame may be the earlier one of the next.
+void Recorder::set_next() {
+  const FramePlace place = places_.of(writer_.frames());
+  next_ = place.step;
+  if (place.is_between_steps() && simulation_.steps() == place.step) hold();
 }
 
 void Recorder::finish() { writer_.finish(simulation_.telemetry()); }

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records a simulation while it runs, one frame every few steps.
+// Records a simulation while it runs: a frame every few steps, or so many per second.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 
+#include "app/recording/frame_places.h"
 #include "app/recording/trajectory_reader.h"
 #include "app/recording/trajectory_writer.h"
 #include "mercury/simulation.h"
+#include "mercury/state.h"
 
 namespace mercury {
 
 struct RecordingOptions {
   std::int64_t every = 1;                             // steps per frame
+  std::optional<double> rate;                         // instead: frames per second, at most one per step
   std::optional<std::int64_t> first_step, last_step;  // where the recording begins and ends, if known
   std::optional<std::uint64_t> seed;                  // of the random robots, if any
   int deflate = 0;                                    // compression: 0 = none, 1 (fast) .. 9
@@ -27,18 +30,19 @@ struct RecordingStart {
 
 class Recorder {
  public:
-  // Takes the first frame now. Throws like TrajectoryWriter; its messages name the option --record.
-  Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options);
+  // Takes the first frame now. Throws like TrajectoryWriter; its messages name the option.
+  Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options,
+           const char* option = "--record");
 
   // Copies the frames of the start instead, and goes on after them, as the simulation does. Throws InputError if they
   // are not frames of this simulation, up to its current step.
   Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options,
            const RecordingStart& start);
 
-  // The step at which the next frame is due.
+  // The next step that a frame needs. One between two steps needs both.
   std::int64_t next_step() const { return next_; }
-  // Takes a frame if one is due. Call it when the simulation is at next_step(). Throws like TrajectoryWriter; after a
-  // RecordingFailure only failed() and frames() may be called.
+  // Takes a frame, or its first half, if one is due. Call it when the simulation is at next_step(). Throws like
+  // TrajectoryWriter; after a RecordingFailure only failed() and frames() may be called.
   void observe();
   // Writes all frames so far, so that they survive the program. Throws like TrajectoryWriter.
   void flush() { writer_.flush(); }
@@ -54,10 +58,15 @@ class Recorder {
 
  private:
   void take();
-  void set_next(std::int64_t last_frame);
+  void hold();
+  void set_next();
 
   const Simulation& simulation_;
-  std::int64_t every_, next_;
+  FramePlaces places_;
+  std::int64_t next_;
+  double start_time_;  // [s]
+  std::optional<double> rate_;
+  std::optional<BatchState> before_;  // the step before the next frame, once it was there
   TrajectoryWriter writer_;
 };
 

@@ -71,14 +71,12 @@ class Playback final : public Backend {
 
   void show() const {
     const std::int64_t step = trajectory_->step(0) + step_;
-    const std::size_t frame = trajectory_->frame_of_step(step);
+    const auto [frame, share] = place_of(step);
     State now = state(frame);
-    if (trajectory_->step(frame) < step && frame + 1 < trajectory_->frames()) {
-      const auto length = static_cast<double>(trajectory_->step(frame + 1) - trajectory_->step(frame));
-      const auto share = static_cast<float>(static_cast<double>(step - trajectory_->step(frame)) / length);
+    if (share > 0) {
       const State next = state(frame + 1);
-      mix(now.positions, next.positions, share);
-      mix(now.velocities, next.velocities, share);
+      interpolate(now.positions, next.positions, share);
+      interpolate(now.velocities, next.velocities, share);
     }
     const auto offsets = trajectory_->mass_offsets();
     for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
@@ -94,8 +92,19 @@ class Playback final : public Backend {
     return {{positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}};
   }
 
-  static void mix(std::vector<Vec3>& now, const std::vector<Vec3>& next, float share) {
-    for (std::size_t i = 0; i < now.size(); ++i) now[i] += share * (next[i] - now[i]);
+  // The last frame at or before a step, and the share of the way to the next one.
+  std::pair<std::size_t, float> place_of(std::int64_t step) const {
+    const TrajectoryReader& frames = *trajectory_;
+    const auto between = [&frames](std::size_t frame, double now, const auto& at) -> std::pair<std::size_t, float> {
+      if (!(at(frame) < now) || frame + 1 >= frames.frames()) return {frame, 0.0f};
+      return {frame, static_cast<float>((now - at(frame)) / (at(frame + 1) - at(frame)))};
+    };
+    if (!frames.frame_rate()) {
+      const auto step_at = [&](std::size_t frame) { return static_cast<double>(frames.step(frame) - frames.step(0)); };
+      return between(frames.frame_of_step(step), static_cast<double>(step - frames.step(0)), step_at);
+    }
+    const double time = frames.time(0) + static_cast<double>(step - frames.step(0)) * frames.configuration().dt;
+    return between(frames.frame_at(time), time, [&](std::size_t frame) { return frames.time(frame); });
   }
 
   RobotStatus status_at(const RecordedRobot& robot, std::int64_t step) const {

@@ -172,6 +172,11 @@ void TrajectoryReader::read_parameters() {
   if (has_attribute(parameters, "seed")) seed_ = read_attribute<std::uint64_t>(parameters, "seed");
   every_ = read_attribute<std::int64_t>(parameters, "every");
   configuration_ = read_configuration(parameters);
+  if (has_attribute(parameters, "frame_rate")) {
+    frame_rate_ = read_attribute<double>(parameters, "frame_rate");
+    if (!(*frame_rate_ > 0 && *frame_rate_ * configuration_.dt <= 1.000001))
+      throw Error("its frame_rate is out of range");
+  }
   if (unfinished_) {
     read_unfinished_times(parameters);
   } else {
@@ -183,6 +188,12 @@ void TrajectoryReader::read_parameters() {
     if (!std::isfinite(times_[i]) || (i > 0 && !(times_[i] > times_[i - 1] && steps_[i] > steps_[i - 1])))
       throw Error("the times of its frames do not grow");
   if (!steps_.empty() && steps_.front() < 0) throw Error("the steps of its frames are negative");
+  if (frame_rate_) {
+    const FramePlaces places = this->places();
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (places.of(static_cast<std::int64_t>(i)).step != steps_[i])
+        throw Error("the steps of its frames are not those of its frame_rate");
+  }
   read_base(parameters);
 }
 
@@ -285,6 +296,11 @@ void TrajectoryReader::read_base(hid_t parameters) {
   base_.step = steps_.front();
   if (time_of(base_) != times_.front())
     base_ = {.dt = configuration_.dt, .base_time = times_.front(), .base_step = steps_.front()};
+}
+
+FramePlaces TrajectoryReader::places() const {
+  const std::int64_t first = steps_.empty() ? 0 : steps_.front();
+  return frame_rate_ ? FramePlaces(first, *frame_rate_, configuration_.dt) : FramePlaces(first, every_);
 }
 
 Clock TrajectoryReader::clock(std::size_t frame) const {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/recording/frame_places.h"
 #include "app/recording/hdf5_handle.h"
 #include "mercury/clock.h"
 #include "mercury/configuration.h"
@@ -39,7 +40,11 @@ class TrajectoryReader {
   const std::string& device_name() const { return device_name_; }  // for people
   const std::string& program() const { return program_; }          // that wrote the file: "mercury 0.1.0"
   std::optional<std::uint64_t> seed() const { return seed_; }
-  std::int64_t every() const { return every_; }  // steps per frame
+  std::int64_t every() const { return every_; }  // steps per frame, rounded
+  // Frames per second, where frames are not at steps: one lies at its time(), at step() or between it and the next.
+  std::optional<double> frame_rate() const { return frame_rate_; }
+  // Where the frames are.
+  FramePlaces places() const;
 
   // Whether the program that wrote the file has not finished it: it was killed, or it still runs. The trajectory then
   // has the frames up to the last that it had flushed when the reader opened the file; explosions are not marked.
@@ -48,9 +53,10 @@ class TrajectoryReader {
   std::size_t frames() const { return steps_.size(); }
   std::int64_t step(std::size_t frame) const { return steps_.at(frame); }
   double time(std::size_t frame) const { return times_.at(frame); }  // [s]
-  // The exact instant of a frame.
+  // The instant of the step of a frame.
   Clock clock(std::size_t frame) const;
-  // The state at a frame, from which a simulation of robots() and configuration() goes on bit for bit.
+  // The state at a frame, from which a simulation of robots() and configuration() goes on bit for bit, unless the frame
+  // is between two steps.
   BatchState state(std::size_t frame);
   // The last frame at or before a time or step; 0 if that is before the first frame.
   std::size_t frame_at(double time) const;
@@ -102,6 +108,7 @@ class TrajectoryReader {
   std::string device_name_, program_;
   std::optional<std::uint64_t> seed_;
   std::int64_t every_ = 1;
+  std::optional<double> frame_rate_;
   Clock base_;
   std::vector<std::int64_t> steps_;
   std::vector<double> times_;

@@ -84,7 +84,7 @@ void reserve(hid_t file, hsize_t begin, hsize_t end) {
 std::string text_of(const Error& error) { return error.number() != 0 ? reason_of(error.number()) : error.what(); }
 
 RecordingFailure write_failure(const std::filesystem::path& path, const std::string& reason, const std::string& kept) {
-  return RecordingFailure(path.string() + ": " + reason + "; " + kept, reason);
+  return RecordingFailure(path.string() + ": " + reason + "; " + kept);
 }
 
 }  // namespace
@@ -118,11 +118,7 @@ void TrajectoryWriter::give_up(const std::string& reason) {
   const bool complete = reserved_ > 0 && failure_->number == 0 && is_completed();
   if (!complete && failure_->number == 0) failure_->number = EIO;  // nothing more is written
   for (Handle* handle : {&particles_, &connectivity_, &parameters_, &file_}) Handle(std::move(*handle));
-  if (flushed_ == 0 || !(complete || survives_kill())) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished_.path(), ignored);  // now, since other files may need its room
-    throw write_failure(path_, reason, "nothing was kept");
-  }
+  if (flushed_ == 0 || !(complete || survives_kill())) throw write_failure(path_, reason, "nothing was kept");
   unfinished_.keep();
   throw write_failure(
       path_, reason,
@@ -204,6 +200,7 @@ void TrajectoryWriter::write_header(const TrajectoryHeader& header) {
   parameters_ = create_group(file_, "parameters");
   write_attribute(parameters_, "format", std::int32_t{trajectory_format});
   write_attribute(parameters_, "every", header.every);
+  if (header.frame_rate) write_attribute(parameters_, "frame_rate", *header.frame_rate);
   if (header.seed) write_attribute(parameters_, "seed", *header.seed);
   if (header.time.base_step != 0 || header.time.base_time != 0) {
     write_attribute(parameters_, "base_step", header.time.base_step);

@@ -31,7 +31,8 @@ struct TrajectoryHeader {
   Configuration configuration;
   std::string device_name;                  // for people
   std::optional<std::uint64_t> seed;        // of the random robots, if any
-  std::int64_t every = 1;                   // steps per frame
+  std::int64_t every = 1;                   // steps per frame, rounded
+  std::optional<double> frame_rate;         // frames per second, also between steps; none = at steps
   std::int64_t expected_frames = 0;         // 0 = unknown
   Clock time;                               // of the simulation: its base, from which times count
   int deflate = 0;                          // compression of the frames: 0 = none, 1 (fast) .. 9
@@ -45,12 +46,7 @@ struct TrajectoryHeader {
 // frames were kept.
 class RecordingFailure : public std::runtime_error {
  public:
-  RecordingFailure(const std::string& what, std::string reason)
-      : std::runtime_error(what), reason_(std::move(reason)) {}
-  const std::string& reason() const { return reason_; }  // "the disk is full"
-
- private:
-  std::string reason_;
+  using std::runtime_error::runtime_error;
 };
 
 // Whether to flush now, so that at most two periods pass between flushes: the next frame may take as long as the last.

@@ -4,6 +4,7 @@
 
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -65,29 +66,52 @@ nb::object per_frame(const TrajectoryReader& recording, Of of) {
 // Records a batch that Python steps.
 class BatchRecorder {
  public:
-  BatchRecorder(nb::object batch, const std::filesystem::path& path, std::int64_t every)
+  BatchRecorder(nb::object batch, const std::filesystem::path& path, std::optional<std::int64_t> every,
+                std::optional<double> fps)
       : batch_(std::move(batch)), every_(every) {
+    if (every.has_value() == fps.has_value())
+      throw ParameterError("every, fps", "give one of them: steps per frame, or frames per second");
     OutputFiles outputs(true, false);
     outputs.add_file("path", path.string());
     outputs.check();
     outputs.make_folders();
     of_batch().use([&](const Simulation& simulation) {
       robots_ = simulation.size();
-      recorder_.emplace(simulation, path, RecordingOptions{.every = every});
+      if (fps) require_frame_rate("fps", *fps, simulation.configuration().dt);
+      recorder_.emplace(simulation, path, RecordingOptions{.every = every.value_or(1), .rate = fps});
     });
   }
 
   void frame() {
     require_open();
+    if (!every_) throw InputError("with fps, frames may lie between steps; step the batch by step() of the recorder");
     of_batch().use([&](const Simulation& simulation) {
-      if (simulation.size() != robots_) throw InputError("robots came or went; a recording has the same all the time");
+      require_same_robots(simulation);
       const std::int64_t next = recorder_->next_step();
       if (simulation.steps() != next)
         throw InputError("a frame is due at step " + std::to_string(next) + " and the batch is at step " +
-                         std::to_string(simulation.steps()) + "; step it " + std::to_string(every_) +
+                         std::to_string(simulation.steps()) + "; step it " + std::to_string(*every_) +
                          " steps per frame (every)");
       recorder_->observe();
     });
+  }
+
+  // Takes the frames on the way.
+  void step(std::int64_t steps) {
+    require_open();
+    Batch& batch = nb::cast<Batch&>(batch_);
+    do {
+      const std::int64_t wait = batch.use([&](const Simulation& simulation) {
+        require_same_robots(simulation);
+        return recorder_->next_step() - simulation.steps();
+      });
+      if (wait < 0)
+        throw InputError("a frame was due " + std::to_string(-wait) + " steps ago; step by the recorder alone");
+      const std::int64_t count = std::min(steps, wait);
+      batch.step(count, nb::none());
+      batch.use([&](const Simulation&) { recorder_->observe(); });
+      steps -= count;
+    } while (steps > 0);
   }
 
   void close() {
@@ -100,37 +124,50 @@ class BatchRecorder {
 
  private:
   const Batch& of_batch() const { return nb::cast<const Batch&>(batch_); }
+  void require_same_robots(const Simulation& simulation) const {
+    if (simulation.size() != robots_) throw InputError("robots came or went; a recording has the same all the time");
+  }
   void require_open() const {
     if (!recorder_) throw InputError("the recording is closed");
   }
 
   nb::object batch_;
-  std::int64_t every_;
+  std::optional<std::int64_t> every_;
   std::size_t robots_ = 0;
   std::optional<Recorder> recorder_;
 };
 
 constexpr const char* recorder_description =
     "Records a batch that you step yourself, as `mercury run --record` does.\n\n"
-    "    with mercurysim.Recorder(batch, \"episode.h5\", every=20) as recorder:\n"
+    "    with mercurysim.Recorder(batch, \"episode.h5\", fps=30) as recorder:\n"
     "        for _ in range(100):\n"
-    "            batch.step(20)\n"
-    "            recorder.frame()\n"
+    "            recorder.step(20)\n"
     "    mercurysim.show(mercurysim.Recording(\"episode.h5\"))\n\n"
-    "The first frame is the batch as it is when the recording begins; frame() adds one, `every` time steps later. The "
-    "file is there once the recorder is closed, and replaces one of that name. Raises InputError for frames at other "
-    "steps, and after robots came or went.";
+    "Give `every` (steps per frame) or `fps` (frames per second, exactly; interpolated where they fall between two "
+    "steps). The first frame is the batch as it is when the recording begins. step() steps the batch and takes all "
+    "frames on the way; with `every`, a program may also step the batch itself and call frame() at each frame's step. "
+    "The file is there once the recorder is closed, and replaces one of that name. Raises InputError for frames at "
+    "other steps, and after robots came or went.";
 
 void bind_recorder(nb::module_& module) {
   nb::class_<BatchRecorder>(module, "Recorder", recorder_description)
       .def(
           "__init__",
-          [](BatchRecorder* self, nb::handle_t<Batch> batch, nb::handle path, nb::handle every) {
-            new (self) BatchRecorder(nb::borrow(batch), path_from("path", path), whole_from("every", every, 1));
+          [](BatchRecorder* self, nb::handle_t<Batch> batch, nb::handle path, nb::handle every, nb::handle fps) {
+            std::optional<std::int64_t> steps;
+            std::optional<double> rate;
+            if (!every.is_none()) steps = whole_from("every", every, 1);
+            if (!fps.is_none()) rate = number_from("fps", fps);
+            new (self) BatchRecorder(nb::borrow(batch), path_from("path", path), steps, rate);
           },
-          nb::arg("batch"), nb::arg("path"), nb::arg("every"),
-          nb::sig("def __init__(self, batch: Batch, path: str | os.PathLike[str], every: int) -> None"))
-      .def("frame", &BatchRecorder::frame, "Adds the batch as it is now.")
+          nb::arg("batch"), nb::arg("path"), nb::arg("every") = nb::none(), nb::arg("fps") = nb::none(),
+          nb::sig("def __init__(self, batch: Batch, path: str | os.PathLike[str], every: int | None = None, "
+                  "fps: float | None = None) -> None"))
+      .def(
+          "step", [](BatchRecorder& self, nb::handle n) { self.step(whole_from("n", n, 0)); }, nb::arg("n") = 1,
+          nb::sig("def step(self, n: int = 1) -> None"),
+          "Advances the batch by `n` time steps and takes the frames on the way.")
+      .def("frame", &BatchRecorder::frame, "Adds the batch as it is now; with `every` alone.")
       .def("close", &BatchRecorder::close, "Completes the file.")
       .def_prop_ro("frames", &BatchRecorder::frames, "Number of frames so far.")
       .def("__enter__", [](nb::handle_t<BatchRecorder> self) { return nb::borrow(self); })

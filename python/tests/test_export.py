@@ -122,6 +122,29 @@ def test_results_are_tried_again_as_they_were(robots, tmp_path, trials):
         mercurysim.export([results[0], other], tmp_path / "a.html")
 
 
+def test_a_batch_is_recorded_at_exact_frames_per_second(robots, tmp_path):
+    batch = mercurysim.Batch(robots, device="cpu", dt=0.004)
+    with mercurysim.Recorder(batch, tmp_path / "a.h5", fps=30) as recorder:
+        for _ in range(5):
+            recorder.step(20)
+        with pytest.raises(mercurysim.InputError, match="step the batch by step"):
+            recorder.frame()
+        batch.step(30)
+        with pytest.raises(mercurysim.InputError, match="a frame was due 21 steps ago"):
+            recorder.step(1)
+    recording = mercurysim.Recording(tmp_path / "a.h5")
+    assert np.allclose(recording.times, np.arange(13) / 30, rtol=0, atol=1e-12)
+    again = mercurysim.Batch(robots, device="cpu", dt=0.004)
+    again.step(8)
+    before = np.array(again.positions)
+    again.step(1)
+    between = before + (1 / 30 / 0.004 - 8) * (np.array(again.positions) - before)
+    assert np.allclose(recording.positions(1), between, rtol=0, atol=1e-6)
+    for arguments in {}, {"every": 2, "fps": 30}:
+        with pytest.raises(mercurysim.InputError, match="every, fps"):
+            mercurysim.Recorder(batch, tmp_path / "b.h5", **arguments)
+
+
 def test_a_batch_is_recorded_while_a_program_drives_it(robots, tmp_path):
     batch = mercurysim.Batch(robots, device="cpu")
     drive = np.asarray(batch.actuation.drive)

@@ -82,19 +82,6 @@ TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
   EXPECT_THAT(listing(), SizeIs(1));
 }
 
-// A full disk fills no log: its line comes with the first of the many checkpoints that fail.
-TEST_F(Checkpoint, WhatPreventsItIsReportedOnce) {
-  const json whole = robots_of(mercury(run_));
-  const Outcome outcome =
-      run_program("sh", Arguments{"-c", "ulimit -f 40; exec \"$0\" \"$@\"", MERCURY_PROGRAM} + run_ +
-                            Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.messages, HasSubstr("no checkpoint at "));
-  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
-  EXPECT_EQ(json::parse(outcome.output)["robots"], whole);
-  EXPECT_THAT(listing(), SizeIs(0));
-}
-
 TEST_F(Checkpoint, ItCanGoOnForLonger) {
   Arguments longer = run_;
   *(std::ranges::find(longer, "1.23")) = "1.5";
@@ -148,6 +135,15 @@ TEST_F(Checkpoint, ARecordingIsContinued) {
   kill(record);
   robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
   expect_same(path("a.h5"), path("whole.h5"));
+}
+
+TEST_F(Checkpoint, ARecordingBetweenStepsIsContinued) {
+  const Arguments rate{"--fps", "700"};  // most frames are between steps
+  robots_of(mercury(run_ + Arguments{"--record", path("whole.h5")} + rate));
+  kill(Arguments{"--record", path("a.h5")} + rate);
+  robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
+  expect_same(path("a.h5"), path("whole.h5"));
+  EXPECT_EQ(TrajectoryReader(path("a.h5")).frame_rate(), 700);
 }
 
 TEST_F(Checkpoint, ARecordingThatIsNotThereIsReported) {
@@ -241,6 +237,17 @@ TEST_F(Verify, ARecordingIsTheSameOnItsDevice) {
   EXPECT_EQ(report["identical"], true);
   EXPECT_EQ(report["frames"].size(), TrajectoryReader(path("r.h5")).frames());
   EXPECT_TRUE(report["first_difference"].is_null());
+}
+
+TEST_F(Verify, FramesBetweenStepsAreTheSame) {
+  record({"--fps", "30"});
+  TrajectoryReader recording(path("r.h5"));
+  ASSERT_EQ(recording.frames(), 37u);
+  EXPECT_DOUBLE_EQ(recording.time(36), 1.2);
+  EXPECT_EQ(recording.step(1), 33);
+  const json report = json::parse(mercury({"verify", path("r.h5"), "--json", "--quiet"}).output);
+  EXPECT_EQ(report["identical"], true);
+  EXPECT_EQ(report["frames"].size(), 37u);
 }
 
 // A mass is moved by 1 mm in one frame.

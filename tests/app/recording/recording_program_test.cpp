@@ -50,6 +50,23 @@ TEST_F(RunRecord, WithoutEveryThereAreThirtyFramesPerSecond) {
   EXPECT_EQ(TrajectoryReader(file()).every(), 7);  // 1/30 s is 6.7 steps
 }
 
+TEST_F(RunRecord, FramesPerSecondThatCannotBeAreRefused) {
+  const std::vector<std::string> run{"run", "--random", "voxel", "--seconds", "0.1", "--dt", "0.005"};
+  const auto refusal = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), run.begin(), run.end());
+    const Outcome outcome = mercury(more);
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.messages;
+  };
+  EXPECT_THAT(refusal({"--record", file(), "--fps", "300"}),
+              HasSubstr("--fps: 300 is not accepted; give more than 0 and "
+                        "at most 200 frames/s, one per step"));
+  EXPECT_THAT(refusal({"--record", file(), "--fps", "nan"}), HasSubstr("--fps"));
+  EXPECT_THAT(refusal({"--record", file(), "--fps", "30", "--every", "2"}), HasSubstr("not together with --every"));
+  EXPECT_THAT(refusal({"--fps", "30"}), HasSubstr("goes with --record"));
+  EXPECT_THAT(listing(), testing::IsEmpty());
+}
+
 TEST_F(RunRecord, InterruptedRunLeavesTheFramesSoFar) {
   const auto child =
       working_mercury({"run", "--random", "voxel:2", "--seconds", "1e6", "--record", file(), "--every", "10"});

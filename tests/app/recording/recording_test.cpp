@@ -76,6 +76,69 @@ TEST_F(Recording, FramesAreThoseOfTheSimulation) {
   }
 }
 
+// Steps of 1/90 s and 35 frames per second: frame k is at 18 k / 7 steps.
+TEST_F(Recording, FramesPerSecondAreInterpolatedBetweenSteps) {
+  Configuration configuration = on_cpu();
+  configuration.dt = 1.0 / 90;
+  const std::vector<Robot> robots{small_voxel_robot(0), pair("pair")};
+  Simulation simulation(configuration, robots);
+  record(simulation, file(), 90, 1, {.rate = 35});
+  TrajectoryReader reader(file());
+  ASSERT_EQ(reader.frames(), 36u);
+  EXPECT_EQ(reader.frame_rate(), 35);
+  EXPECT_EQ(reader.every(), 3);
+  Simulation again(configuration, robots);
+  for (std::size_t frame = 0; frame < 36; ++frame) {
+    EXPECT_DOUBLE_EQ(reader.time(frame), static_cast<double>(frame) / 35);
+    const auto step = static_cast<std::int64_t>(18 * frame / 7);
+    EXPECT_EQ(reader.step(frame), step);
+    const auto share = static_cast<float>(18 * frame % 7) / 7;
+    again.step(step - again.steps());
+    const std::vector<Vec3> before = all_positions(again), slow = all_velocities(again);
+    const auto expect_between = [&](std::span<const Vec3> recorded, const std::vector<Vec3>& a,
+                                    const std::vector<Vec3>& b) {
+      for (std::size_t i = 0; i < a.size(); ++i)
+        EXPECT_NEAR(length(recorded[i] - ((1 - share) * a[i] + share * b[i])), 0, 1e-6f) << frame;
+    };
+    if (share == 0) {
+      EXPECT_TRUE(same_bits(reader.positions(frame), before));
+      continue;
+    }
+    again.step(1);
+    expect_between(reader.positions(frame), before, all_positions(again));
+    expect_between(reader.velocities(frame), slow, all_velocities(again));
+  }
+}
+
+// A recording of straight motion plays as straight motion: what is shown at a step is where the masses were then.
+TEST_F(Recording, PlaybackOfFramesPerSecondIsAtTheTimesOfTheFrames) {
+  Robot free = pair("free");
+  free.springs.clear();
+  free.masses = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  free.springs = {{0, 1, 21, 1}, {1, 2, 21, std::sqrt(2.0f)}, {0, 2, 21, 1}};
+  free.velocity = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+  Configuration configuration = on_cpu();
+  configuration.dt = 0.01;
+  configuration.damping = 0;
+  configuration.environment = environment_named("none");
+  Simulation simulation(configuration, std::vector{free});
+  record(simulation, file(), 100, 1, {.rate = 30});
+  Simulation shown = playback(std::make_shared<TrajectoryReader>(file()));
+  for (int step = 0; step <= 100; ++step, shown.step(1))
+    EXPECT_NEAR(shown.positions(0)[0].x, 0.01 * step, 2e-6) << step;
+}
+
+TEST(FramePlaces, AreExactAfterHours) {
+  const FramePlaces ten(0, 30, 1.0 / 300), third(5, 30, 1e-3);
+  EXPECT_EQ(ten.of(10'000'000).step, 100'000'000);
+  EXPECT_FALSE(ten.of(10'000'000).is_between_steps());
+  EXPECT_EQ(third.of(3'000'000).step, 100'000'005);
+  EXPECT_FALSE(third.of(3'000'000).is_between_steps());
+  EXPECT_NEAR(third.of(3'000'001).share, 1.0 / 3, 1e-6);
+  EXPECT_EQ(third.count(99), 3);
+  EXPECT_EQ(third.count(100), 4);
+}
+
 TEST_F(Recording, HoldsTheRobotsAsTheyWere) {
   const std::vector<Robot> robots{own_materials("own"), small_voxel_robot(3), pair("pair")};
   Simulation simulation(on_cpu(), robots);
