@@ -55,7 +55,7 @@ class Filming {
   // Opens the writer first: a missing encoder or an invalid file name is then reported before the slow start of OpenGL.
   // Returns false when the user interrupted it; the video then ends there.
   bool make(const Output& output) {
-    if (task_.view.background) return make_figure(output);
+    if (task_.view.background && options_.video.still()) return make_figure(output);
     VideoOptions::Plan whole = task_.plan;
     whole.timing.frames *= static_cast<std::int64_t>(output.clips.size());
     const std::unique_ptr<FrameWriter> writer =
@@ -75,32 +75,28 @@ class Filming {
   }
 
  private:
-  // Robots and their shadows alone, from two pictures with another backdrop each.
+  // Robots and their shadows alone.
   bool make_figure(const Output& output) {
     const Clip& clip = output.clips.front();
-    std::array<render::Image, 2> pictures;
-    VideoResult result;
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      ViewSettings view = task_.view;
-      view.flat_backdrop = figure_backdrops.at(i);
-      view.text_aside = options_.video.text_aside();
-      PictureKeeper keeper;
-      const VideoResult one = film(clip, keeper, view);
-      if (one.interrupted) return false;
-      result.wall_seconds += one.wall_seconds;
-      pictures.at(i) = keeper.picture();
-    }
-    const PictureSize size{pictures[0].width, pictures[0].height};
+    ViewSettings view = task_.view;
+    view.text_aside = options_.video.text_aside();
+    PictureKeeper keeper;
+    const VideoResult result = film(clip, keeper, view);
+    if (result.interrupted) return false;
+    const render::Image& image = keeper.picture();
+    const std::array<render::Image, 2>& pictures = backdrops_;
+    const PictureSize size{image.width, image.height};
     const int margin = std::max(2, size.height / 60);
     const std::string path = options_.video.output_of(output.name), comment = task_.subject.comment(clip);
-    const render::Image image = matted(pictures, *task_.view.background);
     PixelBox box{0, 0, size.width, size.height};
     if (options_.video.tight()) box = content_of(pictures, margin);
     if (options_.video.text_aside()) {
       const render::Overlay& text = offscreen_->renderer.overlay();
       if (options_.video.tight()) box = joined(box, text, margin, size);
-      const std::string svg = figure_svg(image, text, box, options_.video.dpi(), comment);
-      write_picture_bytes(path, std::span(reinterpret_cast<const std::uint8_t*>(svg.data()), svg.size()));
+      const Figure figure{image, text, box, options_.video.dpi(), comment};
+      const bool pdf = std::filesystem::path(path).extension() == ".pdf";
+      const std::string document = pdf ? figure_pdf(figure) : figure_svg(figure);
+      write_picture_bytes(path, std::span(reinterpret_cast<const std::uint8_t*>(document.data()), document.size()));
     } else {
       write_picture(path, cropped(image, box), comment, options_.video.dpi());
     }
@@ -119,11 +115,12 @@ class Filming {
                                   device.kind == DeviceKind::cpu ? -1 : device.index));
     if (view.caption.empty()) view.caption = clip.title;
     view.camera.zoom *= clip.zoom;
-    VideoPipeline pipeline(*offscreen_, task_.subject.simulation_of(clip), view, clip.captions,
-                           task_.subject.second_of(clip, task_.view), task_.subject.titles());
+    VideoPipeline pipeline(*offscreen_, task_.subject.groups_of(clip, task_.view), view);
     if (first) report_start(pipeline, writer);
     for (const std::string& note : pipeline.simulation().notes()) say(note);
-    return pipeline.run(writer, task_.plan.pixels, task_.plan.timing, false);
+    const VideoResult result = pipeline.run(writer, task_.plan.pixels, task_.plan.timing, false);
+    if (view.background && options_.video.still()) backdrops_ = pipeline.backdrops();
+    return result;
   }
 
   void report_start(const VideoPipeline& pipeline, const FrameWriter& writer) const {
@@ -156,6 +153,7 @@ class Filming {
   const RenderTask& task_;
   const bool may_replace_;
   std::unique_ptr<OffscreenRenderer> offscreen_;
+  std::array<render::Image, 2> backdrops_;  // of the last figure
 };
 
 // Returns whether existing files may be replaced.
@@ -227,7 +225,8 @@ void add_render_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor), folders, samples (sample:eel), a run, one or two recordings (.h5)");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), a run; or up to four recordings (.h5) and runs side "
+      "by side");
   options->video.add_to(command);
   options->view.add_to(command);
   options->film.add_to(command);
@@ -244,6 +243,7 @@ void add_render_command(const Command& program, const Choose& choose) {
       "  mercury render run.h5 -o run.mp4                    plays a recording of mercury run --record\n"
       "  mercury render RUN --lineage best -o ancestry.mp4   films a run of mercury evolve\n"
       "  mercury render RUN --map -o map.png\n"
+      "  mercury render before.h5 after.h5 -o both.mp4       recordings, or runs, side by side\n"
       "  mercury render eel.json --still 2 --background transparent --tight --scale-bar --dpi 300 -o figure.png\n"
       "  mercury render my-robots --fps 60 -o frames/        a folder of PNG pictures");
   command.when_chosen(

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "app/base/progress.h"
@@ -22,16 +24,6 @@ Subject recording_of(const RenderOptions& options, const std::filesystem::path& 
   if (recording.frames() == 0) throw InputError(file.string(), "holds no frames");
   subject.configuration = recording.configuration();
   subject.seconds = options.simulation.seconds(recording.time(recording.frames() - 1) - recording.time(0));
-  return subject;
-}
-
-// Two recordings side by side, as long as the longer one.
-std::optional<Subject> two_recordings_of(const RenderOptions& options) {
-  const std::vector<std::filesystem::path> files = options.robots.files();
-  if (files.size() != 2 || !std::ranges::all_of(files, is_readable_trajectory_name)) return std::nullopt;
-  Subject subject = recording_of(options, files[0]), second = recording_of(options, files[1]);
-  subject.second_recording = std::move(second.recording);
-  subject.seconds = std::max(subject.seconds, second.seconds);
   return subject;
 }
 
@@ -89,8 +81,47 @@ Subject run_of(RenderOptions& options, const std::filesystem::path& folder, View
           .notes = std::move(film.notes)};
 }
 
+// The best robots of a run beside something else.
+Subject best_of(const RenderOptions& options, const std::filesystem::path& folder) {
+  const RunHistory run(folder);
+  RunFilm film = options.film.film(run, {.at_once = true});
+  film.clips.front().title.clear();
+  return {.configuration = options.simulation.configuration_over(run.settings().evolution.configuration),
+          .clips = std::move(film.clips),
+          .seconds = options.simulation.seconds()};
+}
+
+// Recordings and runs side by side, as long as the longest recording.
+std::optional<Subject> side_by_side(const RenderOptions& options, ViewSettings& view) {
+  constexpr std::size_t most = 4;
+  const auto is_run = [](const std::filesystem::path& path) { return is_run_folder(path); };
+  const auto can_stand = [&](const std::filesystem::path& path) {
+    return is_readable_trajectory_name(path) || is_run(path);
+  };
+  const std::vector<std::filesystem::path> files = options.robots.files();
+  if (files.size() < 2 || options.robots.has_random() || !std::ranges::all_of(files, can_stand)) return std::nullopt;
+  if (files.size() > most)
+    throw InputError(files[most].string(), fmt::format("at most {} recordings and runs stand side by side", most));
+  if (const std::string option = options.film.given(); !option.empty() && option != "--best")
+    throw InputError(option, "is of one run; beside others only its best are shown (--best N)");
+  std::vector<Subject> sides;
+  double recorded = 0;
+  for (const std::filesystem::path& file : files) {
+    Subject& side = sides.emplace_back(is_run(file) ? best_of(options, file) : recording_of(options, file));
+    if (side.recording) recorded = std::max(recorded, side.seconds);
+    side.title =
+        side.recording ? file.stem().string() : (file / ".").lexically_normal().parent_path().filename().string();
+  }
+  if (!options.view.chooses_what_is_shown()) view.shown.captions = std::ranges::any_of(files, is_run);
+  Subject subject = std::move(sides.front());
+  subject.seconds = recorded > 0 ? recorded : subject.seconds;
+  subject.others.assign(std::make_move_iterator(sides.begin() + 1), std::make_move_iterator(sides.end()));
+  return subject;
+}
+
 Subject subject_of(RenderOptions& options, ViewSettings& view) {
   options.film.validate();
+  if (std::optional<Subject> sides = side_by_side(options, view)) return *std::move(sides);
   if (const auto run = options.robots.alone(is_run_folder, "a run is filmed alone; give it without other robots"))
     return run_of(options, *run, view);
   if (const std::string option = options.film.given(); !option.empty()) {
@@ -98,7 +129,6 @@ Subject subject_of(RenderOptions& options, ViewSettings& view) {
     throw InputError(option, "films a run of mercury evolve" +
                                  (files.empty() ? "; give its folder" : ", and " + files[0].string() + " is none"));
   }
-  if (std::optional<Subject> sides = two_recordings_of(options)) return *std::move(sides);
   if (const auto file = options.robots.recording()) return recording_of(options, *file);
   return robots_of(options);
 }
@@ -122,23 +152,21 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
 
 }  // namespace
 
-Simulation Subject::simulation_of(const Clip& clip) const {
-  return recording ? playback(recording) : Simulation(configuration, clip.robots, shown_work());
+std::vector<FilmedGroup> Subject::groups_of(const Clip& clip, const ViewSettings& view) const {
+  const auto simulation = [](const Subject& subject, const Clip& of) {
+    return subject.recording ? playback(subject.recording) : Simulation(subject.configuration, of.robots, shown_work());
+  };
+  std::vector<FilmedGroup> groups;
+  groups.push_back({simulation(*this, clip), clip.captions, others.empty() ? "" : title});
+  for (const Subject& other : others)
+    groups.push_back({simulation(other, other.clips.front()), other.clips.front().captions, other.title});
+  if (view.compare)
+    groups.push_back({Simulation(view.compare->over(configuration), clip.robots, shown_work()), clip.captions});
+  return groups;
 }
 
 std::string Subject::comment(const Clip& clip) const {
   return comment_of(recording ? recording->robots().at(0).robot : *clip.robots.at(0), configuration);
-}
-
-std::optional<Simulation> Subject::second_of(const Clip& clip, const ViewSettings& view) const {
-  if (second_recording) return playback(second_recording);
-  if (!view.compare) return std::nullopt;
-  return Simulation(view.compare->over(configuration), clip.robots, shown_work());
-}
-
-std::array<std::string, 2> Subject::titles() const {
-  if (!second_recording) return {};
-  return {recording->path().stem().string(), second_recording->path().stem().string()};
 }
 
 void check_options(RenderOptions& options) {
@@ -150,18 +178,18 @@ void check_options(RenderOptions& options) {
 RenderTask render_task(RenderOptions& options) {
   RenderTask task{.view = options.view.settings()};
   task.subject = subject_of(options, task.view);
-  if (task.subject.recording && task.view.compare)
+  if ((task.subject.recording || !task.subject.others.empty()) && task.view.compare)
     throw InputError("--compare", "not together with a recording, which has one side; give its robots' files");
   task.plan = options.video.plan(task.subject.seconds);
-  if (task.view.compare || task.subject.second_recording) halves_of(task.plan.size);
+  const std::size_t sides = (task.view.compare ? 2 : 1) + task.subject.others.size();
+  if (sides > 1) columns_of(task.plan.size, static_cast<int>(sides));
   require_moment(options.video, task.subject);
-  if (task.view.background &&
-      (!options.video.still() || task.view.compare || task.view.board || task.subject.second_recording))
-    throw InputError("--background", "is of a still of robots; give --still S, without --compare and --map");
-  if (options.video.tight() && !task.view.background)
-    throw InputError("--tight", "cuts a figure off; give --background, too");
-  if (options.video.text_aside() && !task.view.background)
-    throw InputError("-o", "an .svg is a figure; give --background, too");
+  if (task.view.background && task.view.board) throw InputError("--background", "not together with --map");
+  if (task.view.background) options.video.plan_figure(*task.view.background, task.plan);
+  if (options.video.tight() && !(task.view.background && options.video.still()))
+    throw InputError("--tight", "cuts a figure off; give --background and --still, too");
+  if (options.video.text_aside() && (!task.view.background || sides > 1))
+    throw InputError("-o", "an .svg or .pdf is a figure; give --background, and one group of robots");
   if (task.subject.clips.size() > 1 && options.video.contact_sheet()) plan_sheet_of_clips(task.subject, task.plan);
   task.view.interop = options.video.interop();
   task.view.speed = options.video.single_picture() ? 1 : options.video.speed();

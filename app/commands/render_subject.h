@@ -2,9 +2,7 @@
 // What mercury render films: robots to simulate, a recording to play back, or a run of an evolution.
 #pragma once
 
-#include <array>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "app/options/video_options.h"
 #include "app/options/view_options.h"
 #include "app/recording/trajectory_playback.h"
+#include "app/video/video_pipeline.h"
 
 namespace mercury {
 
@@ -29,19 +28,17 @@ struct RenderOptions {
 
 struct Subject {
   Configuration configuration;
-  std::vector<Clip> clips;                             // one after another
-  std::shared_ptr<TrajectoryReader> recording;         // of the only clip, which has no robots then; or nothing
-  std::shared_ptr<TrajectoryReader> second_recording;  // beside it; or nothing
-  double seconds = 0;                                  // of each clip
+  std::vector<Clip> clips;                      // one after another
+  std::shared_ptr<TrajectoryReader> recording;  // of the only clip, which has no robots then; or nothing
+  double seconds = 0;                           // of each clip
   std::vector<std::string> notes;
+  std::string title;            // above it, if there are others
+  std::vector<Subject> others;  // beside it, each of one clip; empty = none
 
-  Simulation simulation_of(const Clip& clip) const;
+  // What is filmed of a clip, from left to right: it, and what is beside it.
+  std::vector<FilmedGroup> groups_of(const Clip& clip, const ViewSettings& view) const;
   // What pictures of a clip say of it: VideoSettings::comment.
   std::string comment(const Clip& clip) const;
-  // The second side of a comparison, or of two recordings.
-  std::optional<Simulation> second_of(const Clip& clip, const ViewSettings& view) const;
-  // Above the sides of two recordings: the names of their files. Empty otherwise.
-  std::array<std::string, 2> titles() const;
 };
 
 // What the options ask for, checked before expensive work begins.

@@ -79,9 +79,10 @@ struct GroupVideo::Parts {
     view.speed = options.speed;
     Simulation simulation = simulation_of(robots, configuration);
     OffscreenRenderer offscreen = make_offscreen_renderer(options.context, size, options.quality);
-    std::optional<Simulation> second;
-    if (view.compare) second = simulation_of(robots, view.compare->over(configuration));
-    VideoPipeline pipeline(offscreen, std::move(simulation), view, {}, std::move(second));
+    std::vector<FilmedGroup> groups;
+    groups.push_back({std::move(simulation)});
+    if (view.compare) groups.push_back({simulation_of(robots, view.compare->over(configuration))});
+    VideoPipeline pipeline(offscreen, std::move(groups), view);
     const VideoResult result = pipeline.run(*writer, pixel_format_of(kind), timing, true, &control);
     if (control.stop || result.interrupted) return false;
     set_state(VideoStatus::State::finishing);

@@ -70,6 +70,7 @@ class RobotOptions {
   // make.
   std::vector<RobotFromFile> load_files() const;
   std::vector<std::filesystem::path> files() const { return files_.paths(); }
+  bool has_random() const { return !random_.empty(); }
   std::vector<RandomRobots> random() const;  // with --lively, after their trials
 
   // What the options say that bodies are to be; robots of files may have real ones without a word.

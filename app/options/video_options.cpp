@@ -33,7 +33,8 @@ PictureSize size_from(const std::string& option, const std::string& text) {
 void VideoOptions::add_to(const Command& command) {
   const auto add = [](const Option& option) { option.in_group("Picture"); };
   add_text(command, "-o,--output", output_,
-           "Video (.mp4, .webm, .gif), picture (.png, .svg), or a folder for one PNG per frame", "FILE|FOLDER")
+           "Video (.mp4, .webm, .gif, .apng), picture (.png, .svg, .pdf), or a folder for one PNG per frame",
+           "FILE|FOLDER")
       .required();
   add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from)
           .on_first_screen());
@@ -76,8 +77,7 @@ void VideoOptions::validate() const {
 }
 
 void VideoOptions::set_usual_still(double seconds) {
-  const std::filesystem::path extension = std::filesystem::path(output_).extension();
-  if (!single_picture() && (extension == ".png" || extension == ".svg")) still_ = seconds;
+  if (!single_picture() && (text_aside() || std::filesystem::path(output_).extension() == ".png")) still_ = seconds;
 }
 
 PictureSize VideoOptions::asked_size() const {
@@ -93,6 +93,17 @@ VideoOptions::Plan VideoOptions::plan(double seconds) const {
   return {.size = encoded_size(kind, asked_size()),
           .pixels = pixel_format_of(kind),
           .timing = video_timing(seconds, speed_, rate)};
+}
+
+bool VideoOptions::text_aside() const {
+  const std::filesystem::path extension = std::filesystem::path(output_).extension();
+  return extension == ".svg" || extension == ".pdf";
+}
+
+void VideoOptions::plan_figure(render::Color background, Plan& plan) const {
+  if (contact_sheet_) throw InputError("--background", "not together with --contact-sheet");
+  plan.pixels = render::PixelFormat::rgb;
+  if (!single_picture()) plan.written_pixels = figure_pixels(video_kind_of(output_), background);
 }
 
 VideoOptions::Plan VideoOptions::plan_pictures(double seconds) const {
@@ -145,6 +156,7 @@ std::unique_ptr<FrameWriter> VideoOptions::open(const Plan& plan, const std::str
                                     .crf = crf_,
                                     .comment = comment,
                                     .ffmpeg = ffmpeg_,
+                                    .pixels = plan.written_pixels,
                                     .force = may_replace});
 }
 

@@ -25,11 +25,14 @@ class VideoOptions {
 
   // The frames to make of `seconds` of simulated time.
   struct Plan {
-    PictureSize size;  // of a frame
-    render::PixelFormat pixels = render::PixelFormat::rgb;
+    PictureSize size;                                       // of a frame
+    render::PixelFormat pixels = render::PixelFormat::rgb;  // as drawn
     VideoTiming timing;
+    std::optional<render::PixelFormat> written_pixels = {};  // of a figure, see VideoSettings::pixels
   };
   Plan plan(double seconds) const;
+  // Changes a plan to that of a figure.
+  void plan_figure(render::Color background, Plan& plan) const;
   // The writer of the frames. `name`: the robot that is filmed alone; empty = all robots. `may_replace`: see
   // VideoSettings::force.
   std::unique_ptr<FrameWriter> open(const Plan& plan, const std::string& name, bool may_replace,
@@ -47,8 +50,8 @@ class VideoOptions {
   std::optional<Grid> contact_sheet() const { return contact_sheet_; }
   bool tight() const { return tight_; }
   double dpi() const { return dpi_.value_or(0); }
-  // Whether the picture is an SVG, whose text is text.
-  bool text_aside() const { return std::filesystem::path(output_).extension() == ".svg"; }
+  // Whether the picture is a document (.svg, .pdf), whose text is text.
+  bool text_aside() const;
   bool single_picture() const { return still_ || contact_sheet_; }
   PictureSize asked_size() const;
   render::ContextKind context_kind() const { return render::context_kind_named(gl_); }

@@ -35,6 +35,7 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
       arguments = {"-c:v",      "libvpx-vp9", "-b:v",      "0", "-crf",    fmt::to_string(settings.crf.value_or(30)),
                    "-deadline", "good",       "-cpu-used", "5", "-row-mt", "1"};
       if (settings.crf == 0) arguments.insert(arguments.end(), {"-lossless", "1"});
+      if (settings.pixels == render::PixelFormat::rgba) arguments.insert(arguments.end(), {"-auto-alt-ref", "0"});
       break;
     case VideoKind::gif: {
       const double bytes = 4.0 * settings.size.width * settings.size.height;
@@ -47,9 +48,16 @@ std::vector<std::string> codec_arguments(VideoKind kind, const VideoSettings& se
               "-f",
               "gif"};
     }
+    case VideoKind::apng:
+      return {"-plays", "0", "-f", "apng"};
     case VideoKind::png_folder:
       break;
   }
+  // Frames of figures are not converted by the GPU, since their opacities are not known there.
+  if (settings.pixels)
+    arguments.insert(arguments.end(),
+                     {"-vf", fmt::format("scale=out_color_matrix=bt709:out_range=tv,format={}",
+                                         settings.pixels == render::PixelFormat::rgba ? "yuva420p" : "yuv420p")});
   arguments.insert(arguments.end(), color.begin(), color.end());
   arguments.insert(arguments.end(), {"-f", kind == VideoKind::mp4 ? "mp4" : "webm"});
   return arguments;
@@ -64,17 +72,11 @@ void create(const std::string& output, const UnfinishedFile& file) {
   ::close(descriptor);
 }
 
-// ffmpeg ends with status 0 where only the end of the file did not fit on the disk: a short video lacks all frames
-// then.
-bool lost_the_end(const std::string& messages) {
-  return messages.find("Error writing trailer") != std::string::npos ||
-         messages.find("Error closing file") != std::string::npos;
-}
-
 }  // namespace
 
 std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& settings, const std::string& file) {
-  const bool yuv = pixel_format_of(kind) == render::PixelFormat::yuv420;
+  const render::PixelFormat pixels = settings.pixels.value_or(pixel_format_of(kind));
+  const bool yuv = pixels == render::PixelFormat::yuv420;
   std::vector<std::string> arguments{"-hide_banner",
                                      "-loglevel",
                                      "error",
@@ -83,7 +85,9 @@ std::vector<std::string> ffmpeg_arguments(VideoKind kind, const VideoSettings& s
                                      "-f",
                                      "rawvideo",
                                      "-pixel_format",
-                                     yuv ? "yuv420p" : "rgb24",
+                                     yuv                                   ? "yuv420p"
+                                     : pixels == render::PixelFormat::rgba ? "rgba"
+                                                                           : "rgb24",
                                      "-video_size",
                                      fmt::format("{}x{}", settings.size.width, settings.size.height),
                                      "-framerate",
@@ -143,9 +147,7 @@ void FfmpegWriter::write(const render::Image& frame) {
 void FfmpegWriter::finish() {
   const int status = encoder_->finish();
   std::error_code error;
-  if (status != 0 || lost_the_end(encoder_->messages()) || std::filesystem::file_size(file_.path(), error) == 0 ||
-      error)
-    fail(status);
+  if (status != 0 || std::filesystem::file_size(file_.path(), error) == 0 || error) fail(status);
   try {
     file_.keep();
   } catch (const std::filesystem::filesystem_error& failure) {
@@ -161,15 +163,16 @@ void FfmpegWriter::fail(int status) {
     throw VideoError(output_ + ": " + reason_of(ENOSPC) + "; nothing was kept");
   if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) || messages.find("File too large") != std::string::npos)
     throw VideoError(output_ + ": " + reason_of(EFBIG) + "; nothing was kept");
-  const std::string end = status != 0              ? describe_exit(status)
-                          : lost_the_end(messages) ? "could not write to the end"
-                                                   : "wrote nothing";
+  const std::string end = status == 0 ? "wrote nothing" : describe_exit(status);
   const std::string line = failure_line(messages);
   throw VideoError(output_ + ": the encoder " + program_ + " " + end + (line.empty() ? "" : ": " + line));
 }
 
 std::string FfmpegWriter::description() const {
-  const char* codec = kind_ == VideoKind::mp4 ? "H.264" : kind_ == VideoKind::webm ? "VP9" : "GIF";
+  const char* codec = kind_ == VideoKind::mp4    ? "H.264"
+                      : kind_ == VideoKind::webm ? "VP9"
+                      : kind_ == VideoKind::apng ? "an animated PNG"
+                                                 : "GIF";
   return fmt::format("{} by {}", codec, program_);
 }
 

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/video/figure.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-
-#include "render/png.h"
-#include "render/text/scale.h"
 
 namespace mercury {
 namespace {
@@ -27,6 +21,8 @@ const std::array<float, 256>& light_of_code() {
 struct Pixel {
   std::array<float, 3> own{}, left{};  // light of bodies; share of the backdrop that is left
 };
+
+constexpr std::array everything{1.0f, 1.0f, 1.0f};
 
 // Drawing rounds and dithers by about one code, so that shares are off by a hundredth.
 constexpr float noise = 0.02f;
@@ -49,31 +45,6 @@ Pixel pixel_of(const std::array<render::Image, 2>& pictures, std::size_t at) {
 
 std::uint8_t code_of(float light) { return render::color_of_linear({light, 0, 0}).r; }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text)
-    result += letter == '&'   ? std::string("&amp;")
-              : letter == '<' ? std::string("&lt;")
-              : letter == '>' ? std::string("&gt;")
-              : letter == '"' ? std::string("&quot;")
-                              : std::string(1, letter);
-  return result;
-}
-
-std::string hex(render::Color color) { return fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b); }
-
-std::string base64(std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? letters[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 }  // namespace
 
 render::Image matted(const std::array<render::Image, 2>& pictures, render::Color background) {
@@ -84,8 +55,14 @@ render::Image matted(const std::array<render::Image, 2>& pictures, render::Color
                       .bytes = {}};
   image.bytes.reserve(render::image_size(image.format, image.width, image.height));
   const std::array<float, 3> light = render::linear_of(background);
+  std::vector<std::uint8_t> nothing(4, 0);
+  if (!transparent) nothing = {background.r, background.g, background.b};
   for (std::size_t at = 0; at + 2 < pictures[0].bytes.size(); at += 3) {
     const Pixel pixel = pixel_of(pictures, at);
+    if (pixel.left == everything) {
+      image.bytes.insert(image.bytes.end(), nothing.begin(), nothing.end());
+      continue;
+    }
     if (!transparent) {
       for (std::size_t channel = 0; channel < 3; ++channel)
         image.bytes.push_back(code_of(pixel.own[channel] + pixel.left[channel] * light[channel]));
@@ -112,7 +89,7 @@ PixelBox content_of(const std::array<render::Image, 2>& pictures, int margin) {
     for (int x = 0; x < width; ++x) {
       const Pixel pixel = pixel_of(
           pictures, 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)));
-      if (pixel.left == std::array{1.0f, 1.0f, 1.0f}) continue;
+      if (pixel.left == everything) continue;
       box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x + 1), std::max(box.bottom, y + 1)};
     }
   if (box.left >= box.right) return {0, 0, width, height};
@@ -140,46 +117,6 @@ render::Image cropped(const render::Image& image, PixelBox box) {
     part.bytes.insert(part.bytes.end(), first, first + size * part.width);
   }
   return part;
-}
-
-std::string figure_svg(const render::Image& image, const render::Overlay& text, PixelBox box, double dpi,
-                       std::string_view comment) {
-  const int width = box.right - box.left, height = box.bottom - box.top;
-  const double inches = 1 / (dpi > 0 ? dpi : 96);
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.6g}in\" height=\"{:.6g}in\" viewBox=\"{} {} {} {}\">\n"
-      "<desc>{}</desc>\n"
-      "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,",
-      width * inches, height * inches, box.left, box.top, width, height, escaped(comment), box.left, box.top, width,
-      height);
-  svg += base64(render::png_bytes(cropped(image, box))) + "\"/>\n";
-  int gradients = 0;
-  for (const render::OverlayQuad& quad : text.quads()) {
-    const render::Rectangle& area = quad.rectangle;
-    const std::string place = fmt::format("x=\"{:.6g}\" y=\"{:.6g}\" width=\"{:.6g}\" height=\"{:.6g}\"", area.x,
-                                          area.y, area.width, area.height);
-    if (quad.kind == render::OverlayQuad::box) {
-      svg += fmt::format("<rect {} rx=\"{:.4g}\" fill=\"{}\" fill-opacity=\"{:.4g}\"/>\n", place, quad.source.x,
-                         hex(render::color_of_linear({quad.color[0], quad.color[1], quad.color[2]})), quad.color[3]);
-    } else if (quad.kind == render::OverlayQuad::scale) {
-      constexpr int stops = 32;
-      svg += fmt::format("<linearGradient id=\"scale-{}\" x1=\"0\" y1=\"1\" x2=\"0\" y2=\"0\">", ++gradients);
-      for (int i = 0; i <= stops; ++i) {
-        const float at = static_cast<float>(i) / stops;
-        svg += fmt::format("<stop offset=\"{:.4g}\" stop-color=\"{}\"/>", at,
-                           hex(render::color_at(static_cast<render::Colormap>(quad.map), at)));
-      }
-      svg += fmt::format("</linearGradient>\n<rect {} fill=\"url(#scale-{})\"/>\n", place, gradients);
-    }
-  }
-  svg += fmt::format("<g font-family=\"DejaVu Sans, Arial, sans-serif\" fill=\"{}\">\n", hex(text.style().text));
-  for (const render::OverlayText& line : text.texts()) {
-    const char* anchor = line.align > 0.75f ? "end" : line.align > 0.25f ? "middle" : "start";
-    svg += fmt::format(
-        "<text x=\"{:.6g}\" y=\"{:.6g}\" font-size=\"{:.4g}\" text-anchor=\"{}\" fill-opacity=\"{:.3g}\">{}</text>\n",
-        line.x, line.y + line.ascent, line.size, anchor, line.opacity, escaped(line.text));
-  }
-  return svg + "</g>\n</svg>\n";
 }
 
 }  // namespace mercury

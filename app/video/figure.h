@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stills for papers: robots, their shadows and text alone, over a color or over nothing; and text as text (SVG).
+// Stills for papers: robots, their shadows and text alone, over a color or over nothing; and text as text (SVG, PDF).
 #pragma once
 
 #include <array>
@@ -36,10 +36,17 @@ PixelBox content_of(const std::array<render::Image, 2>& pictures, int margin);
 PixelBox joined(PixelBox box, const render::Overlay& text, int margin, PictureSize picture);
 render::Image cropped(const render::Image& image, PixelBox box);
 
-// The part of the picture as an SVG document with what is written on it as text, boxes and scales. `dpi`: of the
-// picture [pixels per inch]; 0 = 96, as browsers have it.
-std::string figure_svg(const render::Image& image, const render::Overlay& text, PixelBox box, double dpi,
-                       std::string_view comment);
+// The part of a picture as a document, with what is written on it as text, boxes and scales that a drawing program can
+// change: SVG, or PDF of one page. `dpi`: of the picture [pixels per inch]; 0 = 96, as browsers have it.
+struct Figure {
+  const render::Image& image;
+  const render::Overlay& text;
+  PixelBox box;
+  double dpi = 0;
+  std::string_view comment;
+};
+std::string figure_svg(const Figure& figure);
+std::string figure_pdf(const Figure& figure);
 
 // Keeps the last frame.
 class PictureKeeper final : public FrameWriter {

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <deque>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/video/figure.h"
 #include "app/video/frame_encoder.h"
 #include "app/video/group_drawing.h"
 #include "app/video/picture_memory.h"
@@ -67,11 +69,14 @@ void leave_to_the_driver(render::Readback readback) {
 VideoSettings video_settings(const std::string& output, const FilmOptions& options, const Simulation& simulation) {
   const VideoKind kind = video_kind_of(output);
   require_drawable(options.size);
+  std::optional<render::PixelFormat> pixels;
+  if (options.view.background) pixels = figure_pixels(kind, *options.view.background);
   return {.size = encoded_size(kind, options.size),
           .frames_per_second = options.frames_per_second == 0 ? usual_frame_rate(kind) : options.frames_per_second,
           .crf = options.crf,
           .comment = simulation.size() == 0 ? "" : comment_of(simulation.robot(0), simulation.configuration()),
-          .ffmpeg = options.ffmpeg};
+          .ffmpeg = options.ffmpeg,
+          .pixels = pixels};
 }
 
 }  // namespace
@@ -79,19 +84,24 @@ VideoSettings video_settings(const std::string& output, const FilmOptions& optio
 render::Image picture_of(DrawingThread& thread, const Simulation& simulation, const PictureOptions& options) {
   require_drawable(options.size);
   thread.require_no_fork();
-  const auto drawing = std::make_shared<GroupDrawing>(simulation, options.view, aspect_of(options.size));
-  const auto bridge = make_host_bridge();
-  FrameSnapshot snapshot = drawing->take(*bridge);
-  render::Image picture;
-  std::future<void> drawn = thread.post([&](DrawingThread::Canvas& canvas) {
-    prepare(canvas, options.size, options.quality);
-    show_bodies(canvas, drawing);
-    drawing->draw(snapshot, *bridge, canvas.offscreen.renderer, 0);
-    picture = render::read(canvas.offscreen.renderer);
-    canvas.owner = nullptr;  // the drawing refers to the caller's simulation
-  });
-  wait_for(drawn);
-  return picture;
+  std::array<render::Image, 2> pictures;
+  const std::size_t count = options.view.background ? 2 : 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    ViewSettings view = options.view;
+    if (view.background) view.flat_backdrop = figure_backdrops.at(i);
+    const auto drawing = std::make_shared<GroupDrawing>(simulation, view, aspect_of(options.size));
+    const auto bridge = make_host_bridge();
+    FrameSnapshot snapshot = drawing->take(*bridge);
+    std::future<void> drawn = thread.post([&](DrawingThread::Canvas& canvas) {
+      prepare(canvas, options.size, options.quality);
+      show_bodies(canvas, drawing);
+      drawing->draw(snapshot, *bridge, canvas.offscreen.renderer, 0);
+      pictures.at(i) = render::read(canvas.offscreen.renderer);
+      canvas.owner = nullptr;  // the drawing refers to the caller's simulation
+    });
+    wait_for(drawn);
+  }
+  return options.view.background ? matted(pictures, *options.view.background) : std::move(pictures[0]);
 }
 
 namespace {
@@ -203,6 +213,8 @@ struct Film::Parts {
 Film::Film(DrawingThread& thread, const Simulation& simulation, const std::string& output, const FilmOptions& options)
     : parts_(std::make_unique<Parts>(thread, simulation, output, options)) {
   Parts& parts = *parts_;
+  if (options.view.background)
+    throw ParameterError("background", "is of pictures, and of films of robots and recordings; leave it out");
   parts.follow_simulation();
   require_canvas(thread, parts.settings.size, options.quality);
 }
@@ -252,8 +264,11 @@ VideoResult film_of(DrawingThread& thread, Simulation simulation, const std::str
   std::future<void> made = thread.post([&](DrawingThread::Canvas& canvas) {
     prepare(canvas, settings.size, options.quality);
     canvas.owner = nullptr;
-    VideoPipeline pipeline(canvas.offscreen, std::move(simulation), view);
-    result = pipeline.run(*writer, pixel_format_of(video_kind_of(output)), timing, true, &control);
+    std::vector<FilmedGroup> groups;
+    groups.push_back({std::move(simulation)});
+    VideoPipeline pipeline(canvas.offscreen, std::move(groups), view);
+    result = pipeline.run(*writer, settings.pixels ? render::PixelFormat::rgb : pixel_format_of(video_kind_of(output)),
+                          timing, true, &control);
   });
   while (go_on && made.wait_for(between_questions) != std::future_status::ready)
     if (!control.stop && !go_on()) {

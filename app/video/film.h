@@ -30,9 +30,9 @@ struct PictureOptions {
   render::Quality quality = render::Quality::automatic;
 };
 
-// The simulation's current state as a picture of 3 bytes per pixel, upper row first. The same state and options give
-// the same bytes. Throws InputError for options that cannot be used, ParameterError("size", ...) for a size that cannot
-// be drawn, DeviceError if there is no OpenGL.
+// The simulation's current state as a picture of 3 bytes per pixel, or 4 over a transparent background, upper row
+// first. The same state and options give the same bytes. Throws InputError for options that cannot be used,
+// ParameterError("size", ...) for a size that cannot be drawn, DeviceError if there is no OpenGL.
 render::Image picture_of(DrawingThread& thread, const Simulation& simulation, const PictureOptions& options = {});
 
 struct FilmOptions {

@@ -4,8 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "app/video/side_by_side.h"
-
 namespace mercury {
 namespace {
 
@@ -32,9 +30,9 @@ FrameEncoder::~FrameEncoder() {
   if (thread_.joinable()) thread_.join();
 }
 
-bool FrameEncoder::take(render::Readback& readback) { return take(std::span(&readback, 1)); }
+bool FrameEncoder::take(render::Readback& readback) { return take(std::span(&readback, 1), {}); }
 
-bool FrameEncoder::take(std::span<render::Readback> readbacks) {
+bool FrameEncoder::take(std::span<render::Readback> readbacks, const Combine& combine) {
   std::optional<render::Image> frame = spare_.pop();
   if (!frame) return false;
   if (readbacks.size() == 1) {
@@ -42,7 +40,7 @@ bool FrameEncoder::take(std::span<render::Readback> readbacks) {
   } else {
     parts_.resize(readbacks.size());
     for (std::size_t i = 0; i < readbacks.size(); ++i) readbacks[i].finish(parts_[i]);
-    join(parts_, *frame);
+    combine(parts_, *frame);
   }
   return drawn_.push(std::move(*frame));
 }

@@ -19,6 +19,9 @@ namespace mercury {
 
 class FrameEncoder {
  public:
+  // Makes one picture of several.
+  using Combine = std::function<void(std::span<const render::Image> parts, render::Image& into)>;
+
   // `on_frame` is called on the encoding thread with the number of frames written so far.
   explicit FrameEncoder(FrameWriter& writer, std::function<void(std::int64_t)> on_frame = {});
   ~FrameEncoder();  // frames that are not written yet are dropped
@@ -28,8 +31,8 @@ class FrameEncoder {
   // Passes the oldest frame that is being read back to the encoder. Waits while the encoder is busy. False when it
   // has failed or was abandoned.
   bool take(render::Readback& readback);
-  // The same for the parts of a frame, from left to right.
-  bool take(std::span<render::Readback> readbacks);
+  // The same for the parts of a frame.
+  bool take(std::span<render::Readback> readbacks, const Combine& combine);
   // Writes all frames that were taken, and ends. Throws what the writer threw. The caller finishes the writer.
   void finish();
   // Drops the frames that are not written yet; take() returns false from now on.

@@ -32,6 +32,8 @@ const char* name_of(VideoKind kind) {
       return ".webm";
     case VideoKind::gif:
       return ".gif";
+    case VideoKind::apng:
+      return ".apng";
     case VideoKind::png_folder:
       break;
   }
@@ -71,7 +73,8 @@ void make_parent_folder(const fs::path& output) {
 
 VideoKind video_kind_of(const std::string& output) {
   const fs::path path(output);
-  if (output.empty()) throw ParameterError("output", "give a file (.mp4, .webm or .gif) or a folder for PNG pictures");
+  if (output.empty())
+    throw ParameterError("output", "give a file (.mp4, .webm, .gif or .apng) or a folder for PNG pictures");
   if (is_standard_output(output))
     throw ParameterError("output", "videos and pictures are not written to standard output; give a file or a folder");
   if (fs::is_directory(path) || path.filename().empty()) return VideoKind::png_folder;
@@ -79,13 +82,14 @@ VideoKind video_kind_of(const std::string& output) {
   if (extension == ".mp4") return VideoKind::mp4;
   if (extension == ".webm") return VideoKind::webm;
   if (extension == ".gif") return VideoKind::gif;
+  if (extension == ".apng") return VideoKind::apng;
   if (extension.empty()) return VideoKind::png_folder;
   if (extension == ".png")
     throw ParameterError("output",
                          output + " is one picture; add --still SECONDS or --contact-sheet 5x2, or give a folder");
-  throw ParameterError("output",
-                       output + ": \"" + extension +
-                           "\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures");
+  throw ParameterError(
+      "output", output + ": \"" + extension +
+                    "\" is not a format written here; give .mp4, .webm, .gif, .apng, or a folder for PNG pictures");
 }
 
 std::string comment_of(const Robot& robot, const Configuration& configuration) {
@@ -102,6 +106,13 @@ PictureSize encoded_size(VideoKind kind, PictureSize size) {
 
 render::PixelFormat pixel_format_of(VideoKind kind) {
   return kind == VideoKind::mp4 || kind == VideoKind::webm ? render::PixelFormat::yuv420 : render::PixelFormat::rgb;
+}
+
+render::PixelFormat figure_pixels(VideoKind kind, render::Color background) {
+  if (background.a != 0) return render::PixelFormat::rgb;
+  if (kind == VideoKind::mp4)
+    throw ParameterError("background", ".mp4 has no transparency; give .webm, .gif, .apng or a folder, or a color");
+  return render::PixelFormat::rgba;
 }
 
 std::string encoder_program(const std::string& ffmpeg_option) {

@@ -12,6 +12,7 @@
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
 #include "render/readback.h"
+#include "render/style.h"
 
 namespace mercury {
 
@@ -27,20 +28,25 @@ struct VideoSettings {
   std::optional<int> crf;            // constant rate factor of H.264 and VP9: lower is better; none = the usual one
   std::string comment;  // a line of metadata about what is shown; PNG pictures have it as the text "Comment"
   std::string ffmpeg;   // the encoder program; empty = MERCURY_FFMPEG, else "ffmpeg"
-  bool force = false;   // a folder for PNG pictures may hold files, see PngFolder
+  std::optional<render::PixelFormat> pixels;  // of the frames, rgb or rgba; none = pixel_format_of() of the kind
+  bool force = false;                         // a folder for PNG pictures may hold files, see PngFolder
 };
 
 // VideoSettings::comment of pictures that show such a robot: version, physics, environment, solver and time step.
 std::string comment_of(const Robot& robot, const Configuration& configuration);
 
-enum class VideoKind { mp4, webm, gif, png_folder };
+enum class VideoKind { mp4, webm, gif, apng, png_folder };
 
-// By the name: .mp4, .webm, .gif, or a folder (no extension, a slash at the end, or an existing folder). Throws
+// By the name: .mp4, .webm, .gif, .apng, or a folder (no extension, a slash at the end, or an existing folder). Throws
 // InputError that lists these.
 VideoKind video_kind_of(const std::string& output);
 
 // The format of the frames that FrameWriter::write takes: yuv420 if the encoder wants that, else rgb.
 render::PixelFormat pixel_format_of(VideoKind kind);
+// The format of the frames of a figure over a background (ViewSettings::background). Throws
+// ParameterError("background",
+// ...) for a transparent one that this kind of video cannot have. Opacities of a GIF are 0 or 1.
+render::PixelFormat figure_pixels(VideoKind kind, render::Color background);
 
 // Frames per second, unless the user asks for another number.
 double usual_frame_rate(VideoKind kind);
@@ -59,7 +65,7 @@ class VideoError : public std::runtime_error {
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
-  // One frame of the settings' size, in the format of pixel_format_of. Blocks while the encoder is busy.
+  // One frame of the settings' size, in their format. Blocks while the encoder is busy.
   // Throws VideoError.
   virtual void write(const render::Image& frame) = 0;
   // Completes the video and renames it to its final name. Throws VideoError.

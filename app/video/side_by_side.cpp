@@ -26,12 +26,14 @@ std::vector<PixelPlane> planes_of(const render::Image& image) {
 
 }  // namespace
 
-std::vector<PictureSize> halves_of(PictureSize whole) {
-  const int left = whole.width / 4 * 2;
-  if (left == 0)
-    throw ParameterError("size", fmt::format("{}x{} is not accepted; two sides need at least 4 pixels across",
-                                             whole.width, whole.height));
-  return {{left, whole.height}, {whole.width - left, whole.height}};
+std::vector<PictureSize> columns_of(PictureSize whole, int columns) {
+  const int width = whole.width / (2 * columns) * 2;
+  if (width == 0)
+    throw ParameterError("size", fmt::format("{}x{} is not accepted; {} sides need at least {} pixels across",
+                                             whole.width, whole.height, columns, 2 * columns));
+  std::vector<PictureSize> sizes(static_cast<std::size_t>(columns), PictureSize{width, whole.height});
+  sizes.back().width = whole.width - (columns - 1) * width;
+  return sizes;
 }
 
 void join(std::span<const render::Image> parts, render::Image& into) {

@@ -10,9 +10,9 @@
 
 namespace mercury {
 
-// The sizes of two halves of a frame, from left to right. Both have even widths, as yuv420 needs, if the frame has.
+// The sizes of the columns of a frame, from left to right. All have even widths, as yuv420 needs, if the frame has.
 // Throws ParameterError("size", ...) for a frame that is too narrow.
-std::vector<PictureSize> halves_of(PictureSize whole);
+std::vector<PictureSize> columns_of(PictureSize whole, int columns = 2);
 
 // Puts frames of one height and format beside each other. `into` keeps its memory if that is large enough.
 void join(std::span<const render::Image> parts, render::Image& into);

@@ -26,17 +26,21 @@ struct OffscreenRenderer {
 OffscreenRenderer make_offscreen_renderer(render::ContextKind kind, PictureSize size, render::Quality quality,
                                           int cuda_device = -1);
 
-// Simulates, draws and encodes a group of robots: owns the simulation and what is drawn of it, and refers to the
-// renderer.
+// A group of robots in a video.
+struct FilmedGroup {
+  Simulation simulation;
+  std::vector<std::string> names = {};  // one per robot, shown instead of its own; empty = its own
+  std::string title = {};               // above it, if there are several
+};
+
+// Simulates, draws and encodes groups of robots, from left to right: owns the simulations and what is drawn of them,
+// and refers to the renderer.
 class VideoPipeline {
  public:
-  // `names`: one per robot, shown instead of its own; empty = its own. `second`: the same robots under other settings,
-  // as settings.compare says, or others; the frame then has two sides, with `titles` above them. Throws InputError for
-  // a setting that does not suit the robots or their environment, ParameterError("size", ...) for frames too narrow for
-  // two sides.
-  VideoPipeline(OffscreenRenderer& offscreen, Simulation simulation, const ViewSettings& settings,
-                std::span<const std::string> names = {}, std::optional<Simulation> second = {},
-                const std::array<std::string, 2>& titles = {});
+  // At least one group. Two without titles are the same robots under different settings, which is written above them.
+  // With a background in the settings, frames are figures (matted()). Throws InputError for a setting that does not
+  // suit the robots or their environment, ParameterError("size", ...) for frames too narrow for the groups.
+  VideoPipeline(OffscreenRenderer& offscreen, std::vector<FilmedGroup> groups, const ViewSettings& settings);
   ~VideoPipeline();
   VideoPipeline(const VideoPipeline&) = delete;
   VideoPipeline& operator=(const VideoPipeline&) = delete;
@@ -46,13 +50,20 @@ class VideoPipeline {
   bool positions_on_device() const;
   // Why they pass through the host although a GPU simulates; empty if there is nothing to say.
   const std::string& bridge_note() const;
-  // See run_video_stages().
+  // The last frame over each of figure_backdrops, if there is a background.
+  const std::array<render::Image, 2>& backdrops() const { return backdrops_; }
+  // See run_video_stages(). `pixels`: of what is drawn; rgb for figures.
   VideoResult run(FrameWriter& writer, render::PixelFormat pixels, const VideoTiming& timing, bool quiet,
                   VideoControl* control = nullptr);
 
  private:
   struct Side;
-  std::vector<std::unique_ptr<Side>> sides_;
+  void combine(std::span<const render::Image> parts, render::Image& into);
+
+  std::size_t groups_;
+  std::vector<std::unique_ptr<Side>> sides_;  // one per group, and for figures another one over the second backdrop
+  std::optional<render::Color> background_;
+  std::array<render::Image, 2> backdrops_;
 };
 
 }  // namespace mercury

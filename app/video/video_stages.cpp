@@ -88,17 +88,20 @@ class VideoStages {
       readbacks.emplace_back(parts_.pixels, side.renderer.width(), side.renderer.height());
     if (progress_) progress_->show();  // the first frame takes longest, and none is written before
     while (auto moment = snapshots_.pop()) {
-      draw(*moment);
-      if (readbacks.front().full() && !encoder_.take(readbacks)) return;
-      for (std::size_t i = 0; i < readbacks.size(); ++i) readbacks[i].start(parts_.sides[i].renderer);
+      const render::Camera camera = show(*moment);
+      if (readbacks.front().full() && !encoder_.take(readbacks, parts_.combine)) return;
+      for (std::size_t i = 0; i < readbacks.size(); ++i) {
+        const VideoSide& side = parts_.sides[i];
+        side.renderer.draw(side.drawing.scene(), camera);
+        readbacks[i].start(side.renderer);
+      }
     }
     while (readbacks.front().pending() > 0)
-      if (!encoder_.take(readbacks)) return;
+      if (!encoder_.take(readbacks, parts_.combine)) return;
   }
 
-  void draw(Moment& moment) {
+  render::Camera show(Moment& moment) {
     const VideoSide& first = parts_.sides.front();
-    if (parts_.sides.size() == 1) return first.drawing.draw(moment.front(), first.bridge, first.renderer, timing_.pace);
     std::vector<render::Bounds> boxes;
     for (std::size_t i = 0; i < moment.size(); ++i) {
       const VideoSide& side = parts_.sides[i];
@@ -107,8 +110,7 @@ class VideoStages {
       const auto of_side = side.drawing.camera_boxes();
       boxes.insert(boxes.end(), of_side.begin(), of_side.end());
     }
-    const render::Camera camera = first.drawing.camera(boxes, timing_.pace);
-    for (const VideoSide& side : parts_.sides) side.renderer.draw(side.drawing.scene(), camera);
+    return first.drawing.camera(boxes, timing_.pace);
   }
 
   const VideoParts& parts_;

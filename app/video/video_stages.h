@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "app/video/frame_encoder.h"
 #include "app/video/frame_writer.h"
 #include "app/video/group_drawing.h"
 #include "app/video/position_bridge.h"
@@ -65,10 +66,12 @@ struct VideoSide {
 
 // What the stages work with; the caller owns all of it.
 struct VideoParts {
-  // From left to right, of one height. They show the same times with the camera and the colors' scale of the first.
+  // They show the same times with the camera and the colors' scale of the first. Several may share a simulation, and
+  // those a renderer.
   std::vector<VideoSide> sides;
   FrameWriter& writer;
-  render::PixelFormat pixels;
+  render::PixelFormat pixels;     // of the sides
+  FrameEncoder::Combine combine;  // makes a frame of several sides
 };
 
 // Simulates, draws and writes all frames; the caller finishes the writer. Draws on the calling thread, where the

@@ -194,7 +194,8 @@ render::Image picture(nb::handle what, nb::handle environment, const PictureOpti
 
 nb::object array_of(render::Image image) {
   const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
-  return owned_array(std::move(image.bytes), {height, width, 3});
+  const std::size_t channels = image.format == render::PixelFormat::rgba ? 4 : 3;
+  return owned_array(std::move(image.bytes), {height, width, channels});
 }
 
 // A PNG for notebooks; None where there is no OpenGL, so that they show the text instead.

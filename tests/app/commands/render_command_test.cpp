@@ -9,6 +9,7 @@
 #include <set>
 
 #include "render/png.h"
+#include "tests/app/commands/small_run.h"
 #include "tests/app/program.h"
 #include "tests/nap.h"
 
@@ -114,11 +115,49 @@ TEST_F(RenderCommand, FiguresShowRobotsAndTheirShadowsAlone) {
   EXPECT_TRUE(std::all_of(white.bytes.begin(), white.bytes.begin() + 9, [](int byte) { return byte == 255; }));
   ASSERT_EQ(mercury(command("d.svg", {"--background", "white", "--caption", "Fig. 1", "--scale-bar"})).status, 0);
   EXPECT_THAT(read("d.svg"), HasSubstr(">Fig. 1</text>"));
-  EXPECT_THAT(mercury(command("e.mp4", {"--background", "white"})).messages, HasSubstr("--background: is of a still"));
+  ASSERT_EQ(mercury(command("d.pdf", {"--background", "transparent", "--caption", "Fig. 1"})).status, 0);
+  EXPECT_TRUE(read("d.pdf").starts_with("%PDF-"));
+  EXPECT_THAT(mercury(command("e.mp4", {"--background", "transparent", "--seconds", "0.1"})).messages,
+              HasSubstr("--background: .mp4 has no transparency"));
+  EXPECT_THAT(mercury(command("e.pdf", {"--still", "0"})).messages, HasSubstr("give --background"));
   EXPECT_THAT(mercury(command("e.png", {"--tight", "--still", "0"})).messages, HasSubstr("--tight: cuts a figure off"));
   EXPECT_THAT(
       mercury(command("e.png", {"--background", "mauve"})).messages,
       HasSubstr("--background: \"mauve\" is not accepted; give white, black, transparent or a color as #2a6f97"));
+}
+
+// What ffmpeg reads of a film: the frames, 4 bytes per pixel.
+std::string decoded(const std::string& film, const std::string& decoder = {}) {
+  std::vector<std::string> arguments{"-loglevel", "error"};
+  if (!decoder.empty()) arguments.insert(arguments.end(), {"-c:v", decoder});
+  arguments.insert(arguments.end(), {"-i", film, "-f", "rawvideo", "-pix_fmt", "rgba", "pipe:1"});
+  ChildProcess child("ffmpeg", arguments);
+  return outcome_of(child).output;
+}
+
+TEST_F(RenderCommand, FilmsOverNothingHaveOpacities) {
+  const std::vector<std::string> figure{"--background", "transparent", "--seconds", "0.1",
+                                        "--fps",        "20",          "--show",    "skin"};
+  constexpr std::size_t frame = 160 * 90 * 4;
+  ASSERT_EQ(mercury(command("frames", figure)).status, 0);
+  const render::Image still = render::read_png(path("frames/frame-00001.png"));
+  ASSERT_EQ(still.format, render::PixelFormat::rgba);
+  for (const std::string name : {"a.webm", "a.gif", "a.apng"}) {
+    const Outcome outcome = mercury(command(name, figure));
+    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    const std::string frames = decoded(path(name), name == "a.webm" ? "libvpx-vp9" : "");
+    ASSERT_EQ(frames.size(), 2 * frame) << name;
+    double difference = 0;
+    for (std::size_t i = 3; i < frame; i += 4)
+      difference += std::abs(static_cast<std::uint8_t>(frames[frame + i]) - still.bytes[i]);
+    EXPECT_LT(difference / (160 * 90), name == "a.apng" ? 1e-9 : 8) << name;
+  }
+  ASSERT_EQ(
+      mercury(command("a.mp4", {"--background", "white", "--seconds", "0.1", "--fps", "20", "--show", "skin"})).status,
+      0);
+  const std::string white = decoded(path("a.mp4"));
+  ASSERT_EQ(white.size(), 2 * frame);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_GE(static_cast<std::uint8_t>(white[i]), 253);
 }
 
 TEST_F(RenderCommand, ContactSheetHasTheRequestedWidth) {
@@ -168,7 +207,43 @@ TEST_F(RenderCommand, TwoRecordingsPlaySideBySide) {
   };
   EXPECT_NE(half(first, 0), half(first, 160));
   EXPECT_NE(half(first, 160), half(last, 160));
-  EXPECT_EQ(mercury({"render", path("one.h5"), path("other.h5"), path("one.h5"), "-o", path("a.mp4")}).status, 2);
+  const std::string one = path("one.h5");
+  EXPECT_THAT(mercury({"render", one, one, one, one, one, "-o", path("a.mp4")}).messages,
+              HasSubstr("at most 4 recordings and runs stand side by side"));
+}
+
+// Three columns of one recording are the same picture three times; a run stands beside a recording.
+TEST_F(RenderCommand, RecordingsAndRunsStandSideBySide) {
+  ASSERT_EQ(mercury({"run", "--random", "voxel:1", "--seconds", "0.1", "--record", path("a.h5")}).status, 0);
+  const std::string one = path("a.h5");
+  ASSERT_EQ(mercury({"render", one, one, one, "--size", "300x90", "--still", "0.1", "-o", path("three.png"), "--show",
+                     "skin"})
+                .status,
+            0);
+  const render::Image three = render::read_png(path("three.png"));
+  ASSERT_EQ(three.width, 300);
+  EXPECT_EQ(columns(three, 0, 100).bytes, columns(three, 100, 100).bytes);
+  EXPECT_EQ(columns(three, 0, 100).bytes, columns(three, 200, 100).bytes);
+
+  make_run(path("run"), small_run(), 2);
+  const std::vector<std::string> sides{"render", path("run"),    one,     "--size", "320x90", "--seconds",
+                                       "0.1",    "--background", "white", "--show", "skin"};
+  std::vector<std::string> still = sides, film = sides;
+  still.insert(still.end(), {"--still", "0.1", "-o", path("both.png")});
+  film.insert(film.end(), {"-o", path("both.mp4")});
+  for (const auto& command : {still, film}) {
+    const Outcome outcome = mercury(command);
+    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  }
+  const render::Image both = render::read_png(path("both.png"));
+  for (const int begin : {0, 160}) {
+    const std::vector<std::uint8_t> side = columns(both, begin, 160).bytes;
+    EXPECT_EQ(side[0], 255);
+    EXPECT_GT(std::ranges::count_if(side, [](int byte) { return byte < 200; }), 100) << begin;
+  }
+  EXPECT_EQ(probe(path("both.mp4"))["nb_read_frames"], "3");
+  EXPECT_THAT(mercury({"render", path("run"), one, "--lineage", "best", "-o", path("c.mp4")}).messages,
+              HasSubstr("--lineage: is of one run"));
 }
 
 TEST_F(RenderCommand, RecordingDoesNotMixWithRobots) {

@@ -3,6 +3,7 @@
 #include "app/video/figure.h"
 
 #include <gmock/gmock.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -80,13 +81,73 @@ TEST(Figure, TextOfAnSvgIsText) {
   text.caption("A < B & C");
   text.legend({.title = "strain", .scale = render::Scale{}});
   const render::Image image{.width = 640, .height = 480, .bytes = std::vector<std::uint8_t>(640 * 480 * 3, 200)};
-  const std::string svg = figure_svg(image, text, {10, 0, 640, 480}, 300, "a \"comment\"");
+  const std::string svg = figure_svg({image, text, {10, 0, 640, 480}, 300, "a \"comment\""});
   EXPECT_THAT(svg, HasSubstr("width=\"2.1in\" height=\"1.6in\" viewBox=\"10 0 630 480\""));
   EXPECT_THAT(svg, HasSubstr(">A &lt; B &amp; C</text>"));
   EXPECT_THAT(svg, HasSubstr(">strain</text>"));
   EXPECT_THAT(svg, HasSubstr("<desc>a &quot;comment&quot;</desc>"));
   EXPECT_THAT(svg, HasSubstr("url(#scale-1)"));
   EXPECT_THAT(svg, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
+}
+
+std::string inflated(std::string_view packed, std::size_t most) {
+  std::string content(most, '\0');
+  uLongf size = most;
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(content.data()), &size, reinterpret_cast<const Bytef*>(packed.data()),
+                       packed.size()),
+            Z_OK);
+  content.resize(size);
+  return content;
+}
+
+// The objects of a file, by the offsets of its table.
+std::vector<std::string> objects_of(const std::string& pdf) {
+  const std::size_t table = std::stoul(pdf.substr(pdf.rfind("startxref") + 10));
+  EXPECT_EQ(pdf.substr(table, 5), "xref\n");
+  const std::size_t count = std::stoul(pdf.substr(table + 7));
+  std::vector<std::string> objects(1);
+  for (std::size_t i = 1; i < count; ++i) {
+    const std::size_t entry = pdf.find('\n', table + 5) + 1 + 20 * i, at = std::stoul(pdf.substr(entry, 10));
+    const std::string head = std::to_string(i) + " 0 obj\n";
+    EXPECT_EQ(pdf.substr(at, head.size()), head);
+    objects.push_back(pdf.substr(at + head.size(), pdf.find("endobj", at) - at - head.size()));
+  }
+  return objects;
+}
+
+TEST(Figure, APdfHoldsThePictureItsOpacitiesAndTextAsText) {
+  render::Overlay text(40, 30, 8, render::style_of(render::Surroundings::none, render::Theme::light));
+  text.caption("A (b) \xc2\xb5m");
+  text.legend({.title = "strain", .scale = render::Scale{}});
+  render::Image image{.width = 40, .height = 30, .format = render::PixelFormat::rgba, .bytes = {}};
+  for (std::uint8_t i = 0; image.bytes.size() < 40 * 30 * 4; ++i) image.bytes.push_back(i);
+  const std::string pdf = figure_pdf({image, text, {10, 0, 40, 30}, 144, "made by a test"});
+  ASSERT_TRUE(pdf.starts_with("%PDF-1.4\n"));
+  EXPECT_TRUE(pdf.ends_with("%%EOF\n"));
+  std::string drawing;
+  int pictures = 0;
+  for (const std::string& object : objects_of(pdf)) {
+    const std::size_t begin = object.find("stream\n");
+    if (object.find("/MediaBox") != std::string::npos) {
+      EXPECT_THAT(object, HasSubstr("/MediaBox [0 0 15 15]"));
+    }
+    if (begin == std::string::npos) continue;
+    const std::string content = inflated(
+        std::string_view(object).substr(begin + 7, object.rfind("\nendstream") - begin - 7), std::size_t{1} << 20);
+    if (object.find("/Subtype /Image") == std::string::npos) {
+      if (content.find("BT") != std::string::npos) drawing = content;
+      continue;
+    }
+    ++pictures;
+    const std::size_t channels = object.find("/DeviceGray") == std::string::npos ? 3 : 1;
+    ASSERT_EQ(content.size(), 30u * 30 * channels);
+    // The first pixel of the second row of the part is the 50th of the picture.
+    EXPECT_EQ(static_cast<std::uint8_t>(content[30 * channels]), image.bytes[4 * 50 + (channels == 1 ? 3 : 0)]);
+  }
+  EXPECT_EQ(pictures, 2);
+  EXPECT_THAT(drawing, HasSubstr("(A \\(b\\) \xb5m) Tj"));
+  EXPECT_THAT(drawing, HasSubstr("(strain) Tj"));
+  EXPECT_THAT(drawing, HasSubstr(" sh Q"));
 }
 
 }  // namespace

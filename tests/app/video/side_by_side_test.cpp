@@ -15,7 +15,7 @@ using testing::ElementsAre;
 
 TEST(Halves, FillThePictureWithEvenWidths) {
   for (const int width : {4, 6, 160, 162, 1278, 1280}) {
-    const auto even = halves_of({width, 90});
+    const auto even = columns_of({width, 90});
     ASSERT_EQ(even.size(), 2u);
     EXPECT_EQ(even[0].width + even[1].width, width);
     for (const PictureSize& half : even) {
@@ -25,7 +25,11 @@ TEST(Halves, FillThePictureWithEvenWidths) {
     }
     EXPECT_LE(even[1].width - even[0].width, 2);
   }
-  EXPECT_THROW(halves_of({2, 90}), ParameterError);
+  EXPECT_THROW(columns_of({2, 90}), ParameterError);
+  const auto three = columns_of({100, 90}, 3);
+  EXPECT_EQ(three.size(), 3u);
+  EXPECT_EQ(three[0].width + three[1].width + three[2].width, 100);
+  for (const PictureSize& column : three) EXPECT_EQ(column.width % 2, 0);
 }
 
 TEST(SideBySide, RowsOfColorsFollowEachOther) {
