@@ -18,6 +18,7 @@
 #include "app/commands/run_film.h"
 #include "app/export/export.h"
 #include "app/export/simulated_motion.h"
+#include "app/export/vxa_world.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "app/options/robot_options.h"
@@ -40,6 +41,7 @@ struct ExportOptions {
   std::optional<std::int64_t> every;
   std::optional<double> still, fps;
   bool springs = false;
+  StageChoices stage;
   bool for_seconds = false;    // --seconds was given
   std::string for_simulation;  // the first option that says how to simulate; empty = none was given
   std::string command;         // as the user typed it
@@ -68,6 +70,7 @@ class Targets {
       throw InputError("-o", fmt::format("{}: \"{}\" is no format; give a file of {}, or a folder with --format",
                                          options.path, path.extension().string(), format_names()));
     format_ = is_file ? &format_for(path, options.format) : &format_in_folder(options.format);
+    require_stage(*format_, options.stage);
     together_ = is_file && format_->motions;
     if (is_file && robots_.size() > 1 && !together_)
       throw InputError("-o", fmt::format("{} is one file, and there are {} robots; give a folder with --format, or "
@@ -123,8 +126,9 @@ std::string robots_text(std::size_t count, const std::string& how = "") {
   return count_text(static_cast<std::int64_t>(count), "robot" + how, "robots" + how);
 }
 
-int export_poses(const ExportOptions& options, const LoadedRobots& loaded, const Targets& targets) {
-  if (!options.for_simulation.empty())
+int export_poses(const ExportOptions& options, const LoadedRobots& loaded, const Targets& targets,
+                 const std::optional<ImportedSettings>& world = {}) {
+  if (!options.for_simulation.empty() && !world)
     throw InputError(options.for_simulation,
                      fmt::format("goes with a motion, and {} is written at rest; give --seconds, too, and {}",
                                  targets.format().name, format_names(holds_simulated_motion)));
@@ -136,7 +140,8 @@ int export_poses(const ExportOptions& options, const LoadedRobots& loaded, const
   for (std::size_t i = 0; i < targets.files().size(); ++i) {
     throw_if_interrupted();
     const Robot& robot = *loaded.robots[targets.robots()[i]];
-    targets.format().pose(exported_robot(robot), rest_pose(robot), targets.files()[i], {.springs = options.springs});
+    targets.format().pose(exported_robot(robot), rest_pose(robot), targets.files()[i],
+                          {.springs = options.springs, .stage = options.stage, .world = world});
     print_name(targets.files()[i]);
     progress.update(static_cast<std::int64_t>(i + 1));
   }
@@ -144,7 +149,7 @@ int export_poses(const ExportOptions& options, const LoadedRobots& loaded, const
 }
 
 void write_motions(const ExportOptions& options, const Targets& targets, std::vector<RecordedMotion>& motions,
-                   ExportNotes notes) {
+                   ExportNotes notes, const std::optional<ImportedSettings>& world = {}) {
   std::int64_t total = 0, before = 0;
   for (const RecordedMotion& motion : motions) {
     total += static_cast<std::int64_t>(motion.frames());
@@ -154,13 +159,16 @@ void write_motions(const ExportOptions& options, const Targets& targets, std::ve
   for (std::size_t i = 0; i < targets.files().size(); ++i) {
     const fs::path& file = targets.files()[i];
     const std::int64_t count = targets.together() ? total : static_cast<std::int64_t>(motions[i].frames());
-    const ExportChoices choices{
-        .springs = options.springs, .notes = notes, .watch = [&](std::size_t done, std::size_t of) {
-          throw_if_interrupted();
-          progress.update_with_fraction(static_cast<double>(before) + static_cast<double>(count) *
-                                                                          static_cast<double>(done) /
-                                                                          static_cast<double>(of));
-        }};
+    const ExportChoices choices{.springs = options.springs,
+                                .stage = options.stage,
+                                .world = world,
+                                .notes = notes,
+                                .watch = [&](std::size_t done, std::size_t of) {
+                                  throw_if_interrupted();
+                                  progress.update_with_fraction(static_cast<double>(before) +
+                                                                static_cast<double>(count) * static_cast<double>(done) /
+                                                                    static_cast<double>(of));
+                                }};
     if (targets.together())
       targets.format().motions(motions, file, choices);
     else if (options.still)
@@ -183,11 +191,8 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
                                               holds_motion(format) ? "the motion of a recording" : "one pose",
                                               format_names(holds_simulated_motion)));
   if (options.for_seconds && !(seconds > 0)) throw InputError("--seconds", "0 is not accepted for a motion; give more");
-  const double rate = options.fps.value_or(motion_rate), most = 1 / configuration.dt;
-  if (options.fps && !(rate > 0 && rate <= most * (1 + 1e-9)))
-    throw InputError(
-        "--fps",
-        fmt::format("{} is not accepted; give more than 0 and at most {:.6g} frames/s, one per step", rate, most));
+  const double rate = options.fps.value_or(motion_rate);
+  if (options.fps) require_frame_rate("--fps", rate, configuration.dt);
   std::vector<std::shared_ptr<const Robot>> chosen;
   ExportNotes chosen_notes = notes;
   chosen_notes.captions.clear();
@@ -207,7 +212,7 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
     for (const std::string& note : simulation.notes()) warn(note);
     Progress progress("simulating", "frames", motion_frames(seconds, rate));
     chosen_notes.final_states = record_motion(
-                                    simulation, seconds, recording, options.robots.seed(),
+                                    simulation, seconds, recording.path(), options.robots.seed(),
                                     [&](std::int64_t frames) {
                                       throw_if_interrupted();
                                       progress.update(frames);
@@ -222,11 +227,31 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
   return 0;
 }
 
+// A configuration as a world of VXA.
+ImportedSettings world_with_warnings(const Configuration& configuration, std::optional<double> seconds) {
+  VxaWorld world = vxa_world(configuration.environment, configuration.damping, seconds);
+  for (const std::string& lost : world.lost) warn("not kept as it is: " + lost);
+  return std::move(world.settings);
+}
+
+// What the options say of the world, for a format that holds one; none = nothing, so that the robot's own counts.
+std::optional<ImportedSettings> world_of(const ExportOptions& options, const LoadedRobots& loaded) {
+  if (options.for_simulation.empty() && !options.for_seconds) return std::nullopt;
+  std::vector<std::string> notes;
+  const Configuration configuration = options.simulation.configuration(loaded.environments, notes, loaded.physics);
+  for (const std::string& note : notes) warn(note);
+  return world_with_warnings(configuration,
+                             options.for_seconds ? std::optional(options.simulation.seconds()) : std::nullopt);
+}
+
 int export_robots(const ExportOptions& options) {
   if (const std::string option = options.for_recordings(); !option.empty())
     throw InputError(option, "chooses frames of a recording (.h5), and there is none");
   const LoadedRobots loaded = options.robots.load({});
   const Targets targets(options, names_of_robots(loaded.robots));
+  if (targets.format().holds_world) {
+    return export_poses(options, loaded, targets, world_of(options, loaded));
+  }
   const bool moves = options.for_seconds || (!holds_pose(targets.format()) && holds_simulated_motion(targets.format()));
   // Formats that hold several robots take them from a recording, at rest one of a single frame.
   const bool together = targets.together() && targets.robots().size() > 1;
@@ -274,7 +299,10 @@ int export_recording(const ExportOptions& options, const fs::path& file) {
   if (options.output.dry_run())
     return describe(targets, fmt::format("{} of {}, {}", robots_text(motions.size()), file.string(),
                                          count_text(total, "frame", "frames")));
-  write_motions(options, targets, motions, {.title = {}, .command = options.command, .captions = {}});
+  std::optional<ImportedSettings> world;
+  if (targets.format().holds_world)
+    world = world_with_warnings(recording->configuration(), recording->time(recording->frames() - 1));
+  write_motions(options, targets, motions, {.title = {}, .command = options.command, .captions = {}}, world);
   return 0;
 }
 
@@ -404,6 +432,9 @@ void add_export_command(const Command& program, const Choose& choose) {
                    fmt::format("Also the springs as lines, in {}", format_names([](const ExportFormat& format) {
                                  return format.springs == ExportFormat::Springs::if_asked;
                                })));
+  command.add_flag("--floor", options->stage.floor,
+                   fmt::format("Also a floor below the robots, in {}", format_names(holds_scene)));
+  command.add_flag("--camera", options->stage.camera, "Also a camera that sees all of the motion, in the same");
   options->film.add_to(command);
   options->output.add_to(command);
   const std::size_t count = command.options().size();

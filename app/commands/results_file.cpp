@@ -76,7 +76,7 @@ void write_results(const std::string& file, std::string_view content, bool repla
   if (is_named_pipe(file)) pipe.emplace(file);
   if (replaces) return write_whole_file(file, content);
   UnfinishedFile unfinished(file, false);
-  write_whole_file(unfinished.path(), content, file);
+  write_whole_file(unfinished.path(), content);
   unfinished.keep();
 }
 

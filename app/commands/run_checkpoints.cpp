@@ -38,10 +38,10 @@ void Checkpoints::write(const Simulation& simulation, const TrialProgress& progr
       notes_.recording->frames = recorder->frames();
     }
     save_checkpoint(path_, simulation, notes_);
-    problem_.clear();
+    failed_ = false;
   } catch (const std::exception& error) {
-    if (problem_ != error.what()) warn(fmt::format("no checkpoint at {:.6g} s: {}", simulation.time(), error.what()));
-    problem_ = error.what();
+    failed_ = true;
+    warn(fmt::format("no checkpoint at {:.6g} s: {}", simulation.time(), error.what()));
   }
   last_ = Clock::now();
 }

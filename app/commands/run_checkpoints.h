@@ -34,14 +34,14 @@ class Checkpoints {
   // Flushes the recorder, if there is one, so that the checkpoint's frames are in its file.
   void write(const Simulation& simulation, const TrialProgress& progress, Recorder* recorder);
   // Whether the last write failed.
-  bool failed() const { return !problem_.empty(); }
+  bool failed() const { return failed_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   std::filesystem::path path_;
   double period_;
   CheckpointNotes notes_;
-  std::string problem_;  // of the last write; empty = none. It is reported once, as long as it stays the same
+  bool failed_ = false;
   Clock::time_point last_ = Clock::now();
 };
 

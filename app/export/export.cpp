@@ -51,6 +51,12 @@ void require_motion(const ExportFormat& format, const Robot& robot, bool springs
   require_content(format, robot, springs);
 }
 
+void require_stage(const ExportFormat& format, const StageChoices& stage) {
+  if (format.holds_scene || (!stage.floor && !stage.camera)) return;
+  throw ParameterError(stage.floor ? "floor" : "camera",
+                       fmt::format("a {} file is no scene; give {}", format.extension, format_names(holds_scene)));
+}
+
 std::vector<std::string> names_of_robots(const TrajectoryReader& recording) {
   std::vector<std::string> names;
   for (const RecordedRobot& recorded : recording.robots()) names.push_back(recorded.robot.name);

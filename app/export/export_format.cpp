@@ -21,9 +21,12 @@ std::vector<std::filesystem::path> beside_pc2(const std::filesystem::path& pc2) 
   return {mesh_beside(pc2), materials_beside(mesh_beside(pc2))};
 }
 
+std::vector<std::filesystem::path> beside_xdmf(const std::filesystem::path& xdmf) { return {frame_links_beside(xdmf)}; }
+
 // The grid and the materials of the robot's origin; where its masses are does not matter.
-void write_vxa_file(const ExportedRobot& robot, const Pose&, const std::filesystem::path& path, const ExportChoices&) {
-  write_vxa(robot.robot, path);
+void write_vxa_file(const ExportedRobot& robot, const Pose&, const std::filesystem::path& path,
+                    const ExportChoices& choices) {
+  write_vxa(robot.robot, path, choices.world);
 }
 
 constexpr std::array formats{
@@ -50,6 +53,7 @@ constexpr std::array formats{
                  .title = "glTF",
                  .help = "skin with colors for web viewers; a short motion as morph targets",
                  .springs = Springs::if_asked,
+                 .holds_scene = true,
                  .pose = write_glb,
                  .motion = write_glb_motion,
                  .motions = write_glb_motions},
@@ -58,6 +62,7 @@ constexpr std::array formats{
                  .title = "USD",
                  .help = "skin with colors for Blender, usdview and other USD programs",
                  .springs = Springs::if_asked,
+                 .holds_scene = true,
                  .pose = write_usda,
                  .motion = write_usda_motion,
                  .motions = write_usda_motions},
@@ -66,6 +71,7 @@ constexpr std::array formats{
                  .title = "USD archive",
                  .help = "the same in one archive",
                  .springs = Springs::if_asked,
+                 .holds_scene = true,
                  .pose = write_usdz,
                  .motion = write_usdz_motion,
                  .motions = write_usdz_motions},
@@ -94,11 +100,12 @@ constexpr std::array formats{
     ExportFormat{.name = "xdmf",
                  .extension = ".xdmf",
                  .title = "XDMF",
-                 .help = "describes the recording itself for ParaView, which reads its numbers from there",
+                 .help = "describes the recording itself for ParaView and meshio, which read its numbers from there",
                  .springs = Springs::always,
                  .needs_skin = false,
                  .needs_recording = true,
-                 .motion = write_xdmf},
+                 .motion = write_xdmf,
+                 .files_beside = beside_xdmf},
     ExportFormat{.name = "html",
                  .extension = ".html",
                  .title = "Web page",
@@ -108,8 +115,9 @@ constexpr std::array formats{
     ExportFormat{.name = "vxa",
                  .extension = ".vxa",
                  .title = "VXA",
-                 .help = "voxels and muscles of a voxel robot for VoxCAD, evosoro and voxcraft-sim",
+                 .help = "voxels, muscles and world of a voxel robot for VoxCAD, evosoro and voxcraft-sim",
                  .needs_skin = false,
+                 .holds_world = true,
                  .pose = write_vxa_file},
 };
 

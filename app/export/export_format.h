@@ -22,6 +22,8 @@ struct ExportFormat {
   std::string_view help;       // what it holds and who reads it, without a full stop
   Springs springs = Springs::never;
   bool needs_skin = true;        // a robot without faces would be empty
+  bool holds_scene = false;      // can hold a floor and a camera
+  bool holds_world = false;      // gravity, floor, water
   bool needs_recording = false;  // the file refers to the recording, which must stay
   // What it can hold: a pose, a motion, or both; nullptr = it cannot.
   void (*pose)(const ExportedRobot&, const Pose&, const std::filesystem::path&, const ExportChoices&) = nullptr;
@@ -48,6 +50,7 @@ inline bool holds_motion(const ExportFormat& format) { return format.motion != n
 inline bool holds_simulated_motion(const ExportFormat& format) {
   return holds_motion(format) && !format.needs_recording;
 }
+inline bool holds_scene(const ExportFormat& format) { return format.holds_scene; }
 inline bool holds_springs(const ExportFormat& format) { return format.springs != ExportFormat::Springs::never; }
 
 }  // namespace mercury

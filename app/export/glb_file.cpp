@@ -87,8 +87,8 @@ ordered_json material_of(const ExportedMaterial& material) {
             {"roughnessFactor", 0.5}}}};
 }
 
-// A primitive per material, without normals: viewers then shade each face flat.
-void add_primitives(Document& document, const std::string& name, const SkinShape& shape, std::size_t positions,
+// A primitive per material. Without normals viewers shade each face flat.
+void add_primitives(Document& document, const std::string& name, const SkinShape& shape, const ordered_json& attributes,
                     const ordered_json& targets) {
   const std::size_t first_material = document.json["materials"].size();
   for (const ExportedMaterial& material : shape.materials) document.json["materials"].push_back(material_of(material));
@@ -96,7 +96,7 @@ void add_primitives(Document& document, const std::string& name, const SkinShape
   const auto add = [&](const std::vector<std::uint16_t>& indices, std::size_t material, bool are_lines) {
     if (indices.empty()) return;
     ordered_json primitive{
-        {"attributes", {{"POSITION", positions}}},
+        {"attributes", attributes},
         {"indices", document.add(std::span(indices), short_type, "SCALAR", indices.size(), element_buffer)},
         {"material", material}};
     if (are_lines) primitive["mode"] = int{lines};
@@ -115,6 +115,25 @@ void add_primitives(Document& document, const std::string& name, const SkinShape
   add_all(shape.faces, shape.face_materials, false);
   add_all(shape.springs, shape.spring_materials, true);
   document.json["meshes"].push_back({{"name", name}, {"primitives", primitives}});
+}
+
+// Vertices of the robot at a moment: positions, and normals of a curved skin.
+ordered_json add_vertices(Document& document, const SkinShape& shape, const std::vector<Vec3>& vertices) {
+  ordered_json attributes{{"POSITION", document.add_vectors(vertices)}};
+  if (shape.is_smooth) attributes["NORMAL"] = document.add_vectors(vertex_normals(shape, vertices));
+  return attributes;
+}
+
+// A morph target: the differences of vertices and their normals from the first ones.
+ordered_json add_target(Document& document, const SkinShape& shape, const std::vector<Vec3>& first,
+                        const std::vector<Vec3>& moved) {
+  const auto add_difference = [&](const std::vector<Vec3>& from, std::vector<Vec3> to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = to[i] - from[i];
+    return document.add_vectors(to);
+  };
+  ordered_json target{{"POSITION", add_difference(first, moved)}};
+  if (shape.is_smooth) target["NORMAL"] = add_difference(vertex_normals(shape, first), vertex_normals(shape, moved));
+  return target;
 }
 
 // A node that turns the scene, whose children are the robots.
@@ -143,6 +162,52 @@ std::size_t add_node(Document& document, const std::string& name, const render::
   const std::size_t index = document.json["nodes"].size() - 1;
   document.json["nodes"][0]["children"].push_back(index);
   return index;
+}
+
+// The floor and the camera, beside the robots.
+void add_stage(Document& document, const Stage& stage) {
+  const auto add = [&](ordered_json node) {
+    document.json["nodes"].push_back(std::move(node));
+    document.json["nodes"][0]["children"].push_back(document.json["nodes"].size() - 1);
+  };
+  if (stage.floor) {
+    const auto& [corners, color] = *stage.floor;
+    const std::vector<std::uint16_t> indices{0, 1, 2, 0, 2, 3};
+    const std::size_t positions = document.add_vectors({corners.begin(), corners.end()});
+    document.json["materials"].push_back(
+        {{"name", "floor"},
+         {"pbrMetallicRoughness",
+          {{"baseColorFactor", {shortest(color[0]), shortest(color[1]), shortest(color[2]), 1}},
+           {"metallicFactor", 0},
+           {"roughnessFactor", 0.9}}}});
+    document.json["meshes"].push_back(
+        {{"name", "floor"},
+         {"primitives",
+          {{{"attributes", {{"POSITION", positions}}},
+            {"indices", document.add(std::span(indices), short_type, "SCALAR", indices.size(), element_buffer)},
+            {"material", document.json["materials"].size() - 1}}}}});
+    add({{"name", "floor"}, {"mesh", document.json["meshes"].size() - 1}});
+  }
+  if (stage.camera) {
+    const StageCamera& camera = *stage.camera;
+    const auto [x, y, z, w] = camera.quaternion();
+    document.json["cameras"] = {{{"name", "camera"},
+                                 {"type", "perspective"},
+                                 {"perspective",
+                                  {{"yfov", shortest(camera.field_of_view)},
+                                   {"aspectRatio", shortest(camera.aspect)},
+                                   {"znear", shortest(camera.near)},
+                                   {"zfar", shortest(camera.far)}}}}};
+    add({{"name", "camera"},
+         {"camera", 0},
+         {"rotation", {shortest(x), shortest(y), shortest(z), shortest(w)}},
+         {"translation", {shortest(camera.eye.x), shortest(camera.eye.y), shortest(camera.eye.z)}}});
+  }
+}
+
+// Of a robot at its place.
+void extend(render::Bounds& reach, const std::vector<Vec3>& vertices, const render::Vector3& offset) {
+  for (const Vec3& vertex : vertices) reach.extend(render::Vector3(vertex) + offset);
 }
 
 std::size_t bytes_of(std::size_t frames, std::size_t vertices) {
@@ -195,8 +260,12 @@ void write_glb(const ExportedRobot& robot, const Pose& pose, const std::filesyst
                const ExportChoices& choices) {
   const SkinShape shape = skin_shape(robot.robot, choices.springs);
   Document document = empty_document();
-  add_primitives(document, robot.robot.name, shape, document.add_vectors(vertices_of(shape, pose.positions)), {});
+  const std::vector<Vec3> vertices = vertices_of(shape, pose.positions);
+  add_primitives(document, robot.robot.name, shape, add_vertices(document, shape, vertices), {});
   add_node(document, robot.robot.name, {});
+  render::Bounds reach;
+  extend(reach, vertices, {});
+  add_stage(document, stage_of(reach, robot.environment, choices.stage));
   OutputStreams files;
   document.write(files.add(path));
   files.keep();
@@ -208,30 +277,33 @@ void write_glb_motions(std::span<RecordedMotion> motions, const std::filesystem:
   std::size_t vertices = 0, frames = 0, done = 0;
   for (RecordedMotion& motion : motions) {
     shapes.push_back(skin_shape(motion.robot().robot, choices.springs));
-    vertices += shapes.back().masses.size();
+    vertices += (shapes.back().is_smooth ? 2 : 1) * shapes.back().masses.size();  // normals are as large
     frames += motion.frames();
   }
   const auto longest = std::ranges::max_element(motions, {}, &RecordedMotion::frames);
   require_short(*longest, vertices, path);
   const std::vector<render::Vector3> offsets = side_by_side(motions);
   Document document = empty_document();
+  render::Bounds reach;
   for (std::size_t robot = 0; robot < motions.size(); ++robot) {
     RecordedMotion& motion = motions[robot];
     const SkinShape& shape = shapes[robot];
     const std::string name = motion.robot().robot.name;
     const std::vector<Vec3> first = vertices_of(shape, motion.pose(0).positions);
-    const std::size_t positions = document.add_vectors(first);
+    const ordered_json attributes = add_vertices(document, shape, first);
+    extend(reach, first, offsets[robot]);
     ordered_json targets = ordered_json::array();
     for (std::size_t frame = 1; frame < motion.frames(); ++frame) {
-      std::vector<Vec3> moved = vertices_of(shape, motion.pose(frame).positions);
-      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = moved[i] - first[i];
-      targets.push_back({{"POSITION", document.add_vectors(moved)}});
+      const std::vector<Vec3> moved = vertices_of(shape, motion.pose(frame).positions);
+      targets.push_back(add_target(document, shape, first, moved));
+      extend(reach, moved, offsets[robot]);
       choices.watch(std::min(++done, frames), frames);
     }
-    add_primitives(document, name, shape, positions, targets);
+    add_primitives(document, name, shape, attributes, targets);
     const std::size_t node = add_node(document, name, offsets[robot]);
     if (!targets.empty()) add_animation(document, motion, targets.size(), node);
   }
+  add_stage(document, stage_of(reach, motions.front().robot().environment, choices.stage));
   OutputStreams files;
   document.write(files.add(path));
   files.keep();

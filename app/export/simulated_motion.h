@@ -22,10 +22,9 @@ class TemporaryRecording {
   TemporaryRecording(const TemporaryRecording&) = delete;
   TemporaryRecording& operator=(const TemporaryRecording&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  const std::filesystem::path& beside() const { return beside_; }
 
  private:
-  std::filesystem::path beside_, path_;
+  std::filesystem::path path_;
 };
 
 inline constexpr double motion_rate = 30;  // frames per second of simulated time, unless another one is wanted
@@ -36,9 +35,8 @@ struct SimulatedMotion {
 };
 
 // Steps the simulation for that time and records it at exactly `rate` frames per second: a frame between two steps is
-// interpolated between them. `watch` sees how many frames there are; it may throw to stop the work. A full disk is an
-// error that names what the recording is for.
-SimulatedMotion record_motion(Simulation& simulation, double seconds, const TemporaryRecording& file,
+// interpolated between them. `watch` sees how many frames there are; it may throw to stop the work.
+SimulatedMotion record_motion(Simulation& simulation, double seconds, const std::filesystem::path& path,
                               std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch,
                               double rate = motion_rate);
 // Frames that it will have.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/scene/appearance.h"
+#include "mercury/generator.h"
 
 namespace mercury {
 
@@ -31,6 +32,8 @@ SkinShape skin_shape(const Robot& robot, bool with_springs) {
     }
   shape.materials = exported_materials(robot);
   std::erase_if(shape.materials, [&](const ExportedMaterial& material) { return !used[material.id]; });
+  const Generator* const generator = generator_of(robot);
+  shape.is_smooth = generator && generator->smooth;
   return shape;
 }
 
@@ -39,6 +42,19 @@ std::vector<Vec3> vertices_of(const SkinShape& shape, std::span<const Vec3> posi
   vertices.reserve(shape.masses.size());
   for (const std::uint16_t mass : shape.masses) vertices.push_back(positions[mass]);
   return vertices;
+}
+
+std::vector<Vec3> vertex_normals(const SkinShape& shape, std::span<const Vec3> vertices) {
+  std::vector<Vec3> normals(vertices.size());
+  for (const auto& [a, b, c] : shape.faces) {
+    const Vec3 area = cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
+    for (const std::uint16_t vertex : {a, b, c}) normals[vertex] += area;
+  }
+  for (Vec3& normal : normals) {
+    const float size = length(normal);
+    normal = size > 0 ? (1 / size) * normal : Vec3{0, 0, 1};
+  }
+  return normals;
 }
 
 std::vector<render::Color> vertex_colors(const SkinShape& shape) {

@@ -19,12 +19,16 @@ struct SkinShape {
   std::vector<std::array<std::uint16_t, 2>> springs;  // vertices; empty unless asked for
   std::vector<MaterialId> spring_materials;
   std::vector<ExportedMaterial> materials;  // of faces and springs, by id
+  bool is_smooth = false;                   // the skin stands for a curved surface, as pictures draw it
 };
 
 SkinShape skin_shape(const Robot& robot, bool with_springs);
 
 // The positions of the vertices at a moment [m].
 std::vector<Vec3> vertices_of(const SkinShape& shape, std::span<const Vec3> positions);
+
+// Normals of a curved skin, per vertex: the mean of its faces by their areas. Outwards; up without a face.
+std::vector<Vec3> vertex_normals(const SkinShape& shape, std::span<const Vec3> vertices);
 
 // The color of each vertex: the mean of its faces in linear light, gray without a face.
 std::vector<render::Color> vertex_colors(const SkinShape& shape);

@@ -79,11 +79,19 @@ class UsdaWriter {
     file_.text(")\n\n");
   }
 
+  // The floor and the camera as prims below `parent`.
+  void write_stage(const Environment& environment, const StageChoices& choices) {
+    const Stage stage = stage_of(reach_, environment, choices);
+    if (stage.floor) write_floor(*stage.floor);
+    if (stage.camera) write_camera(*stage.camera);
+  }
+
   // A robot as a prim below `parent`, a path such as "/robots"; empty = at the top.
   void write(const ExportedRobot& exported, const SkinShape& shape, const Frames& frames, const std::string& parent,
              const std::string& name, const render::Vector3& offset) {
     frames_ = &frames;
     path_ = parent + "/" + name;
+    offset_ = offset;
     file_.print("def Xform \"{}\" (\n    kind = \"component\"\n)\n{{\n", name);
     if (offset != render::Vector3{0, 0, 0})
       file_.print(
@@ -96,25 +104,60 @@ class UsdaWriter {
   }
 
  private:
+  void write_floor(const StageFloor& floor) {
+    const std::vector<Vec3> corners(floor.corners.begin(), floor.corners.end());
+    file_.text(
+        "def Mesh \"floor\" (\n    prepend apiSchemas = [\"MaterialBindingAPI\"]\n)\n{\n"
+        "    uniform token subdivisionScheme = \"none\"\n    int[] faceVertexCounts = [4]\n"
+        "    int[] faceVertexIndices = [0, 1, 2, 3]\n    rel material:binding = </floor_materials/floor>\n");
+    write_vectors("    point3f[] points = [", corners, "]\n");
+    file_.text("    float3[] extent = ");
+    write_box(box_of(corners));
+    const auto [r, g, b] = floor.color;
+    file_.print(
+        "\n    color3f[] primvars:displayColor = [({}, {}, {})] (\n        interpolation = \"constant\"\n    )\n}}\n",
+        r, g, b);
+    file_.text("def Scope \"floor_materials\"\n{\n");
+    write_material("/floor_materials", "floor", "floor", floor.color, 0.9f);
+    file_.text("}\n");
+  }
+
+  // USD wants the sizes of a film and of its lens, here those of 35 mm [tenths of a unit of the scene].
+  void write_camera(const StageCamera& camera) {
+    constexpr float width = 36;
+    const float height = width / camera.aspect, focal_length = height / (2 * std::tan(camera.field_of_view / 2));
+    file_.print(
+        "def Camera \"camera\"\n{{\n    token projection = \"perspective\"\n    float horizontalAperture = {}\n"
+        "    float verticalAperture = {}\n    float focalLength = {}\n    float2 clippingRange = ({}, {})\n"
+        "    matrix4d xformOp:transform = ( ",
+        width, height, focal_length, camera.near, camera.far);
+    for (const render::Vector3& axis : camera.axes) file_.print("({}, {}, {}, 0), ", axis.x, axis.y, axis.z);
+    file_.print("({}, {}, {}, 1) )\n    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n}}\n", camera.eye.x,
+                camera.eye.y, camera.eye.z);
+  }
+
   static std::string material_name(const ExportedMaterial& material) { return fmt::format("material_{}", material.id); }
 
   // As renderers and Blender take them, beside the colors of faces that viewers show.
   void write_materials(const SkinShape& shape) {
     file_.text("    def Scope \"materials\"\n    {\n");
-    for (const ExportedMaterial& material : shape.materials) {
-      const auto [r, g, b] = render::linear_of(material.color);
-      const std::string name = material_name(material);
-      file_.print(
-          "        def Material \"{0}\" (\n            displayName = \"{1}\"\n        )\n        {{\n"
-          "            token outputs:surface.connect = <{2}/materials/{0}/surface.outputs:surface>\n"
-          "            def Shader \"surface\"\n            {{\n"
-          "                uniform token info:id = \"UsdPreviewSurface\"\n"
-          "                color3f inputs:diffuseColor = ({3}, {4}, {5})\n"
-          "                float inputs:roughness = 0.5\n"
-          "                token outputs:surface\n            }}\n        }}\n",
-          name, quoted(material.name), path_, r, g, b);
-    }
+    for (const ExportedMaterial& material : shape.materials)
+      write_material(path_ + "/materials", material_name(material), material.name, render::linear_of(material.color),
+                     0.5f);
     file_.text("    }\n");
+  }
+
+  void write_material(const std::string& scope, const std::string& name, const std::string& shown,
+                      const std::array<float, 3>& color, float roughness) {
+    file_.print(
+        "        def Material \"{0}\" (\n            displayName = \"{1}\"\n        )\n        {{\n"
+        "            token outputs:surface.connect = <{2}/{0}/surface.outputs:surface>\n"
+        "            def Shader \"surface\"\n            {{\n"
+        "                uniform token info:id = \"UsdPreviewSurface\"\n"
+        "                color3f inputs:diffuseColor = ({3}, {4}, {5})\n"
+        "                float inputs:roughness = {6}\n"
+        "                token outputs:surface\n            }}\n        }}\n",
+        name, quoted(shown), scope, color[0], color[1], color[2], roughness);
   }
 
   // The faces of each material, and their material.
@@ -144,6 +187,7 @@ class UsdaWriter {
     const auto of_vertices = [&](std::span<const Vec3> of_masses) { return vertices_of(shape, of_masses); };
     write_points(of_vertices);
     write_velocities(of_vertices);
+    write_normals(shape);
     write_subsets(shape);
     file_.text("    }\n");
   }
@@ -205,6 +249,8 @@ class UsdaWriter {
     const auto write_frame = [&](std::string_view start, std::size_t frame, std::string_view end) {
       const std::vector<Vec3> points = points_at(frames_->pose(frame).positions);
       boxes.push_back(box_of(points));
+      reach_.extend(render::Vector3(boxes.back().low) + offset_);
+      reach_.extend(render::Vector3(boxes.back().high) + offset_);
       write_vectors(start, points, end);
     };
     if (!frames_->moves()) {
@@ -238,6 +284,22 @@ class UsdaWriter {
     file_.text("        }\n");
   }
 
+  // Of a curved skin; without them, programs shade each face flat.
+  void write_normals(const SkinShape& shape) {
+    if (!shape.is_smooth) return;
+    const auto normals = [&](std::size_t frame) {
+      return vertex_normals(shape, vertices_of(shape, frames_->pose(frame).positions));
+    };
+    if (frames_->moves()) {
+      file_.text("        normal3f[] normals.timeSamples = {\n");
+      for (std::size_t frame = 0; frame < frames_->count(); ++frame)
+        write_vectors(fmt::format("            {}: [", frames_->time_code(frame)), normals(frame), "],\n");
+      file_.text("        }\n");
+    } else {
+      write_vectors("        normal3f[] normals = [", normals(0), "]\n");
+    }
+  }
+
   void write_box(const Box& box) {
     file_.print("[({}, {}, {}), ({}, {}, {})]", box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z);
   }
@@ -245,7 +307,9 @@ class UsdaWriter {
   OutputStream& file_;
   const FrameWatch& watch_;
   const Frames* frames_ = nullptr;
-  std::string path_;  // of the robot
+  std::string path_;        // of the robot
+  render::Vector3 offset_;  // likewise
+  render::Bounds reach_;    // of all robots at all times
   std::size_t total_, done_ = 0;
 };
 
@@ -261,6 +325,7 @@ void write_one(const ExportedRobot& robot, const Frames& frames, const std::file
   const std::string name = identifier_of(robot.robot.name);
   writer.begin(robot.robot.name, name, frames);
   writer.write(robot, shape, frames, "", name, {});
+  writer.write_stage(robot.environment, choices.stage);
   files.keep();
 }
 
@@ -299,6 +364,7 @@ void write_usda_motions(std::span<RecordedMotion> motions, const std::filesystem
     writer.write(motions[i].robot(), shapes[i], Frames(motions[i]), "/robots", name, offsets[i]);
   }
   file.text("}\n");
+  writer.write_stage(motions.front().robot().environment, choices.stage);
   files.keep();
 }
 

@@ -16,6 +16,8 @@
 #include "app/export/output_stream.h"
 #include "app/export/recorded_motion.h"
 #include "app/export/skin_shape.h"
+#include "app/export/stage.h"
+#include "mercury/import.h"
 
 namespace mercury {
 
@@ -45,7 +47,9 @@ struct ExportNotes {
 };
 
 struct ExportChoices {
-  bool springs = false;  // also the springs, as lines
+  bool springs = false;                   // also the springs, as lines
+  StageChoices stage;                     // of formats that hold scenes
+  std::optional<ImportedSettings> world;  // of formats that hold one; none = that of the robot's origin
   ExportNotes notes;
   FrameWatch watch = [](std::size_t, std::size_t) {};
 };
@@ -101,10 +105,12 @@ void write_usdz_motion(const ExportedRobot& robot, RecordedMotion& motion, const
 void write_usdz_motions(std::span<RecordedMotion> motions, const std::filesystem::path& path,
                         const ExportChoices& choices);
 
-// Describes the recording for ParaView; its numbers stay where they are. Throws InputError for a recording that was not
-// finished.
+// Describes the recording for ParaView and meshio; its numbers stay where they are. Beside it, a file with names of the
+// frames. Throws InputError for a recording that was not finished.
 void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                 const ExportChoices& choices);
+
+std::filesystem::path frame_links_beside(const std::filesystem::path& xdmf);
 
 // A web page that plays all motions side by side. They are of one recording.
 void write_html(std::span<RecordedMotion> motions, const std::filesystem::path& path, const ExportChoices& choices);

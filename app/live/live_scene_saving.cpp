@@ -59,15 +59,15 @@ void require_going(const WorkControl& control) {
 }
 
 // Simulates the robots from time 0. Returns the number of frames.
-std::int64_t record(const std::vector<Exported>& exported, const Configuration& configuration,
-                    const TemporaryRecording& file, double seconds, WorkControl& control) {
+std::int64_t record(const std::vector<Exported>& exported, const Configuration& configuration, const fs::path& path,
+                    double seconds, WorkControl& control) {
   std::vector<Robot> robots;
   for (const Exported& one : exported) robots.push_back(one.robot);
   Simulation simulation(configuration, robots);
   for (std::size_t robot = 0; robot < exported.size(); ++robot)
     for (std::size_t id = 1; id < exported[robot].materials.size(); ++id)
       simulation.set_material(robot, static_cast<MaterialId>(id), exported[robot].materials[id]);
-  return record_motion(simulation, seconds, file, std::nullopt,
+  return record_motion(simulation, seconds, path, std::nullopt,
                        [&](std::int64_t frames) {
                          require_going(control);
                          control.progress(frames);
@@ -300,7 +300,7 @@ SaveResult LiveScene::export_motion(const std::vector<RobotId>& robots, const fs
                                try {
                                  const TemporaryRecording recording(path);
                                  const std::int64_t recorded =
-                                     record(exported, configuration, recording, seconds, control);
+                                     record(exported, configuration, recording.path(), seconds, control);
                                  write_motions(format, exported, configuration, recording.path(), path, messages,
                                                [&](std::size_t done, std::size_t) {
                                                  require_going(control);

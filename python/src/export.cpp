@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/export/simulated_motion.h"
+#include "app/export/vxa_world.h"
 #include "mercury/error.h"
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
@@ -41,6 +42,7 @@ struct Request {
   std::optional<double> still;
   FrameRange range;
   bool springs = false;
+  StageChoices stage;
   std::optional<double> seconds;
   nb::object environment;
 
@@ -70,9 +72,14 @@ void refuse_choices(const Request& request) {
 
 void export_pose(const Robot& robot, const ExportFormat& format, const Request& request) {
   require_pose(format, robot, request.springs);
+  Environment environment;
+  if (!request.environment.is_none()) environment = environment_of(request.environment);
   const ReleasedGil released;
   request.prepare(format);
-  format.pose(exported_robot(robot), rest_pose(robot), request.path, {.springs = request.springs});
+  std::optional<ImportedSettings> world;
+  if (format.holds_world && !request.environment.is_none()) world = vxa_world(environment, 0).settings;
+  format.pose(exported_robot(robot), rest_pose(robot), request.path,
+              {.springs = request.springs, .stage = request.stage, .world = world});
 }
 
 std::vector<std::size_t> recorded_robots(const TrajectoryReader& recording, nb::handle robot, bool several) {
@@ -113,6 +120,7 @@ class InterruptibleWork {
 void write_motions(std::vector<RecordedMotion>& motions, const ExportFormat& format, const Request& request,
                    InterruptibleWork& work, std::vector<std::string> final_states = {}) {
   const ExportChoices choices{.springs = request.springs,
+                              .stage = request.stage,
                               .notes = {.final_states = std::move(final_states)},
                               .watch = [&](std::size_t, std::size_t) { work.check(); }};
   if (format.motions)
@@ -136,7 +144,13 @@ void export_recording(const TrajectoryReader& given, const Request& request) {
       RecordedMotion motion = RecordedMotion::still(recording, robots.front(), *request.still);
       require_pose(format, motion.robot().robot, request.springs);
       request.prepare(format);
-      return format.pose(motion.robot(), motion.pose_with_velocities(0), request.path, {.springs = request.springs});
+      const Configuration& configuration = recording->configuration();
+      std::optional<ImportedSettings> world;
+      if (format.holds_world)
+        world = vxa_world(configuration.environment, configuration.damping, recording->time(recording->frames() - 1))
+                    .settings;
+      return format.pose(motion.robot(), motion.pose_with_velocities(0), request.path,
+                         {.springs = request.springs, .stage = request.stage, .world = world});
     }
     std::vector<RecordedMotion> motions;
     for (const std::size_t robot : robots) {
@@ -160,7 +174,7 @@ void export_simulated(Simulation& simulation, const ExportFormat& format, const 
     request.prepare(format);
     const TemporaryRecording recording(request.path);
     SimulatedMotion motion =
-        record_motion(simulation, seconds, recording, std::nullopt, [&](std::int64_t) { work.check(); });
+        record_motion(simulation, seconds, recording.path(), std::nullopt, [&](std::int64_t) { work.check(); });
     const auto reader = std::make_shared<TrajectoryReader>(recording.path());
     std::vector<RecordedMotion> motions;
     for (std::size_t i = 0; i < simulation.size(); ++i) motions.emplace_back(reader, i);
@@ -242,7 +256,7 @@ std::vector<const Result*> results_of(nb::handle what) {
 
 void export_any(nb::handle what, nb::handle path, nb::handle format, nb::handle robot, nb::handle still,
                 nb::handle start, nb::handle end, nb::handle every, nb::handle springs, nb::handle seconds,
-                nb::handle environment) {
+                nb::handle environment, nb::handle floor, nb::handle camera) {
   const Request request{.path = path_from("path", path),
                         .format = format.is_none() ? "" : text_from("format", format),
                         .robot = nb::borrow(robot),
@@ -251,9 +265,11 @@ void export_any(nb::handle what, nb::handle path, nb::handle format, nb::handle 
                                   .to = number_or_none("end", end),
                                   .every = whole_from("every", every, 1)},
                         .springs = bool_from("springs", springs),
+                        .stage = {.floor = bool_from("floor", floor), .camera = bool_from("camera", camera)},
                         .seconds = number_or_none("seconds", seconds),
                         .environment = nb::borrow(environment)};
   try {
+    require_stage(format_for(request.path, request.format), request.stage);
     if (nb::isinstance<TrajectoryReader>(what))
       return export_recording(nb::cast<const TrajectoryReader&>(what), request);
     if (const auto results = results_of(what); !results.empty()) return export_results(results, request);
@@ -283,7 +299,9 @@ void bind_export(nb::module_& module) {
       "lines, "
       "too. Without `seconds`, robots are simulated for 10 s where the format holds motions alone, in `environment` or "
       "that which they are made for. A Batch goes on from where it is, and stays there. A Result of evaluate() is "
-      "tried again, as it was. A web page (html) holds "
+      "tried again, as it was. `floor` and `camera` add these to scenes (glb, usda, usdz), a camera that sees all of "
+      "the "
+      "motion. A vxa file has the world of a recording, or `environment`. A web page (html) holds "
       "several "
       "robots, also all of a recording, a batch or a sequence. Files are replaced, whole or not at all. Raises "
       "InputError for what the format cannot hold.";
@@ -292,12 +310,13 @@ void bind_export(nb::module_& module) {
              nb::arg("still").none() = nb::none(), nb::arg("start").none() = nb::none(),
              nb::arg("end").none() = nb::none(), nb::arg("every").none() = 1, nb::arg("springs").none() = false,
              nb::arg("seconds").none() = nb::none(), nb::arg("environment").none() = nb::none(),
+             nb::arg("floor").none() = false, nb::arg("camera").none() = false,
              nb::sig("def export(what: Robot | Batch | Recording | Result | collections.abc.Sequence[Robot] | "
                      "collections.abc.Sequence[Result], path: str | "
                      "os.PathLike[str], format: str | None = None, *, "
                      "robot: str | int | None = None, still: float | None = None, start: float | None = None, "
                      "end: float | None = None, every: int = 1, springs: bool = False, seconds: float | None = None, "
-                     "environment: object = None) -> None"),
+                     "environment: object = None, floor: bool = False, camera: bool = False) -> None"),
              doc.c_str());
 }
 

@@ -102,17 +102,15 @@ std::string read_whole_file(const std::filesystem::path& path) {
   return content;
 }
 
-void write_whole_file(const std::filesystem::path& path, std::string_view content,
-                      const std::filesystem::path& called) {
+void write_whole_file(const std::filesystem::path& path, std::string_view content) {
   if (is_device_or_pipe(path)) return write_into(path, content);
   const std::filesystem::path target = follow_links(path);
-  const std::filesystem::path& name = called.empty() ? path : called;
   std::filesystem::path temporary;
   int descriptor = -1;
   for (int attempt = 0; descriptor < 0; ++attempt) {
     temporary = temporary_name(target, attempt);
     descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno != EEXIST) fail(name, errno);
+    if (descriptor < 0 && errno != EEXIST) fail(path, errno);
   }
   Descriptor file(descriptor);
   int error = write_all(file.get(), content);
@@ -120,7 +118,7 @@ void write_whole_file(const std::filesystem::path& path, std::string_view conten
   if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
   if (error == 0) return;
   ::unlink(temporary.c_str());
-  fail(name, error);
+  fail(path, error);
 }
 
 }  // namespace mercury

@@ -6,6 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "mercury/error.h"
@@ -22,6 +25,7 @@ namespace {
 
 constexpr double density = 1000;        // one mass of 1 kg for each voxel of 0.1 m [kg/m3]
 constexpr double temperature = 1;       // amplitude: CTE is the amplitude of the muscle [degrees]
+constexpr double usual_drag = 500;      // AggregateDragCoefficient
 constexpr std::size_t most_ascii = 78;  // up to "~"
 
 std::string escaped(std::string_view text) {
@@ -67,11 +71,23 @@ Palette palette_of(const VoxelBody& body) {
   return palette;
 }
 
+// A world in the terms of the format.
+struct World {
+  bool has_floor = false, in_fluid = false;
+  bool self_collision = true;
+  double gravity = 0;                        // along z [m/s2]
+  double friction = 0.8;                     // of all materials
+  std::optional<double> normal_coefficient;  // C_N of the water, times its density over 1000 kg/m3; none = usual_drag
+  double stiffness_scale = 1;
+  double damping = 0;  // [1/s]
+  std::optional<double> seconds, settle;
+};
+
 class VxaWriter {
  public:
-  VxaWriter(const VoxelBody& body, double stiffness_scale, std::string environment, double relaxation_time)
-      : body_(body), palette_(palette_of(body)), environment_(std::move(environment)), scale_(stiffness_scale),
-        relaxation_time_(relaxation_time) {}
+  VxaWriter(const VoxelBody& body, const World& world, double relaxation_time, std::size_t masses)
+      : body_(body), palette_(palette_of(body)), world_(world), scale_(world.stiffness_scale),
+        relaxation_time_(relaxation_time), masses_(static_cast<double>(masses)) {}
 
   std::string document() {
     text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VXA Version=\"1.1\">\n";
@@ -109,21 +125,51 @@ class VxaWriter {
     return relaxation_time_ * voxels / (sum * imported_edge * std::sqrt(density) * scaling_.calibration.time_scale);
   }
 
+  // What the importer makes of the damping.
+  double slow_damping() const {
+    if (world_.damping == 0) return 0;
+    double stiffest = 0, sum = 0, voxels = 0;
+    for (const std::uint32_t cell : body_.cells)
+      if (cell != 0) stiffest = std::max(stiffest, modulus(body_.substances[cell - 1]));
+    for (const std::uint32_t cell : body_.cells)
+      if (cell != 0) {
+        sum += std::sqrt(modulus(body_.substances[cell - 1]) / stiffest);
+        ++voxels;
+      }
+    return world_.damping / Scaling(imported_edge, stiffest, density, world_.gravity).damping(1, sum / voxels);
+  }
+
+  // What the importer makes of the drag, for as many masses per voxel as the robot has.
+  double aggregate_drag() const {
+    const auto voxels =
+        static_cast<double>(std::ranges::count_if(body_.cells, [](std::uint32_t cell) { return cell != 0; }));
+    return *world_.normal_coefficient * density * voxels / masses_;
+  }
+
   void write_world() {
-    const bool land = environment_ == "land", half = std::ranges::any_of(body_.substances, &Substance::half_wave);
-    text_ += fmt::format("<Simulator>\n<Damping>\n<BondDampingZ>{:.17g}</BondDampingZ>\n", bond_damping());
-    text_ +=
-        "<ColDampingZ>0.8</ColDampingZ>\n"
-        "<SlowDampingZ>0</SlowDampingZ>\n</Damping>\n<Collisions>\n<SelfColEnabled>1</SelfColEnabled>\n"
-        "</Collisions>\n";
+    const bool half = std::ranges::any_of(body_.substances, &Substance::half_wave);
+    text_ += fmt::format(
+        "<Simulator>\n<Damping>\n<BondDampingZ>{:.17g}</BondDampingZ>\n<ColDampingZ>0.8</ColDampingZ>\n"
+        "<SlowDampingZ>{:.17g}</SlowDampingZ>\n</Damping>\n<Collisions>\n<SelfColEnabled>{}</SelfColEnabled>\n"
+        "</Collisions>\n",
+        bond_damping(), slow_damping(), world_.self_collision ? 1 : 0);
+    if (world_.seconds || world_.settle) text_ += "<StopCondition>\n";
+    if (world_.seconds)
+      text_ +=
+          fmt::format("<StopConditionType>2</StopConditionType>\n<StopConditionValue>{:.17g}</StopConditionValue>\n",
+                      *world_.seconds);
+    if (world_.settle) text_ += fmt::format("<InitCmTime>{:.17g}</InitCmTime>\n", *world_.settle);
+    if (world_.seconds || world_.settle) text_ += "</StopCondition>\n";
     // Only voxcraft-sim cuts waves off; it does so unless this forbids it.
     text_ += fmt::format("<EnableExpansion>{}</EnableExpansion>\n</Simulator>\n<Environment>\n", half ? 0 : 1);
-    if (!land)
-      text_ += "<FluidEnvironment>1</FluidEnvironment>\n<AggregateDragCoefficient>500</AggregateDragCoefficient>\n";
+    if (world_.in_fluid)
+      text_ += fmt::format(
+          "<FluidEnvironment>1</FluidEnvironment>\n<AggregateDragCoefficient>{:.17g}</AggregateDragCoefficient>\n",
+          world_.normal_coefficient ? aggregate_drag() : usual_drag);
     text_ += fmt::format(
-        "<Gravity>\n<GravEnabled>{0}</GravEnabled>\n<GravAcc>-9.81</GravAcc>\n"
-        "<FloorEnabled>{0}</FloorEnabled>\n</Gravity>\n",
-        land ? 1 : 0);
+        "<Gravity>\n<GravEnabled>{}</GravEnabled>\n<GravAcc>{:.17g}</GravAcc>\n"
+        "<FloorEnabled>{}</FloorEnabled>\n</Gravity>\n",
+        world_.gravity != 0 ? 1 : 0, world_.gravity != 0 ? world_.gravity : -9.81, world_.has_floor ? 1 : 0);
     text_ += fmt::format(
         "<Thermal>\n<TempEnabled>1</TempEnabled>\n<TempAmplitude>{}</TempAmplitude>\n"
         "<TempBase>25</TempBase>\n<VaryTempEnabled>1</VaryTempEnabled>\n"
@@ -144,8 +190,8 @@ class VxaWriter {
       text_ += fmt::format(
           "<Mechanical>\n<MatModel>0</MatModel>\n<Elastic_Mod>{:.17g}</Elastic_Mod>\n"
           "<Density>{}</Density>\n<Poissons_Ratio>0.35</Poissons_Ratio>\n<CTE>{:.17g}</CTE>\n"
-          "<uStatic>1</uStatic>\n<uDynamic>0.8</uDynamic>\n</Mechanical>\n</Material>\n",
-          modulus(substance), density, substance.amplitude / temperature);
+          "<uStatic>1</uStatic>\n<uDynamic>{}</uDynamic>\n</Mechanical>\n</Material>\n",
+          modulus(substance), density, substance.amplitude / temperature, world_.friction);
     }
     text_ += "</Palette>\n";
   }
@@ -199,24 +245,49 @@ class VxaWriter {
   const VoxelBody& body_;
   Palette palette_;
   Scaling scaling_{imported_edge, 1e6, density, 9.81};
-  std::string environment_, text_;
-  double scale_, relaxation_time_;
+  const World world_;
+  std::string text_;
+  double scale_, relaxation_time_, masses_;
 };
+
+World usual_world(const Robot& robot) {
+  const bool land = environment_of(robot) == "land";
+  return {.has_floor = land,
+          .in_fluid = !land,
+          .gravity = land ? -9.81 : 0,
+          .stiffness_scale = land ? land_stiffness_scale : 1.0};
+}
+
+World world_of(const ImportedSettings& settings) {
+  World world{.has_floor = settings.environment == "land",
+              .in_fluid = settings.environment == "resistive",
+              .self_collision = settings.self_collision,
+              .gravity = settings.gravity,
+              .stiffness_scale = settings.stiffness_scale,
+              .damping = settings.damping,
+              .seconds = settings.seconds,
+              .settle = settings.settle};
+  if (world.has_floor) world.friction = settings.friction;
+  if (world.in_fluid) world.normal_coefficient = settings.drag_coefficient;
+  return world;
+}
 
 }  // namespace
 
-std::string vxa_document(const Robot& robot) {
+std::string vxa_document(const Robot& robot, const std::optional<ImportedSettings>& world) {
   const std::optional<VoxelBody> body = voxel_body_of(robot);
   if (!body)
     throw InputError(robot.name,
                      "has no grid of voxels in its origin, which VXA needs; voxel, painted and imported robots have");
-  const std::string environment = environment_of(robot);
   double relaxation_time = 0;  // of all springs, as the importer sets it
   for (const Material& material : materials_of(robot))
     relaxation_time = std::max(relaxation_time, static_cast<double>(material.relaxation_time));
-  return VxaWriter(*body, environment == "land" ? land_stiffness_scale : 1, environment, relaxation_time).document();
+  return VxaWriter(*body, world ? world_of(*world) : usual_world(robot), relaxation_time, robot.masses.size())
+      .document();
 }
 
-void write_vxa(const Robot& robot, const std::filesystem::path& path) { write_whole_file(path, vxa_document(robot)); }
+void write_vxa(const Robot& robot, const std::filesystem::path& path, const std::optional<ImportedSettings>& world) {
+  write_whole_file(path, vxa_document(robot, world));
+}
 
 }  // namespace mercury

@@ -88,12 +88,14 @@ Import import_file(const std::filesystem::path& path, const ImportFormat& format
 Import import_text(std::string_view text, std::string_view format, const std::string& name,
                    const ImportOptions& options = {}, std::string_view base = {});
 
-// A voxel robot, or one that was imported, as VXA: the grid and the materials of its origin. import_text() gives back
-// the same grid and materials. Throws InputError for a robot whose origin holds no grid.
-std::string vxa_document(const Robot& robot);
+// A voxel robot, or one that was imported, as VXA: the grid and the materials of its origin, and a world; without one,
+// that of the environment that the robot is made for. import_text() gives back the same grid, materials and world.
+// Throws InputError for a robot whose origin holds no grid.
+std::string vxa_document(const Robot& robot, const std::optional<ImportedSettings>& world = {});
 
 // Writes vxa_document() to a file, whole or not at all. Throws InputError as that, and for a file that cannot be
 // written.
-void write_vxa(const Robot& robot, const std::filesystem::path& path);
+void write_vxa(const Robot& robot, const std::filesystem::path& path,
+               const std::optional<ImportedSettings>& world = {});
 
 }  // namespace mercury

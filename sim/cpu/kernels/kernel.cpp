@@ -12,9 +12,7 @@ std::vector<Kernel> usable_kernels() {
   std::vector<Kernel> usable;
 #if HWY_ARCH_X86
   const std::int64_t supported = hwy::SupportedTargets();
-#ifndef MERCURY_WITHOUT_AVX512
   if ((supported & HWY_AVX3) != 0) usable.push_back(avx512_kernel);
-#endif
   if ((supported & HWY_AVX2) != 0) usable.push_back(avx2_kernel);
   if ((supported & HWY_SSE4) != 0) usable.push_back(sse4_kernel);
 #elif HWY_ARCH_ARM_A64

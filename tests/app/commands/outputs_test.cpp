@@ -77,21 +77,6 @@ TEST_F(Outputs, FullDeviceIsAFailureInOneLine) {
   EXPECT_EQ(printed.messages, "mercury: standard output cannot be written: the disk is full\n");
 }
 
-// Not by a temporary name, which is gone. Messages go through a pipe, which has no limit.
-TEST_F(Outputs, FilesThatDoNotFitAreCalledByTheirNames) {
-  const auto messages = [&](std::vector<std::string> arguments) {
-    arguments.insert(
-        arguments.begin(),
-        {"-c", "{ (ulimit -f 0; \"$0\" \"$@\" 2>&1 >/dev/null); echo status $?; } | cat", MERCURY_PROGRAM});
-    return run_program("sh", arguments).output;
-  };
-  const std::string reason = ": the file grew beyond the size allowed here (ulimit -f)";
-  EXPECT_EQ(messages(run({"--csv", path("new.csv")})), "mercury: " + path("new.csv") + reason + "\nstatus 1\n");
-  EXPECT_EQ(messages({"export", path("eel.json"), "--seconds", "0.1", "-q", "-o", path("eel.html")}),
-            "mercury: " + path("eel.html") + reason + "; nothing was kept\nstatus 1\n");
-  EXPECT_EQ(listing(), std::vector<std::string>{"eel.json"});
-}
-
 TEST_F(Outputs, CsvGoesThroughAPipe) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   auto reader = std::async(std::launch::async, [this] { return read("pipe"); });

@@ -112,6 +112,23 @@ class Meshio(Case):
             self.assertEqual(grid.field_data["TimeValue"], times[frame])
         self.assertEqual(frame + 1, len(times))
 
+    def test_description_of_a_recording_plays_as_a_series(self):
+        import meshio
+        (self.folder / "below").mkdir()
+        file = self.export_motion("below/swim.xdmf", "--every", 2)  # not beside the recording
+        times, positions, velocities = (values[::2] for values in self.recorded())
+        with meshio.xdmf.TimeSeriesReader(file) as reader:
+            points, cells = reader.read_points_cells()
+            np.testing.assert_array_equal(points, positions[0])
+            self.assertEqual([block.type for block in cells], ["triangle"])
+            np.testing.assert_array_equal(cells[0].data, self.faces)
+            self.assertEqual(reader.num_steps, len(times))
+            for frame in range(len(times)):
+                time, of_points, _ = reader.read_data(frame)
+                self.assertEqual(time, times[frame])
+                np.testing.assert_array_equal(of_points["position"], positions[frame])
+                np.testing.assert_array_equal(of_points["velocity"], velocities[frame])
+
     def test_surfaces_open_too(self):
         import meshio
         for name in ("eel.obj", "eel.stl"):  # meshio reads no .ply whose faces have colors
@@ -148,6 +165,36 @@ class Pygltflib(Case):
                                for weight, target in zip(weights[frame], primitive.targets))
             np.testing.assert_allclose(shape, positions[frame][self.skin], atol=1e-6)
 
+
+    def test_scene_has_a_floor_and_a_camera_that_sees_everything(self):
+        import pygltflib
+        gltf = pygltflib.GLTF2().load(self.export_motion("swim.glb", "--floor", "--camera"))
+        positions = self.recorded()[1][:, self.skin].reshape(-1, 3).astype(float)
+        nodes = {node.name: node for node in gltf.nodes}
+        self.assertEqual({gltf.nodes[child].name for child in gltf.nodes[0].children}, {"voxel-7-0", "floor", "camera"})
+        floor = gltf.accessors[gltf.meshes[nodes["floor"].mesh].primitives[0].attributes.POSITION]
+        self.assertLess(floor.max[2], positions[:, 2].min())
+        x, y, z, w = nodes["camera"].rotation  # to the axes of the scene
+        turn = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+        seen = (positions - nodes["camera"].translation) @ turn
+        perspective = gltf.cameras[0].perspective
+        up = np.tan(perspective.yfov / 2)
+        self.assertTrue((-seen[:, 2] > perspective.znear).all() and (-seen[:, 2] < perspective.zfar).all())
+        self.assertTrue((np.abs(seen[:, 1]) < -seen[:, 2] * up).all())
+        self.assertTrue((np.abs(seen[:, 0]) < -seen[:, 2] * up * perspective.aspectRatio).all())
+        self.assertGreater(turn[2, 1], 0)  # up is up
+
+    def test_curved_skins_have_normals_in_motion(self):
+        import pygltflib
+        mercury("new", "shell", "--seed", 3, "-o", self.folder / "shell.json")
+        mercury("export", self.folder / "shell.json", "--seconds", 0.1, "-o", self.folder / "shell.glb")
+        primitive = pygltflib.GLTF2().load(str(self.folder / "shell.glb")).meshes[0].primitives[0]
+        self.assertIsNotNone(primitive.attributes.NORMAL)
+        self.assertTrue(all("NORMAL" in target for target in primitive.targets))
+        flat = pygltflib.GLTF2().load(self.export("eel.glb")).meshes[0].primitives[0]
+        self.assertIsNone(flat.attributes.NORMAL)  # sides of voxels are flat
 
     def test_several_robots_stand_side_by_side_and_move(self):
         import pygltflib
@@ -195,6 +242,39 @@ class Vtk(Case):
 
 class Usd(Case):
     needs = "pxr"
+
+    def test_stage_has_a_floor_and_a_camera_that_sees_everything(self):
+        from pxr import Gf, Usd as usd, UsdGeom
+        stage = usd.Stage.Open(self.export_motion("swim.usda", "--floor", "--camera"))
+        positions = self.recorded()[1][:, self.skin].reshape(-1, 3)
+        corners = np.array(UsdGeom.Mesh(stage.GetPrimAtPath("/floor")).GetPointsAttr().Get())
+        self.assertEqual(len(corners), 4)
+        self.assertLess(corners[0, 2], positions[:, 2].min())
+        self.assertTrue((corners.min(0) < positions.min(0)).all() and (corners.max(0)[:2] > positions.max(0)[:2]).all())
+        camera = UsdGeom.Camera(stage.GetPrimAtPath("/camera")).GetCamera(0)
+        self.assertAlmostEqual(camera.frustum.ComputeAspectRatio(), 16 / 9, 4)
+        for position in positions[::7]:
+            self.assertTrue(camera.frustum.Intersects(Gf.Vec3d(*map(float, position))))
+        self.assertFalse(usd.Stage.Open(self.export_motion("bare.usda")).GetPrimAtPath("/floor"))
+
+    def test_curved_skins_have_normals(self):
+        from pxr import Usd as usd, UsdGeom
+        mercury("new", "nn", "--seed", 3, "-o", self.folder / "net.json")
+        mercury("export", self.folder / "net.json", "-o", self.folder / "net.usda")
+        robot = usd.Stage.Open(str(self.folder / "net.usda")).GetDefaultPrim()
+        mesh = UsdGeom.Mesh(robot.GetChild("skin"))
+        points, normals = np.array(mesh.GetPointsAttr().Get()), np.array(mesh.GetNormalsAttr().Get())
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
+        faces = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
+        sums = np.zeros_like(points)
+        for a, b, c in faces:
+            area = np.cross(points[b] - points[a], points[c] - points[a])
+            for vertex in (a, b, c):
+                sums[vertex] += area
+        sums /= np.linalg.norm(sums, axis=1, keepdims=True)
+        np.testing.assert_allclose(normals, sums, atol=1e-4)
+        flat = UsdGeom.Mesh(usd.Stage.Open(self.export("eel.usda")).GetDefaultPrim().GetChild("skin"))
+        self.assertIsNone(flat.GetNormalsAttr().Get())  # sides of voxels are flat
 
     def test_stage_has_meters_z_up_and_a_time_code_per_frame(self):
         from pxr import Usd as usd, UsdGeom
@@ -289,7 +369,7 @@ class VtkXdmf(Case):
         for frame, time in enumerate(times):
             self.assertEqual(steps.Get(Pipeline.TIME_STEPS(), frame), time)
             reader.UpdateTimeStep(time)
-            skin, springs = (reader.GetOutputDataObject(0).GetBlock(block) for block in range(2))
+            springs, skin = (reader.GetOutputDataObject(0).GetBlock(block) for block in range(2))
             for grid in (skin, springs):
                 np.testing.assert_array_equal(vtk_to_numpy(grid.GetPoints().GetData()), positions[frame])
                 np.testing.assert_array_equal(vtk_to_numpy(grid.GetPointData().GetArray("velocity")), velocities[frame])
@@ -297,19 +377,12 @@ class VtkXdmf(Case):
             np.testing.assert_array_equal(vtk_to_numpy(springs.GetCellData().GetArray("material")), self.spring_materials)
 
 
-class Hyperslabs(Case):
+class XdmfItems(Case):
     """What the description refers to, by the rules of XDMF, through h5py."""
 
     needs = "h5py"
 
     def item(self, folder, element):
-        if element.get("ItemType") == "HyperSlab":
-            selection, source = element
-            start, stride, count = np.array(selection.text.split(), int).reshape(3, -1)
-            self.assertEqual(selection.get("Dimensions"), f"3 {len(start)}")
-            whole = self.item(folder, source)
-            part = whole[tuple(slice(a, a + s * n, s) for a, s, n in zip(start, stride, count))]
-            return part.reshape([int(n) for n in element.get("Dimensions").split()])
         import h5py
         file, _, path = element.text.partition(":")
         with h5py.File(folder / file) as recording:
@@ -319,12 +392,12 @@ class Hyperslabs(Case):
         self.assertEqual(values.shape, tuple(int(n) for n in element.get("Dimensions").split()))
         return values
 
-    def test_slabs_are_the_frames(self):
+    def test_items_are_the_frames(self):
         from xml.etree import ElementTree
         (self.folder / "below").mkdir()
         file = Path(self.export_motion("below/swim.xdmf", "--every", 3))  # not beside the recording
         times, positions, velocities = (values[::3] for values in self.recorded())
-        skin, springs = ElementTree.parse(file).getroot().find("Domain")
+        springs, skin = ElementTree.parse(file).getroot().find("Domain")
         for series, cells in ((skin, self.faces), (springs, self.springs)):
             self.assertEqual(len(series), len(times))
             for grid, time, position, velocity in zip(series, times, positions, velocities):
@@ -333,7 +406,9 @@ class Hyperslabs(Case):
                 self.assertEqual(topology.get("NumberOfElements"), str(len(cells)))
                 np.testing.assert_array_equal(self.item(file.parent, topology[0]), cells)
                 np.testing.assert_array_equal(self.item(file.parent, grid.find("Geometry")[0]), position)
-                np.testing.assert_array_equal(self.item(file.parent, grid.find("Attribute[@Name='velocity']")[0]), velocity)
+                for name, values in (("position", position), ("velocity", velocity)):
+                    item = grid.find(f"Attribute[@Name='{name}']")[0]
+                    np.testing.assert_array_equal(self.item(file.parent, item), values)
         material = springs[0].find("Attribute[@Name='material']")
         np.testing.assert_array_equal(self.item(file.parent, material[0]), self.spring_materials)
 

@@ -132,6 +132,54 @@ TEST(VxaRoundTrip, SizesOfVoxelsAreRestLengths) {
     EXPECT_NEAR(spring.rest_length, 1.2 * rest_distance(robot, spring.a, spring.b), 1e-6);
 }
 
+// A world that is written comes back as the importer says it, apart from what follows from the robot: the time step and
+// the stiffness of contacts.
+void expect_same_world(const Robot& robot, ImportedSettings world) {
+  const ImportedSettings back = import_text(vxa_document(robot, world), "vxa", "test").settings;
+  EXPECT_NEAR(back.gravity, world.gravity, 1e-12);
+  EXPECT_NEAR(back.friction, world.friction, 1e-12);
+  EXPECT_NEAR(back.damping, world.damping, 1e-12);
+  EXPECT_NEAR(back.drag_coefficient, world.drag_coefficient, 1e-12);
+  for (ImportedSettings* settings : {&world}) {
+    settings->gravity = back.gravity;
+    settings->friction = back.friction;
+    settings->damping = back.damping;
+    settings->drag_coefficient = back.drag_coefficient;
+    settings->dt = back.dt;
+    settings->contact_stiffness = back.contact_stiffness;
+    settings->stiffness_scale = back.stiffness_scale;
+  }
+  EXPECT_EQ(back, world);
+}
+
+TEST(VxaRoundTrip, KeepsTheWorld) {
+  const Robot robot = random_voxel_robot({}, 3);
+  expect_same_world(robot, {.environment = "land",
+                            .gravity = -3.7,
+                            .stiffness_scale = 200,
+                            .friction = 0.35,
+                            .self_collision = false,
+                            .damping = 0.25,
+                            .seconds = 7.5,
+                            .settle = 0.5});
+  expect_same_world(robot, {.environment = "land", .gravity = 0, .stiffness_scale = 200, .friction = 0});
+  expect_same_world(robot, {.environment = "resistive", .drag_coefficient = 1.3, .seconds = 2});
+  expect_same_world(robot, {.environment = "ocean-simple", .gravity = -1});  // without drag
+}
+
+// On land the importer's stiffness scale is 200: springs are as much softer, and pull as they did.
+TEST(VxaRoundTrip, AStiffnessScaleIsPartOfTheSprings) {
+  const Robot robot = random_voxel_robot({}, 3);
+  const Import back = import_text(
+      vxa_document(robot, ImportedSettings{.environment = "land", .gravity = -9.81, .stiffness_scale = 100}), "vxa",
+      "test");
+  const auto stiffness = [](const Robot& of) {
+    return static_cast<double>(materials_of(of)[of.springs.front().material].stiffness);
+  };
+  EXPECT_NEAR(back.settings.stiffness_scale * stiffness(back.robots.front()), 100 * stiffness(robot),
+              1e-4 * stiffness(robot));
+}
+
 TEST(VxaRoundTrip, RobotsWithoutAGridAreRefused) { EXPECT_THROW(vxa_document(random_shell_robot({}, 1)), InputError); }
 
 }  // namespace
