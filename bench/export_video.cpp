@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/video/video_pipeline.h"
@@ -73,7 +74,9 @@ struct Made {
 Made make(const Video& video, OffscreenRenderer& offscreen, FrameWriter& writer, bool interop) {
   ViewSettings view;
   view.interop = interop;
-  VideoPipeline pipeline(offscreen, Simulation(video.configuration, video.robots), view);
+  std::vector<FilmedGroup> groups;
+  groups.push_back({.simulation = Simulation(video.configuration, video.robots)});
+  VideoPipeline pipeline(offscreen, std::move(groups), view);
   const VideoResult result = pipeline.run(writer, render::PixelFormat::yuv420, video.timing, true);
   return {static_cast<double>(result.frames) / result.wall_seconds, pipeline.positions_on_device()};
 }

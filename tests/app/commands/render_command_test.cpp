@@ -18,6 +18,16 @@ namespace {
 
 using testing::HasSubstr;
 
+// Some columns of a picture.
+render::Image columns(const render::Image& picture, int first, int width) {
+  render::Image cut{.width = width, .height = picture.height, .bytes = {}};
+  for (int row = 0; row < picture.height; ++row) {
+    const auto begin = picture.bytes.begin() + 3 * (row * picture.width + first);
+    cut.bytes.insert(cut.bytes.end(), begin, begin + 3 * width);
+  }
+  return cut;
+}
+
 class RenderCommand : public FolderTest {
  protected:
   std::vector<std::string> command(const std::string& output, std::vector<std::string> more = {}) const {
@@ -294,16 +304,6 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
     ASSERT_EQ(outcome.status, 0) << outcome.messages;
     EXPECT_TRUE(pictures.insert(read("a.png")).second) << testing::PrintToString(variant);
   }
-}
-
-// The columns of a picture from `first` on.
-render::Image columns(const render::Image& image, int first, int count) {
-  render::Image part{count, image.height, image.format, {}};
-  for (int row = 0; row < image.height; ++row) {
-    const auto begin = image.bytes.begin() + 3 * (row * image.width + first);
-    part.bytes.insert(part.bytes.end(), begin, begin + 3 * count);
-  }
-  return part;
 }
 
 // A camera that stays where the start put it, when both sides are alike, is the same for one side and for two.
