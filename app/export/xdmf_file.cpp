@@ -103,13 +103,13 @@ void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::f
   for (std::size_t frame = 0; frame < motion.frames(); ++frame) numbers.push_back(motion.recorded_frame(frame));
   OutputStreams files;
   XdmfWriter(files.add(path), motion, path).write(robot.robot);
+  choices.watch(motion.frames(), motion.frames());  // the last chance to stop: what follows leaves both files
   write_frame_links(frame_links_beside(path),
                     {.recording = recording_seen_from(motion, path),
                      .group = motion.group(),
                      .frames = motion.recording().frames(),
                      .masses = robot.robot.masses.size()},
                     numbers);
-  choices.watch(motion.frames(), motion.frames());
   files.keep();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the frames of a recording are: every few steps, or so many times per second, between steps where they do not
-// fit.
+// Where the frames of a recording are: every few steps, or a number of times per second, between steps where they do
+// not fit.
 //
 //     step    0     1     2     3     4     5     6     7          3.33 steps per frame
 //     frame   0                 .  1           .     2
@@ -30,7 +30,7 @@ class FramePlaces {
 
   // Of a frame, counted from 0. Steps grow from frame to frame.
   FramePlace of(std::int64_t frame) const;
-  // Frames in so many steps from the first one.
+  // Frames in this number of steps from the first one.
   std::int64_t count(std::int64_t steps) const;
   // Steps per frame, rounded, at least 1.
   std::int64_t every() const;
@@ -40,7 +40,7 @@ class FramePlaces {
   double steps_per_frame_;
 };
 
-// Throws InputError("--fps: ...") unless a simulation with steps of `dt` [s] has so many frames per second.
+// Throws InputError("--fps: ...") unless a simulation with steps of `dt` [s] has that many frames per second.
 void require_frame_rate(const char* option, double rate, double dt);
 
 // What a frame between two steps has: `values` of the earlier step become those at `share` of the way to `next`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records a simulation while it runs: a frame every few steps, or so many per second.
+// Records a simulation while it runs: a frame every few steps, or a number of them per second.
 #pragma once
 
 #include <cstdint>

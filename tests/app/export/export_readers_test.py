@@ -261,8 +261,8 @@ class Usd(Case):
         from pxr import Usd as usd, UsdGeom
         mercury("new", "nn", "--seed", 3, "-o", self.folder / "net.json")
         mercury("export", self.folder / "net.json", "-o", self.folder / "net.usda")
-        robot = usd.Stage.Open(str(self.folder / "net.usda")).GetDefaultPrim()
-        mesh = UsdGeom.Mesh(robot.GetChild("skin"))
+        stage = usd.Stage.Open(str(self.folder / "net.usda"))  # which its parts do not keep open
+        mesh = UsdGeom.Mesh(stage.GetDefaultPrim().GetChild("skin"))
         points, normals = np.array(mesh.GetPointsAttr().Get()), np.array(mesh.GetNormalsAttr().Get())
         np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
         faces = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
@@ -273,7 +273,8 @@ class Usd(Case):
                 sums[vertex] += area
         sums /= np.linalg.norm(sums, axis=1, keepdims=True)
         np.testing.assert_allclose(normals, sums, atol=1e-4)
-        flat = UsdGeom.Mesh(usd.Stage.Open(self.export("eel.usda")).GetDefaultPrim().GetChild("skin"))
+        flat_stage = usd.Stage.Open(self.export("eel.usda"))
+        flat = UsdGeom.Mesh(flat_stage.GetDefaultPrim().GetChild("skin"))
         self.assertIsNone(flat.GetNormalsAttr().Get())  # sides of voxels are flat
 
     def test_stage_has_meters_z_up_and_a_time_code_per_frame(self):

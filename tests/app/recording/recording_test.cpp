@@ -120,7 +120,7 @@ TEST_F(Recording, PlaybackOfFramesPerSecondIsAtTheTimesOfTheFrames) {
   Configuration configuration = on_cpu();
   configuration.dt = 0.01;
   configuration.damping = 0;
-  configuration.environment = environment_named("none");
+  configuration.environment = Environment{};
   Simulation simulation(configuration, std::vector{free});
   record(simulation, file(), 100, 1, {.rate = 30});
   Simulation shown = playback(std::make_shared<TrajectoryReader>(file()));
