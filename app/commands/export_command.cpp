@@ -434,7 +434,7 @@ void add_export_command(const Command& program, const Choose& choose) {
                                })));
   command.add_flag("--floor", options->stage.floor,
                    fmt::format("Also a floor below the robots, in {}", format_names(holds_scene)));
-  command.add_flag("--camera", options->stage.camera, "Also a camera that sees all of the motion, in the same");
+  command.add_flag("--with-camera", options->stage.camera, "Also a camera that sees all of the motion, in the same");
   options->film.add_to(command);
   options->output.add_to(command);
   const std::size_t count = command.options().size();

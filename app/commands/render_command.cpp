@@ -225,8 +225,7 @@ void add_render_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor), folders, samples (sample:eel), a run; or up to four recordings (.h5) and runs side "
-      "by side");
+      "Robot files, folders, samples (sample:eel), a run; or up to four recordings (.h5) and runs");
   options->video.add_to(command);
   options->view.add_to(command);
   options->film.add_to(command);

@@ -53,7 +53,7 @@ void require_motion(const ExportFormat& format, const Robot& robot, bool springs
 
 void require_stage(const ExportFormat& format, const StageChoices& stage) {
   if (format.holds_scene || (!stage.floor && !stage.camera)) return;
-  throw ParameterError(stage.floor ? "floor" : "camera",
+  throw ParameterError(stage.floor ? "floor" : "with_camera",
                        fmt::format("a {} file is no scene; give {}", format.extension, format_names(holds_scene)));
 }
 

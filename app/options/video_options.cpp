@@ -33,8 +33,7 @@ PictureSize size_from(const std::string& option, const std::string& text) {
 void VideoOptions::add_to(const Command& command) {
   const auto add = [](const Option& option) { option.in_group("Picture"); };
   add_text(command, "-o,--output", output_,
-           "Video (.mp4, .webm, .gif, .apng), picture (.png, .svg, .pdf), or a folder for one PNG per frame",
-           "FILE|FOLDER")
+           "Video (.mp4, .webm, .gif, .apng), picture (.png, .svg, .pdf) or folder of frames", "FILE|FOLDER")
       .required();
   add(add_value(command, "--size", size_, "Size of the picture (default 1280x720)", "WxH|720p|1080p|4k", size_from)
           .on_first_screen());

@@ -130,7 +130,7 @@ def test_a_batch_is_recorded_at_exact_frames_per_second(robots, tmp_path):
         with pytest.raises(mercurysim.InputError, match="step the batch by step"):
             recorder.frame()
         batch.step(30)
-        with pytest.raises(mercurysim.InputError, match="a frame was due 21 steps ago"):
+        with pytest.raises(mercurysim.InputError, match="a frame was due 22 steps ago"):
             recorder.step(1)
     recording = mercurysim.Recording(tmp_path / "a.h5")
     assert np.allclose(recording.times, np.arange(13) / 30, rtol=0, atol=1e-12)

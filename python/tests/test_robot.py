@@ -421,7 +421,7 @@ def test_the_program_describes_a_robot_as_python_does(tmp_path, mercury):
     robot.save(tmp_path / "a.json")
     [described] = json.loads(mercury("info", "--json", tmp_path / "a.json"))["robots"]
     info = robot.info()
-    assert described.keys() - info.keys() == {"file", "name", "kind", "environment", "actuators", "chip"}
+    assert described.keys() - info.keys() == {"file", "name", "kind", "environment", "actuators", "brain", "chip"}
     for key, value in info.items():
         if key == "materials":
             assert [use["name"] for use in described[key]] == [use.pop("name") for use in value]

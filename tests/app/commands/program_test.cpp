@@ -166,10 +166,10 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Pictures, BadInputTest,
     testing::Values(
-        BadInput{
-            "UnknownExtension",
-            {"render", "--random", "voxel", "-o", "a.avi"},
-            "-o: a.avi: \".avi\" is not a format written here; give .mp4, .webm, .gif, or a folder for PNG pictures"},
+        BadInput{"UnknownExtension",
+                 {"render", "--random", "voxel", "-o", "a.avi"},
+                 "-o: a.avi: \".avi\" is not a format written here; give .mp4, .webm, .gif, .apng, or a folder for PNG "
+                 "pictures"},
         BadInput{"SizeIsText",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--size", "big"},
                  "--size: \"big\" is not accepted; give WIDTHxHEIGHT, 720p, 1080p or 4k in whole numbers above 0"},

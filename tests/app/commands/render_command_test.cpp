@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "render/png.h"
@@ -140,9 +142,12 @@ TEST_F(RenderCommand, FiguresShowRobotsAndTheirShadowsAlone) {
 std::string decoded(const std::string& film, const std::string& decoder = {}) {
   std::vector<std::string> arguments{"-loglevel", "error"};
   if (!decoder.empty()) arguments.insert(arguments.end(), {"-c:v", decoder});
-  arguments.insert(arguments.end(), {"-i", film, "-f", "rawvideo", "-pix_fmt", "rgba", "pipe:1"});
+  arguments.insert(arguments.end(),
+                   {"-i", film, "-vsync", "passthrough", "-f", "rawvideo", "-pix_fmt", "rgba", "-y", film + ".raw"});
   ChildProcess child("ffmpeg", arguments);
-  return outcome_of(child).output;
+  EXPECT_EQ(outcome_of(child).status, 0);
+  std::ifstream frames(film + ".raw", std::ios::binary);
+  return {std::istreambuf_iterator<char>(frames), {}};
 }
 
 TEST_F(RenderCommand, FilmsOverNothingHaveOpacities) {

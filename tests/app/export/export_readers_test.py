@@ -168,7 +168,7 @@ class Pygltflib(Case):
 
     def test_scene_has_a_floor_and_a_camera_that_sees_everything(self):
         import pygltflib
-        gltf = pygltflib.GLTF2().load(self.export_motion("swim.glb", "--floor", "--camera"))
+        gltf = pygltflib.GLTF2().load(self.export_motion("swim.glb", "--floor", "--with-camera"))
         positions = self.recorded()[1][:, self.skin].reshape(-1, 3).astype(float)
         nodes = {node.name: node for node in gltf.nodes}
         self.assertEqual({gltf.nodes[child].name for child in gltf.nodes[0].children}, {"voxel-7-0", "floor", "camera"})
@@ -245,7 +245,7 @@ class Usd(Case):
 
     def test_stage_has_a_floor_and_a_camera_that_sees_everything(self):
         from pxr import Gf, Usd as usd, UsdGeom
-        stage = usd.Stage.Open(self.export_motion("swim.usda", "--floor", "--camera"))
+        stage = usd.Stage.Open(self.export_motion("swim.usda", "--floor", "--with-camera"))
         positions = self.recorded()[1][:, self.skin].reshape(-1, 3)
         corners = np.array(UsdGeom.Mesh(stage.GetPrimAtPath("/floor")).GetPointsAttr().Get())
         self.assertEqual(len(corners), 4)
