@@ -198,7 +198,7 @@ void validate_outputs(const Robot& robot, const Layers& layers, const std::vecto
   }
 }
 
-// Calls visit(vector of weights) and visit_edges() in the order of BrainLayout.
+// Calls visit(weight) for each weight, in the order of BrainLayout.
 template <class ABrain, class Visit>
 void for_each_weight(ABrain& brain, const Visit& visit) {
   for (auto& layer : brain.layers) {
@@ -256,7 +256,6 @@ class PlanMaker {
       plan_.samples = std::max(plan_.samples, std::size_t{sense.delay} + 1);
       const SensorPlace place = description_of(sense.kind).place;
       plan_.uses_state |= place != SensorPlace::none;
-      plan_.uses_frame |= description_of(sense.kind).width == 3;
     }
     return std::move(plan_);
   }

@@ -68,7 +68,6 @@ struct BrainPlan {
   std::size_t samples = 1;  // of the senses that delays need
 
   bool uses_state = false;  // a sense depends on positions or velocities
-  bool uses_frame = false;  // a sense needs the body's frame
 };
 
 // Of a robot with a brain that validate() accepts.

@@ -46,7 +46,6 @@ class Brains {
   // The drives as the brains left them, if they have changed since the last call.
   std::vector<DriveSetting> take_drives();
 
-  bool has(std::size_t robot) const { return static_cast<bool>(of_[robot]); }
   BrainState state(std::size_t robot) const;
   // Throw std::invalid_argument.
   void require_state(std::size_t robot, const BrainState& state) const;

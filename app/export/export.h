@@ -20,7 +20,7 @@ const ExportFormat& format_for(const std::filesystem::path& file, const std::str
 // format cannot hold.
 void require_pose(const ExportFormat& format, const Robot& robot, bool springs);
 void require_motion(const ExportFormat& format, const Robot& robot, bool springs);
-// Throws ParameterError("floor" | "camera", ...) for what the format cannot hold.
+// Throws ParameterError("floor" | "with_camera", ...) for what the format cannot hold.
 void require_stage(const ExportFormat& format, const StageChoices& stage);
 
 // The indices of the robots of these names that are chosen: by a name, or a number from 0; all if `robot` is empty.

@@ -183,6 +183,8 @@ std::vector<BrainState> read_brain_states(hid_t parent, std::span<const Recorded
       std::copy_n(next, own.size(), own.begin());
       next += static_cast<std::ptrdiff_t>(own.size());
     }
+    if (next != all.end())
+      throw Error(fmt::format("/checkpoint/brains/{}: it is longer than the robots' brains", name));
   };
   read("neurons", &BrainState::neurons);
   read("senses", &BrainState::senses);

@@ -66,9 +66,14 @@ struct Brains {
 nb::object rows_of(const Brains& self, std::vector<float> BrainState::*numbers, bool one_sample) {
   const auto [values, rows] = self.batch->use([&](const Simulation& simulation) {
     std::vector<std::vector<float>> all;
+    const Robot* last = nullptr;
+    std::size_t senses = 0;  // of `last`
     for (std::size_t i = 0; i < simulation.size(); ++i) {
+      const Robot& robot = simulation.robot(i);
       all.push_back(simulation.brain_state(i).*numbers);
-      if (one_sample) all.back().resize(brain_layout(simulation.robot(i)).senses.size());
+      if (one_sample && &robot != last) senses = brain_layout(robot).senses.size();
+      if (one_sample) all.back().resize(senses);
+      last = &robot;
     }
     std::size_t columns = 0;
     for (const auto& row : all) columns = std::max(columns, row.size());

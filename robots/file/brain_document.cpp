@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/file/brain_document.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
+#include "robots/file/robot_document.h"
 #include "robots/number_text.h"
 
 namespace mercury {

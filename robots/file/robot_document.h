@@ -73,6 +73,10 @@ std::vector<std::string_view> requirements_of(const Robot& robot);
 // Sends the robot's document. Throws InputError("/origin: ...") if its origin is no JSON object.
 void write_robot(const Robot& robot, DocumentEvents& events);
 
+// Its list of sensors, and its brain (docs/brains.md); mercury/robot_file.h reads them.
+void write_sensors(const Robot& robot, DocumentEvents& events);
+void write_brain(const Brain& brain, DocumentEvents& events);
+
 // Builds a robot from the events of its document. Keys that the format does not know are ignored.
 // An event that breaks a rule throws InputError, with its place as a JSON pointer.
 class RobotReader : public DocumentEvents {

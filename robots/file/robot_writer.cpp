@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "mercury/error.h"
-#include "robots/file/brain_document.h"
 #include "robots/file/robot_document.h"
 
 namespace mercury {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What neurons do with their sums, and noise. Only operations that are rounded alike on every machine are used, in
-// double precision, so that every backend has the same bits: tanh and sigmoid are the nearest float, or in one of 1e6
-// cases the next one.
+// double precision, so that every backend has the same bits: tanh and sigmoid are within 0.5001 units in the last
+// place, so nearly always the nearest float.
 #pragma once
 
 #include <bit>

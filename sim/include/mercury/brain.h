@@ -110,7 +110,7 @@ struct Sensor {
       Parameter("noise", &Sensor::noise, "", Accepts::at_least_zero, {0, 1},
                 "Standard deviation of normal noise, added after the gain"),
       Parameter("delay", &Sensor::delay, "s", Accepts::between(0, 100), {0, 1},
-                "How old the sense is, to the next multiple of the brain's period"),
+                "How old the sense is, to the nearest multiple of the brain's period"),
       Parameter("frequency", &Sensor::frequency, "rad/s", Accepts::any, {0, 20}, "Of a clock"),
       Parameter("phase", &Sensor::phase, "rad", Accepts::any, {0, 6.2831853f}, "Of a clock")};
 };
@@ -164,7 +164,7 @@ inline constexpr std::size_t max_senses = 4096, max_neurons = 4096, max_inputs =
 struct Robot;
 
 // What a robot's brain consists of, by number: senses, neurons and weights. The arrays of BrainState and of programs
-// (Simulation::brain_weights()) have this order.
+// (Simulation::set_brain_weights()) have this order.
 struct BrainLayout {
   std::vector<std::string> senses;     // a name per sense, "strain tail", "clock sine"
   std::vector<std::string> neurons;    // "hidden 3"
