@@ -20,8 +20,7 @@ double mean_bytes(RandomRobots request, const MemoryUse& use) {
   std::vector<FailedRobot> failed;
   double sum = 0;
   const std::vector<Robot> robots = make_random_robots(request, &failed, shown_work());
-  for (const Robot& robot : robots)
-    sum += use.of(robot);
+  for (const Robot& robot : robots) sum += use.of(robot);
   return robots.empty() ? 0 : sum / static_cast<double>(robots.size());
 }
 
