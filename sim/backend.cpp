@@ -7,6 +7,7 @@
 #include <new>
 
 #include "mercury/state.h"
+#include "sim/physics/brain_plan.h"
 #include "sim/physics/points.h"
 
 namespace mercury {
@@ -54,6 +55,8 @@ void mean(const Robot& robot, const Vec3* values, float* out) {
 BatchSettings Backend::settings() const {
   throw std::logic_error("a backend without Backend::settings() can neither add nor keep robots");
 }
+
+PackedBrains Backend::read_brains(bool) const { throw std::logic_error("no brains think in this backend"); }
 
 void Backend::add(std::span<const Robot* const> robots, std::size_t first_new) {
   BatchSettings now = settings();

@@ -10,7 +10,8 @@
 
 #include "mercury/error.h"
 #include "mercury/robot.h"
-#include "sim/brain_plan.h"
+#include "sim/brains.h"
+#include "sim/physics/senses.h"
 
 namespace mercury {
 namespace {
@@ -217,7 +218,7 @@ std::vector<std::uint16_t> ends_of(const Robot& robot, const std::vector<std::ui
     masses.push_back(robot.springs[spring].b);
   }
   std::ranges::sort(masses);
-  masses.erase(std::unique(masses.begin(), masses.end()), masses.end());
+  masses.erase(std::ranges::unique(masses).begin(), masses.end());
   return masses;
 }
 
@@ -245,6 +246,7 @@ class PlanMaker {
       first_.push_back(neurons);
       neurons += copies_ * layer.neurons;
     }
+    plan_.places.emplace_back();  // the whole body
     place_of_actuator_.assign(actuators_.size(), BrainPlan::none);
     place_of_sensor_.assign(robot_.sensors.size(), BrainPlan::none);
     for (std::size_t copy = 0; copy < copies_; ++copy)
@@ -254,9 +256,13 @@ class PlanMaker {
     add_outputs();
     for (const BrainPlan::Sense& sense : plan_.senses) {
       plan_.samples = std::max(plan_.samples, std::size_t{sense.delay} + 1);
-      const SensorPlace place = description_of(sense.kind).place;
-      plan_.uses_state |= place != SensorPlace::none;
+      plan_.uses_state |= description_of(sense.kind).place != SensorPlace::none;
+      plan_.places[sense.place].measures |= measures_of(sense.kind);
+      plan_.uses_frame |= needs_frame(sense.kind);
+      plan_.uses_turn_rate |= sense.kind == SensorKind::turn_rate;
     }
+    if (plan_.uses_frame) plan_.places[0].measures |= measure_center;
+    if (plan_.uses_turn_rate) plan_.places[0].measures |= measure_velocity;
     return std::move(plan_);
   }
 
@@ -278,7 +284,7 @@ class PlanMaker {
       if (place == BrainPlan::none) place = add_place(springs_of(robot_, actuators_[actuator]), {});
       return place;
     }
-    if (sensor.springs.empty() && sensor.masses.empty()) return BrainPlan::none;
+    if (sensor.springs.empty() && sensor.masses.empty()) return 0;
     std::uint32_t& place = place_of_sensor_[number];
     if (place == BrainPlan::none) place = add_place(sensor.springs, sensor.masses);
     return place;
@@ -286,7 +292,7 @@ class PlanMaker {
 
   std::uint32_t add_place(std::vector<std::uint32_t> springs, std::vector<std::uint16_t> masses) {
     if (masses.empty()) masses = ends_of(robot_, springs);
-    plan_.places.push_back({std::move(springs), std::move(masses)});
+    plan_.places.push_back({std::move(springs), std::move(masses), 0});
     return index(plan_.places.size() - 1);
   }
 
@@ -357,10 +363,9 @@ class PlanMaker {
       return weight + input.weights.size();
     }
     const auto to = [&](std::uint32_t k) { return input.edges[k].to; };
-    const std::vector<std::uint32_t>& order = edges_by_neuron_[number];
-    for (auto k = std::ranges::lower_bound(order, index(neuron), {}, to); k != order.end() && to(*k) == neuron; ++k) {
-      plan_.runs.push_back({index(source + input.edges[*k].from), 1, index(weight + *k)});
-      learn(source + input.edges[*k].from, weight + *k);
+    for (const std::uint32_t k : std::ranges::equal_range(edges_by_neuron_[number], index(neuron), {}, to)) {
+      plan_.runs.push_back({index(source + input.edges[k].from), 1, index(weight + k)});
+      learn(source + input.edges[k].from, weight + k);
     }
     return weight + input.edges.size();
   }

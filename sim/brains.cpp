@@ -11,20 +11,9 @@
 #include <utility>
 
 #include "sim/physics/activation.h"
-#include "sim/senses.h"
 
 namespace mercury {
 namespace {
-
-std::int64_t steps_per_thought(const BrainPlan& plan, double dt) {
-  const double steps = static_cast<double>(plan.period) / dt;
-  return steps < 1e15 ? std::max(std::int64_t{1}, static_cast<std::int64_t>(std::llround(steps)))
-                      : std::int64_t{1} << 50;
-}
-
-std::int64_t steps_since_thought(const BrainPlan& plan, const Clock& clock) {
-  return (clock.step - clock.base_step) % steps_per_thought(plan, clock.dt);
-}
 
 void set_clamped(std::span<float> neurons, const std::vector<std::pair<std::uint32_t, float>>& clamps) {
   for (const auto& [neuron, value] : clamps) neurons[neuron] = value;
@@ -66,6 +55,12 @@ void update_neurons(const BrainPlan& plan, std::vector<float>& z, std::span<floa
 
 }  // namespace
 
+void Brains::leave_backend() {
+  fetch();
+  backend_ = nullptr;
+  by_backend_.reset();
+}
+
 void Brains::append(std::span<const std::shared_ptr<const Robot>> added) {
   const Robot* last = nullptr;
   std::shared_ptr<const BrainPlan> plan;  // of `last`
@@ -102,9 +97,67 @@ void Brains::keep(std::span<const std::size_t> robots) {
   changed_ = true;
 }
 
+void Brains::fetch() const {
+  if (!std::exchange(backend_is_newer_, false)) return;
+  const bool weights =
+      std::ranges::any_of(of_, [](const auto& brain) { return brain && !brain->plan->learnings.empty(); });
+  const PackedBrains now = backend_->read_brains(weights);
+  std::size_t neuron = 0, sense = 0, weight = 0, index = 0;
+  const auto take = [](std::vector<float>& to, const std::vector<float>& from, std::size_t& at) {
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(at), to.size(), to.begin());
+    at += to.size();
+  };
+  for (const auto& brain : of_) {
+    if (!brain) continue;
+    take(brain->state.neurons, now.neurons, neuron);
+    take(brain->state.senses, now.senses, sense);
+    if (weights) take(brain->state.weights, now.weights, weight);
+    brain->state.thoughts = now.thoughts[index++];
+  }
+}
+
+Brains::OfRobot* Brains::to_change(std::size_t robot) {
+  fetch();
+  changed_for_backend_ = true;
+  return of_[robot].get();
+}
+
+PackedBrains Brains::packed() const {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  PackedBrains all;
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    if (!of_[i]) continue;
+    const OfRobot& brain = *of_[i];
+    all.neurons.insert(all.neurons.end(), brain.state.neurons.begin(), brain.state.neurons.end());
+    all.senses.insert(all.senses.end(), brain.state.senses.begin(), brain.state.senses.end());
+    if (weights_for_backend_)
+      all.weights.insert(all.weights.end(), brain.state.weights.begin(), brain.state.weights.end());
+    all.thoughts.push_back(brain.state.thoughts);
+    all.clamps.resize(all.neurons.size(), none);
+    set_clamped(std::span(all.clamps).last(brain.state.neurons.size()), brain.clamps);
+    all.targets.push_back(targets_[i].value_or(Vec3{none, none, none}));
+    all.noise_seeds.push_back(brain.noise_seed);
+  }
+  return all;
+}
+
+bool Brains::think_in_backend(Backend& backend) {
+  if (!by_backend_) {
+    std::vector<const BrainPlan*> plans;
+    for (const auto& brain : of_) plans.push_back(brain ? brain->plan.get() : nullptr);
+    by_backend_ = backend.set_brains(plans);
+    if (*by_backend_) backend_ = &backend;
+    changed_for_backend_ = weights_for_backend_ = true;
+  }
+  if (!*by_backend_) return false;
+  if (std::exchange(changed_for_backend_, false)) backend.write_brains(packed());
+  weights_for_backend_ = false;
+  return true;
+}
+
 void Brains::reset(std::size_t robot) {
   if (!of_[robot]) return;
-  OfRobot& brain = *of_[robot];
+  OfRobot& brain = *to_change(robot);
   std::vector<float> weights = std::move(brain.state.weights);
   brain.state = state_at_start(*brain.plan);
   brain.state.weights = std::move(weights);
@@ -112,29 +165,26 @@ void Brains::reset(std::size_t robot) {
   changed_ = true;
 }
 
-std::int64_t Brains::steps_to_thought(const Clock& clock) const {
+std::int64_t Brains::steps_until_thought(const Clock& clock) const {
   std::int64_t least = std::numeric_limits<std::int64_t>::max();
   const BrainPlan* last = nullptr;
   for (const auto& brain : of_) {
     if (!brain || brain->plan.get() == last) continue;
     last = brain->plan.get();
-    const std::int64_t since = steps_since_thought(*last, clock);
-    if (since == 0) return 0;
-    least = std::min(least, steps_per_thought(*last, clock.dt) - since);
+    least = std::min(least, steps_to_thought(last->period, clock));
   }
   return least;
 }
 
 bool Brains::need_state(const Clock& clock) const {
   return std::ranges::any_of(of_, [&](const auto& brain) {
-    return brain && brain->plan->uses_state && steps_since_thought(*brain->plan, clock) == 0;
+    return brain && brain->plan->uses_state && steps_since_thought(brain->plan->period, clock) == 0;
   });
 }
 
-void Brains::sample(OfRobot& brain, const Clock& clock, const Robot& robot, std::span<const Vec3> positions,
-                    std::span<const Vec3> velocities, const Environment& environment, Vec3 target) const {
+void Brains::sample(OfRobot& brain, const Clock& clock, const SensedBody& body, const SensedWorld& world,
+                    Vec3 target) const {
   const BrainPlan& plan = *brain.plan;
-  SensedBody body(robot, plan, positions, velocities, environment, target);
   const std::size_t count = plan.senses.size();
   if (plan.samples > 1)
     std::shift_right(brain.state.senses.begin(), brain.state.senses.end(), static_cast<std::ptrdiff_t>(count));
@@ -146,7 +196,7 @@ void Brains::sample(OfRobot& brain, const Clock& clock, const Robot& robot, std:
     else if (sense.kind == SensorKind::neuron || sense.kind == SensorKind::neighbors)
       value = sense.neuron == BrainPlan::none ? 0 : brain.state.neurons[sense.neuron];
     else
-      value = static_cast<float>(body.measure(sense));
+      value = static_cast<float>(body_sense(sense, body.places[sense.place], body.body, world, target));
     value *= sense.gain;
     if (sense.noise > 0)
       value = multiply_add(sense.noise, normal_number(plan.seed + brain.noise_seed, brain.state.thoughts, i), value);
@@ -157,15 +207,16 @@ void Brains::sample(OfRobot& brain, const Clock& clock, const Robot& robot, std:
 void Brains::think(const Clock& clock, std::span<const std::shared_ptr<const Robot>> robots,
                    std::span<const std::size_t> mass_offsets, std::span<const Vec3> positions,
                    std::span<const Vec3> velocities, const Environment& environment) {
+  const SensedWorld world = SensedWorld::of(environment);
   oneapi::tbb::parallel_for(std::size_t{0}, of_.size(), [&](std::size_t i) {
-    if (!of_[i] || steps_since_thought(*of_[i]->plan, clock) != 0) return;
+    if (!of_[i] || steps_since_thought(of_[i]->plan->period, clock) != 0) return;
     OfRobot& brain = *of_[i];
     const BrainPlan& plan = *brain.plan;
     const auto own = [&](std::span<const Vec3> all) {
       return all.empty() ? all : all.subspan(mass_offsets[i], mass_offsets[i + 1] - mass_offsets[i]);
     };
-    sample(brain, clock, *robots[i], own(positions), own(velocities), environment,
-           targets_[i].value_or(environment.target));
+    sample(brain, clock, measure_body(*robots[i], plan, own(positions), own(velocities), world.ground), world,
+           targets_[i].value_or(world.target));
     std::vector<float> z(plan.senses.size() + plan.neurons.size());
     for (std::size_t k = 0; k < plan.senses.size(); ++k)
       z[k] = brain.state.senses[plan.senses[k].delay * plan.senses.size() + k];
@@ -180,17 +231,19 @@ void Brains::think(const Clock& clock, std::span<const std::shared_ptr<const Rob
 std::vector<DriveSetting> Brains::take_drives() {
   std::vector<DriveSetting> all;
   if (!std::exchange(changed_, false)) return all;
+  fetch();
   for (std::size_t i = 0; i < of_.size(); ++i) {
     if (!of_[i]) continue;
-    for (const BrainPlan::Output& output : of_[i]->plan->outputs) {
-      const float y = of_[i]->state.neurons[output.neuron];
-      all.push_back({i, output.actuator, std::isfinite(y) ? std::clamp(y, -1.0f, 1.0f) : 0.0f});
-    }
+    for (const BrainPlan::Output& output : of_[i]->plan->outputs)
+      all.push_back({i, output.actuator, drive_of(of_[i]->state.neurons[output.neuron])});
   }
   return all;
 }
 
-BrainState Brains::state(std::size_t robot) const { return of_[robot] ? of_[robot]->state : BrainState{}; }
+BrainState Brains::state(std::size_t robot) const {
+  fetch();
+  return of_[robot] ? of_[robot]->state : BrainState{};
+}
 
 void Brains::require_state(std::size_t robot, const BrainState& state) const {
   const BrainState wanted = of_[robot] ? state_at_start(*of_[robot]->plan) : BrainState{};
@@ -202,25 +255,36 @@ void Brains::require_state(std::size_t robot, const BrainState& state) const {
 void Brains::set_state(std::size_t robot, const BrainState& state) {
   require_state(robot, state);
   if (!of_[robot]) return;
-  of_[robot]->state = state;
-  changed_ = true;
+  to_change(robot)->state = state;
+  weights_for_backend_ = changed_ = true;
 }
 
 void Brains::set_weights(std::size_t robot, std::span<const float> weights) {
   require(weights.size(), of_[robot] ? of_[robot]->state.weights.size() : 0, "weights");
-  if (of_[robot]) std::ranges::copy(weights, of_[robot]->state.weights.begin());
+  if (!of_[robot]) return;
+  std::ranges::copy(weights, to_change(robot)->state.weights.begin());
+  weights_for_backend_ = true;
 }
 
 void Brains::clamp(std::size_t robot, std::size_t neuron, std::optional<float> value) {
   const std::size_t count = of_[robot] ? of_[robot]->plan->neurons.size() : 0;
   if (neuron >= count)
     throw std::out_of_range("neuron " + std::to_string(neuron) + ", the brain has " + std::to_string(count));
-  auto& clamps = of_[robot]->clamps;
-  std::erase_if(clamps, [&](const auto& known) { return known.first == neuron; });
+  OfRobot& brain = *to_change(robot);
+  std::erase_if(brain.clamps, [&](const auto& known) { return known.first == neuron; });
   if (!value) return;
-  clamps.emplace_back(static_cast<std::uint32_t>(neuron), *value);
-  of_[robot]->state.neurons[neuron] = *value;
+  brain.clamps.emplace_back(static_cast<std::uint32_t>(neuron), *value);
+  brain.state.neurons[neuron] = *value;
   changed_ = true;
+}
+
+void Brains::set_target(std::size_t robot, std::optional<Vec3> target) {
+  to_change(robot);
+  targets_[robot] = target;
+}
+
+void Brains::set_noise_seed(std::size_t robot, std::uint64_t seed) {
+  if (of_[robot]) to_change(robot)->noise_seed = seed;
 }
 
 }  // namespace mercury

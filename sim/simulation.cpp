@@ -152,6 +152,7 @@ std::size_t Simulation::add(std::span<const Robot> robots) { return add(copies_o
 
 std::size_t Simulation::add(std::span<const std::shared_ptr<const Robot>> robots) {
   const std::size_t first = size();
+  parts_->brains.leave_backend();
   parts_->append(robots);
   if (robots.empty()) return first;
   try {
@@ -179,6 +180,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
     parts_->backend->set_perturbations({});
     return;
   }
+  parts_->brains.leave_backend();
   std::vector<std::shared_ptr<const Robot>> remaining;
   std::vector<const Robot*> pointers;
   std::vector<KnownExplosion> explosions;
@@ -285,11 +287,17 @@ void Simulation::step(std::int64_t steps) {
   }
 }
 
+bool Simulation::Parts::host_thinks() {
+  if (brains.empty()) return false;
+  shared_actuation.arrays(*backend, robots, changed_tables);
+  return !brains.think_in_backend(*backend);
+}
+
 std::int64_t Simulation::Parts::before_step() {
   std::int64_t steps = std::numeric_limits<std::int64_t>::max();
+  const bool on_host = host_thinks();
   if (!brains.empty()) {
-    shared_actuation.arrays(*backend, robots, changed_tables);
-    if (brains.steps_to_thought(clock) == 0) {
+    if (on_host && brains.steps_until_thought(clock) == 0) {
       std::vector<Vec3> positions, velocities;
       if (brains.need_state(clock)) {
         positions.resize(offsets.back());
@@ -300,9 +308,12 @@ std::int64_t Simulation::Parts::before_step() {
       brains.think(clock, robots, offsets, positions, velocities, configuration.environment);
     }
     shared_actuation.set_drives(*backend, brains.take_drives());
-    Clock next = clock;
-    ++next.step;
-    steps = brains.steps_to_thought(next) + 1;
+    brains.expect_thoughts();
+    if (on_host) {
+      Clock next = clock;
+      ++next.step;
+      steps = brains.steps_until_thought(next) + 1;
+    }
   }
   shared_actuation.apply(*backend, robots, changed_tables);
   return steps;
@@ -318,10 +329,12 @@ void Simulation::Parts::advance(std::int64_t steps) {
 }
 
 void Simulation::step_in_stream(std::int64_t steps, void* cuda_stream) {
-  if (cuda_device() < 0 || has_brains()) return step(steps);
+  if (cuda_device() < 0 || parts_->host_thinks()) return step(steps);
   if (steps < 0) throw std::invalid_argument("the number of steps must be 0 or more");
-  if (steps > 0 && size() > 0)
+  if (steps > 0 && size() > 0) {
+    parts_->before_step();
     parts_->backend->step_in_stream(parts_->clock, steps, parts_->shared_state.targets(), cuda_stream);
+  }
   parts_->clock.step += steps;
 }
 
@@ -329,7 +342,7 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
   if (every <= 0 || steps < 0 || steps % every != 0)
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
-  if (measures_folding() || has_brains()) {  // which may take the positions of every sample, or think between them
+  if (measures_folding() || parts_->host_thinks()) {  // which may need the positions between samples
     for (std::size_t first = 0; first < samples.size(); first += size()) {
       step(every);
       std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));

@@ -83,6 +83,8 @@ struct Simulation::Parts {
   }
   void change_clock(const Clock& changed);
 
+  // Whether there are brains that think here, between calls of the backend.
+  bool host_thinks();
   // Steps the backend, and lets the brains think meanwhile.
   void advance(std::int64_t steps);
   // To be called before the backend steps, and after it has changed the state. Returns how many steps it may take.

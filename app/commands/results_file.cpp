@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -60,7 +61,12 @@ void print_results(std::string_view content) {
 
 }  // namespace
 
-void write_results(const std::string& file, std::string_view content) {
+bool is_there(const std::string& file) {
+  std::error_code ignored;
+  return std::filesystem::exists(file, ignored);
+}
+
+void write_results(const std::string& file, std::string_view content, bool replaces) {
   if (is_standard_output(file)) {
     print_results(content);
     return;
@@ -68,7 +74,10 @@ void write_results(const std::string& file, std::string_view content) {
   flush_results_so_far();  // what was printed so far is not lost if this takes long, or fails
   std::optional<PipeWithReader> pipe;
   if (is_named_pipe(file)) pipe.emplace(file);
-  write_whole_file(file, content);
+  if (replaces) return write_whole_file(file, content);
+  UnfinishedFile unfinished(file, false);
+  write_whole_file(unfinished.path(), content);
+  unfinished.keep();
 }
 
 }  // namespace mercury

@@ -28,6 +28,8 @@ class Actuators {
     sources_.actuator_of = {};
   }
   void clear() { *this = {}; }
+  const DrivenMaterial* driven() const { return driven_.data(); }
+  const ActuationSources& sources() const { return sources_; }
 
   // Computes all driven materials, and their phases for this clock. Asynchronous.
   void apply(const Clock& clock, cudaStream_t stream) const {

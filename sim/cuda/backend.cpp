@@ -127,6 +127,7 @@ void CudaBackend::set_perturbations(std::span<const Perturbation> perturbations)
 // Applies the settings at once, so that telemetry before the next step shows them.
 bool CudaBackend::set_actuation(const ActuationSources& sources) {
   begin_change();
+  owned_->brains.clear();
   owned_->actuators.clear();
   std::vector<std::vector<std::uint32_t>> robots_of(owned_->classes.size());  // those with actuators
   for (std::uint32_t i = 0; i < places_.size(); ++i)
@@ -134,17 +135,21 @@ bool CudaBackend::set_actuation(const ActuationSources& sources) {
                             [](std::uint8_t actuator) { return actuator != ActuationSources::no_actuator; }))
       robots_of[places_[i].size_class].push_back(i);
   std::vector<DrivenMaterial> driven;
+  driven_of_.assign(places_.size(), {});
   for (std::size_t c = 0; c < robots_of.size(); ++c) {
     SizeClass& robots = owned_->classes[c];
     robots.end_actuation();
     if (robots_of[c].empty()) continue;
     robots.begin_actuation();
-    for (const std::size_t i : robots_of[c])
+    for (const std::size_t i : robots_of[c]) {
+      driven_of_[i].first = driven.size();
       for (std::size_t id = 0; id < max_materials; ++id)
         if (const std::uint8_t actuator = sources.actuator_of[i * max_materials + id];
             actuator != ActuationSources::no_actuator && robots.uses(places_[i].number, static_cast<MaterialId>(id)))
           driven.push_back(robots.driven_material(places_[i].number, static_cast<MaterialId>(id),
                                                   static_cast<std::uint32_t>(i * sources.columns + actuator)));
+      driven_of_[i].second = driven.size() - driven_of_[i].first;
+    }
   }
   choose_launches();
   if (driven.empty()) return true;
@@ -152,6 +157,35 @@ bool CudaBackend::set_actuation(const ActuationSources& sources) {
   owned_->actuators.apply({}, main().get());
   main().synchronize();
   return true;
+}
+
+bool CudaBackend::set_brains(std::span<const BrainPlan* const> plans) {
+  settle();
+  std::vector<DeviceBrains::Thinker> thinkers;
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    if (plans[i])
+      thinkers.push_back({.robot = i,
+                          .body = &class_of(i).robot(places_[i].number),
+                          .plan = plans[i],
+                          .order = &class_of(i).order_of(places_[i].number),
+                          .size_class = places_[i].size_class,
+                          .place = places_[i].number,
+                          .first_driven = driven_of_[i].first,
+                          .driven = driven_of_[i].second});
+  std::vector<std::uint32_t> class_sizes;
+  for (const auto& robots : classes()) class_sizes.push_back(robots->size());
+  owned_->brains.set(thinkers, class_sizes, main().get());
+  return true;
+}
+
+void CudaBackend::write_brains(const PackedBrains& brains) {
+  settle();
+  owned_->brains.write(brains, main().get());
+}
+
+PackedBrains CudaBackend::read_brains(bool weights) const {
+  settle();
+  return owned_->brains.read(weights, main().get());
 }
 
 void CudaBackend::settle() const {
@@ -169,6 +203,7 @@ void CudaBackend::begin_exchange() {
   begin_change();
   views_valid_ = rest_valid_ = false;
   positions_copy_.reset();
+  owned_->brains.clear();
   owned_->actuators.clear();
   for (const auto& robots : classes()) robots->end_actuation();
 }

@@ -19,9 +19,11 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mercury/backend.h"
+#include "sim/cuda/brains.h"
 #include "sim/cuda/intake.h"
 #include "sim/cuda/step.h"
 
@@ -49,6 +51,9 @@ class CudaBackend final : public Backend {
   void write_materials(std::size_t robot, std::span<const Material> table) override;
   void set_perturbations(std::span<const Perturbation> perturbations) override;
   bool set_actuation(const ActuationSources& sources) override;
+  bool set_brains(std::span<const BrainPlan* const> plans) override;
+  void write_brains(const PackedBrains& brains) override;
+  PackedBrains read_brains(bool weights) const override;
 
   // Time (backend_steps.cpp).
   void step(const Clock& clock, std::int64_t steps) override;
@@ -85,6 +90,7 @@ class CudaBackend final : public Backend {
     DeviceArray<RobotView> views;          // [robot], if views_valid_
     DeviceArray<float> rest;               // [mass][6], positions and velocities at the start, if rest_valid_
     Actuators actuators;                   // none are driven if it is empty
+    DeviceBrains brains;                   // none think if it is empty
     MappedArray<DeviceTelemetry> reports;  // of the current state if report_valid_
     DeviceArray<DeviceTelemetry> samples;  // of step_and_report()
   };
@@ -135,9 +141,10 @@ class CudaBackend final : public Backend {
   int device_;
   std::string name_;
   std::unique_ptr<Owned> owned_;
-  std::vector<Place> places_;                // [robot]
-  std::vector<std::size_t> first_report_;    // [class]
-  std::vector<std::uint32_t> launch_order_;  // classes that have robots, the largest robots first
+  std::vector<Place> places_;                                   // [robot]
+  std::vector<std::pair<std::size_t, std::size_t>> driven_of_;  // [robot], its driven materials: the first, how many
+  std::vector<std::size_t> first_report_;                       // [class]
+  std::vector<std::uint32_t> launch_order_;                     // classes that have robots, the largest robots first
   mutable bool report_valid_ = false, report_expected_ = false;
   mutable std::shared_ptr<float> positions_copy_;  // where steps leave the positions; nullptr = nowhere
   mutable bool copy_valid_ = false;                // it holds those of the current state

@@ -146,8 +146,12 @@ void CudaBackend::begin_launches(const Clock& clock) const {
 void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream) const {
   for (const std::uint32_t c : launch_order_) {
     const SizeClass& robots = owned_->classes[c];
-    StepArguments arguments{robots.view(),  clock, constants_, stiffness_scale_of(configuration_.environment), 0,
-                            robots.launch()};
+    StepArguments arguments{.batch = robots.view(),
+                            .clock = clock,
+                            .constants = constants_,
+                            .stiffness_scale = stiffness_scale_of(configuration_.environment),
+                            .launch = robots.launch(),
+                            .thoughts = owned_->brains.thoughts(c, configuration_.environment, owned_->actuators)};
     const AnyEnvironmentModel model = model_for(robots.launch());
     std::int64_t done = 0;
     do {

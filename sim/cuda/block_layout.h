@@ -98,7 +98,7 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
   BlockLayout layout{};
   const std::uint32_t tables = launch.shared_table ? 1 : launch.robots_per_block;
   layout.tables = (tables * launch.table_chunks * lanes * parameter_bytes) << launch.table_copy_bits;
-  layout.failures = layout.tables + launch.robots_per_block * 16;
+  layout.failures = layout.tables + launch.robots_per_block * 16;  // and the steps of the next thoughts
   layout.lengths = layout.failures + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
   layout.relaxation_times = layout.lengths + (launch.viscous ? tables * launch.table_chunks * lanes * 4 : 0);
   layout.contacts = layout.relaxation_times;

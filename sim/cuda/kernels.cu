@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "sim/cuda/actuate.cuh"
 #include "sim/cuda/stream.h"
-#include "sim/physics/actuation.h"
 
 namespace mercury::cuda {
 namespace {
@@ -119,16 +119,9 @@ __global__ void rename_kernel(std::uint32_t* records, std::size_t records_per_ro
   }
 }
 
-__global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, const float* amplitude,
-                               const float* frequency, const float* phase, const float* drive, Clock clock) {
+__global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, ActuationSources sources, Clock clock) {
   const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
-  if (i >= count) return;
-  const DrivenMaterial to = driven[i];
-  const Material now =
-      actuated(*to.own, {amplitude[to.setting], frequency[to.setting], phase[to.setting], drive[to.setting]});
-  *to.now = now;
-  *to.phase = muscle_phase(now, clock);
-  *to.swing = MuscleSwing::of(now);
+  if (i < count) set_driven(driven[i], sources, clock);
 }
 
 }  // namespace
@@ -182,8 +175,7 @@ void rename_materials(std::uint32_t* records, std::size_t robots, std::size_t re
 
 void actuate(const DrivenMaterial* driven, std::size_t count, const ActuationSources& sources, const Clock& clock,
              cudaStream_t stream) {
-  actuate_kernel<<<blocks_for(count), many_threads, 0, stream>>>(driven, count, sources.amplitude, sources.frequency,
-                                                                 sources.phase, sources.drive, clock);
+  actuate_kernel<<<blocks_for(count), many_threads, 0, stream>>>(driven, count, sources, clock);
   check(cudaGetLastError(), "driving actuators");
 }
 

@@ -89,6 +89,7 @@ class SizeClass {
   DrivenMaterial driven_material(std::uint32_t place, MaterialId id, std::uint32_t setting) const;
   void set_perturbations(std::span<const DevicePerturbation> perturbations);
 
+  const Robot& robot(std::uint32_t place) const { return *robots_[place]; }
   const SlotOrder& order_of(std::uint32_t place) const { return *slot_tables_[place]; }
   void read(std::uint32_t place, std::span<Vec3> positions, std::span<Vec3> velocities) const;
   void write(std::uint32_t place, std::span<const Vec3> positions, std::span<const Vec3> velocities);

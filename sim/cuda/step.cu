@@ -6,69 +6,137 @@
 #include "sim/cuda/report.cuh"
 #include "sim/cuda/step.cuh"
 #include "sim/cuda/stream.h"
+#include "sim/cuda/think.cuh"
 
 namespace mercury::cuda {
 namespace {
+
+// A thread's part in its block.
+template <Solver solver, class EnvironmentModel, class Memory_, int record_words>
+struct BlockPart {
+  using Memory = Memory_;
+  using Stepper = RobotStepper<solver, EnvironmentModel, Memory, record_words>;
+  using Robot = typename Stepper::Robot;
+
+  BlockContext<solver, Memory> context;
+  MaterialTable<solver> materials;
+  Stepper stepper;
+
+  __device__ BlockPart(const StepArguments& arguments, const EnvironmentModel& model)
+      : context(arguments, Robot::fields, thread_index()), materials(table_of(arguments, context)),
+        stepper(arguments, model, context) {}
+
+  // Threads without a robot, or with one that exploded earlier, skip the work but take part in all barriers.
+  __device__ bool active() const { return context.has_robot && stepper.alive(); }
+
+ private:
+  // The compiler takes it for another one each time.
+  __device__ static std::uint32_t thread_index() {
+    std::uint32_t index = threadIdx.x;
+    asm volatile("" : "+r"(index));
+    return index;
+  }
+  // All warps of the block share one table, or those of each robot have their own.
+  __device__ static MaterialTable<solver> table_of(const StepArguments& arguments,
+                                                   const BlockContext<solver, Memory>& context) {
+    const LaunchConfiguration& launch = arguments.launch;
+    const ThreadContext<Memory>& thread = context.thread;
+    if (launch.shared_table)
+      return {arguments,          context.first_robot, thread.warp + context.number * launch.warps_per_robot,
+              blockDim.x / lanes, thread.lane,         context.material_table};
+    return {arguments, thread.robot, thread.warp, launch.warps_per_robot, thread.lane, context.material_table};
+  }
+};
+
+// Lets those robots of the block think that do so before this step. Returns the step before which one of them thinks
+// next, or the end of the launch.
+template <class Part, class EnvironmentModel>
+__device__ std::uint32_t think_if_due(const StepArguments& arguments, const EnvironmentModel& model,
+                                      std::uint32_t step) {
+  Part part(arguments, model);
+  const auto& thread = part.context.thread;
+  std::uint32_t& own = part.context.next_thought[part.context.number];
+  if (own == step) {
+    const std::uint32_t next = think<typename Part::Memory>(arguments, thread.masses, thread.robot, thread.warp,
+                                                            Part::Robot::tile_bytes, step);
+    part.materials.update(arguments, step);
+    if (thread.warp == 0 && thread.lane == 0) own = next;
+  }
+  __syncthreads();
+  std::uint32_t end = arguments.steps;
+  for (std::uint32_t i = 0; i < arguments.launch.robots_per_block; ++i) end = min(end, part.context.next_thought[i]);
+  return end;
+}
 
 // Registers are limited so that a multiprocessor holds 28 warps (launch_configuration.cpp).
 template <Solver solver, class EnvironmentModel, class Memory, int record_words>
 __global__ void __maxnreg__(72)
     step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ EnvironmentModel model) {
-  using Stepper = RobotStepper<solver, EnvironmentModel, Memory, record_words>;
+  using Part = BlockPart<solver, EnvironmentModel, Memory, record_words>;
   const LaunchConfiguration& launch = arguments.launch;
-  const BlockContext<solver, Memory> context(arguments, Stepper::Robot::fields);
-  const ThreadContext<Memory>& thread = context.thread;
-  // All warps of the block share one table, or those of each robot have their own.
-  const bool shared = launch.shared_table;
-  MaterialTable<solver> materials(
-      arguments, shared ? context.first_robot : thread.robot, shared ? threadIdx.x / lanes : thread.warp,
-      shared ? blockDim.x / lanes : launch.warps_per_robot, thread.lane, context.material_table);
-  materials.fill(arguments);
-  if constexpr (EnvironmentModel::real_bodies)
-    if (launch.viscous) materials.fill_relaxation_times(context.relaxation_times);
-  Stepper stepper(arguments, model, context);
-  // Threads without a robot, or with one that exploded earlier, skip the work but take part in all barriers.
-  const bool active = context.has_robot && stepper.alive();
-  if (thread.warp == 0 && thread.lane == 0) *context.failure = {active ? Failure::never : 0, Failure::never};
-  stepper.load_lengths(context.lengths);
-  stepper.load_state();
-  stepper.prefetch_environment();
-  __syncthreads();
-  int list_contacts = 1;
-
-  for (std::uint32_t step = 0; step < arguments.steps; ++step) {
-    if constexpr (EnvironmentModel::has_contacts)
-      if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts();
-    stepper.add_environment(step);
-    if constexpr (solver == Solver::xpbd) {
-      if (EnvironmentModel::has_faces || EnvironmentModel::has_contacts || arguments.batch.perturbation_count > 0)
-        __syncthreads();
-      stepper.predict(step);
-      __syncthreads();
-    } else if (stepper.sums_apart()) {
-      __syncthreads();
-      stepper.accelerate(step);
-      __syncthreads();
+  {
+    Part part(arguments, model);
+    part.materials.fill(arguments);
+    if constexpr (EnvironmentModel::real_bodies)
+      if (launch.viscous) part.materials.fill_relaxation_times(part.context.relaxation_times);
+    const ThreadContext<Memory>& thread = part.context.thread;
+    if (thread.warp == 0 && thread.lane == 0) {
+      *part.context.failure = {part.active() ? Failure::never : 0, Failure::never};
+      if (arguments.thoughts.thinkers)
+        part.context.next_thought[part.context.number] =
+            part.context.has_robot ? first_thought(arguments, thread.robot) : Thoughts::none;
     }
-    stepper.add_springs(step);
-    stepper.prefetch_end();
+    part.stepper.load_lengths(part.context.lengths);
+    part.stepper.load_state();
     __syncthreads();
-    stepper.end(step);
+  }
+
+  for (std::uint32_t step = 0; step < arguments.steps;) {
+    const std::uint32_t end =
+        arguments.thoughts.thinkers ? think_if_due<Part>(arguments, model, step) : arguments.steps;
+    // What the inner loop needs is worked out behind the call that a thought is: kept across it, it would cost the loop
+    // an eighth of its speed.
+    Part part(arguments, model);
+    auto& [context, materials, stepper] = part;
     stepper.prefetch_environment();
-    materials.update(arguments, step + 1);
-    if constexpr (EnvironmentModel::has_contacts)
-      list_contacts = __syncthreads_or(stepper.contacts_stale());
-    else
+    int list_contacts = 1;
+    for (; step < end; ++step) {
+      if constexpr (EnvironmentModel::has_contacts)
+        if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts();
+      stepper.add_environment(step);
+      if constexpr (solver == Solver::xpbd) {
+        if (EnvironmentModel::has_faces || EnvironmentModel::has_contacts || arguments.batch.perturbation_count > 0)
+          __syncthreads();
+        stepper.predict(step);
+        __syncthreads();
+      } else if (stepper.sums_apart()) {
+        __syncthreads();
+        stepper.accelerate(step);
+        __syncthreads();
+      }
+      stepper.add_springs(step);
+      stepper.prefetch_end();
       __syncthreads();
+      stepper.end(step);
+      stepper.prefetch_environment();
+      materials.update(arguments, step + 1);
+      if constexpr (EnvironmentModel::has_contacts)
+        list_contacts = __syncthreads_or(stepper.contacts_stale());
+      else
+        __syncthreads();
+    }
   }
-  if (active) stepper.store_status();
+  Part part(arguments, model);
+  const ThreadContext<Memory>& thread = part.context.thread;
+  const bool active = part.active();
+  if (active) part.stepper.store_status();
   if (arguments.report) {
-    materials.write_rates(arguments, arguments.steps);
-    const std::uint32_t table = shared ? 0 : thread.robot;
-    report<typename Stepper::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
-                                    context.has_robot ? arguments.report + thread.robot : nullptr);
+    part.materials.write_rates(arguments, arguments.steps);
+    const std::uint32_t table = launch.shared_table ? 0 : thread.robot;
+    report<typename Part::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
+                                 part.context.has_robot ? arguments.report + thread.robot : nullptr);
   }
-  if (active) stepper.store_state();
+  if (active) part.stepper.store_state();
 }
 
 // step_model_of() has all others on the chip.

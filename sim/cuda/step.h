@@ -4,6 +4,7 @@
 
 #include <cuda_runtime_api.h>
 
+#include "sim/cuda/brain_tables.h"
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
 #include "sim/cuda/telemetry.h"
@@ -20,6 +21,7 @@ struct StepArguments {
   std::uint32_t steps = 0;
   LaunchConfiguration launch;
   DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
+  Thoughts thoughts;
 };
 
 // The model whose kernel a launch uses. Robots in device memory wait for it most of the time, so they have one kernel

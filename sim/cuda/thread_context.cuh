@@ -55,13 +55,16 @@ struct BlockContext {
   float* lengths;
   float* relaxation_times;  // [table_chunks][32], if launch.viscous
   Failure* failure;
+  std::uint32_t number;         // of the robot in its block
+  std::uint32_t* next_thought;  // [robot of the block], the step of the launch before which it thinks
   ThreadContext<Memory> thread;
 
   // `fields` = of a tile in working memory.
-  __device__ BlockContext(const StepArguments& arguments, std::uint32_t fields) {
+  __device__ BlockContext(const StepArguments& arguments, std::uint32_t fields, std::uint32_t thread_index) {
     const LaunchConfiguration& launch = arguments.launch;
     const BatchView& batch = arguments.batch;
-    const std::uint32_t block_warp = threadIdx.x / lanes, number = block_warp / launch.warps_per_robot;
+    const std::uint32_t block_warp = thread_index / lanes;
+    number = block_warp / launch.warps_per_robot;
     const std::uint32_t table_copies = 1u << launch.table_copy_bits;
     const BlockLayout layout = block_layout(launch, batch.tile_stride, fields);
     const std::uint32_t working_bytes = batch.tile_stride * fields * field_bytes;
@@ -69,7 +72,7 @@ struct BlockContext {
     has_robot = first_robot + number < batch.robot_count;
     thread.robot = min(first_robot + number, batch.robot_count - 1);
     thread.warp = block_warp % launch.warps_per_robot;
-    thread.lane = threadIdx.x % lanes;
+    thread.lane = thread_index % lanes;
 
     if constexpr (Memory::on_chip)
       thread.masses = shared_address(shared_memory) + layout.contacts + number * working_bytes;
@@ -79,6 +82,7 @@ struct BlockContext {
                      (launch.shared_table ? 0 : number * table_copies * launch.table_chunks * lanes);
     thread.material_table = shared_address(material_table + thread.lane % table_copies);
     failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
+    next_thought = reinterpret_cast<std::uint32_t*>(shared_memory + layout.tables) + 2 * launch.robots_per_block;
     lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
     thread.lengths = shared_address(lengths);
     relaxation_times = reinterpret_cast<float*>(shared_memory + layout.lengths) +

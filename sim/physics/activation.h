@@ -4,7 +4,6 @@
 // place, so nearly always the nearest float.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -20,9 +19,12 @@ namespace mercury {
 MERCURY_HOST_DEVICE double exponential(double x) {
   const double n = std::floor(x * 1.4426950408889634 + 0.5);
   const double r = (x - n * 0.693147180369123816490) - n * 1.90821492927058770002e-10;  // ln 2 in two parts
-  double sum = 1.0;
-  for (int k = 13; k > 0; --k) sum = 1.0 + sum * r / k;
-  return sum * std::bit_cast<double>(static_cast<std::uint64_t>(static_cast<std::int64_t>(n) + 1023) << 52);
+  constexpr double inverse_factorials[] = {
+      1.0 / 6227020800, 1.0 / 479001600, 1.0 / 39916800, 1.0 / 3628800, 1.0 / 362880, 1.0 / 40320, 1.0 / 5040,
+      1.0 / 720,        1.0 / 120,       1.0 / 24,       1.0 / 6,       1.0 / 2,      1.0,         1.0};
+  double sum = 0;
+  for (const double inverse : inverse_factorials) sum = sum * r + inverse;
+  return sum * double_of(static_cast<std::uint64_t>(static_cast<std::int64_t>(n) + 1023) << 52);
 }
 
 MERCURY_HOST_DEVICE double within(double x, double bound) { return x > bound ? bound : x < -bound ? -bound : x; }
@@ -57,11 +59,14 @@ MERCURY_HOST_DEVICE float activation_of(Activation activation, float sum) {
   }
 }
 
+// What an output neuron drives its actuator by.
+MERCURY_HOST_DEVICE float drive_of(float y) { return std::isfinite(y) ? std::fmin(std::fmax(y, -1.0f), 1.0f) : 0.0f; }
+
 // ln x for x in (0, 1]: x = 2^e m with m from 1/sqrt 2 to sqrt 2, and ln m = 2 artanh s, s = (m - 1) / (m + 1).
 MERCURY_HOST_DEVICE double logarithm(double x) {
-  const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+  const std::uint64_t bits = bits_of(x);
   double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
-  double m = std::bit_cast<double>((bits & 0xfffffffffffffu) | 0x3ff0000000000000u);
+  double m = double_of((bits & 0xfffffffffffffu) | 0x3ff0000000000000u);
   if (m > 1.4142135623730951) m *= 0.5, exponent += 1;
   const double s = (m - 1) / (m + 1);
   double sum = 0;

@@ -12,9 +12,9 @@
 #include "bodies.h"
 #include "mercury/error.h"
 #include "shared_batch.h"
-#include "sim/brain_plan.h"
 #include "sim/physics/activation.h"
 #include "sim/physics/body_frame.h"
+#include "sim/physics/brain_plan.h"
 
 namespace mercury {
 namespace {
@@ -382,6 +382,71 @@ TEST_P(BrainOn, PerActuatorReadsItsOwnSensesAndItsNeighbors) {
   EXPECT_EQ(brain_layout(robot).senses.size(), 5 * actuators.size());
 }
 
+// Every kind of sense, of large and small parts of a deformed body, noise, delays, learning and copies of a brain,
+// beside the CPU backend. Their sums have other orders, and the device fuses products and sums.
+TEST_P(BrainOn, FeelsAndLearnsAsTheCpuDoes) {
+  for (const bool per_actuator : {false, true}) {
+    Robot robot = bodies::random_voxels({.x = 7, .y = 6, .z = 5}, 4);
+    for (std::size_t i = 0; i < robot.masses.size(); ++i)
+      robot.mass.push_back(0.5f + 0.01f * static_cast<float>(i % 100));
+    const std::string actuator = per_actuator ? "self" : actuators_of(robot)[1].name;
+    const auto actuators = static_cast<std::uint32_t>(actuators_of(robot).size());
+    for (const SensorDescription& description : sensor_descriptions) {
+      if (description.kind == SensorKind::neighbors && !per_actuator) continue;
+      Sensor sensor{.kind = description.kind, .noise = 0.1f, .frequency = 5};
+      if (description.kind == SensorKind::neuron) sensor.layer = "motor";
+      robot.sensors.push_back(sensor);
+      if (description.place != SensorPlace::springs && description.place != SensorPlace::masses) continue;
+      sensor.actuator = actuator;
+      sensor.delay = 0.03f;
+      robot.sensors.push_back(sensor);
+      sensor.actuator.clear();
+      sensor.noise = 0;
+      if (description.place == SensorPlace::springs)
+        sensor.springs = {7, 1, 900};
+      else
+        sensor.masses = {3, 200, 5};
+      robot.sensors.push_back(sensor);
+    }
+    Brain& brain = robot.brain.emplace();
+    brain.period = 0.01f;
+    brain.per_actuator = per_actuator;
+    std::size_t width = 0;
+    for (const Sensor& sensor : robot.sensors) width += description_of(sensor.kind).width;
+    std::vector<float> weights(width * (per_actuator ? 1 : actuators));
+    for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = 0.1f * std::sin(static_cast<float>(i));
+    brain.layers = {
+        {.name = "motor",
+         .neurons = per_actuator ? 1 : actuators,
+         .alpha = {0.7f},
+         .bias = {},
+         .inputs = {{.from = "senses", .weights = weights, .edges = {}, .rate = per_actuator ? 0 : 1e-3f}}}};
+    Environment environment = Land{};
+    environment.target = {3, 1, 2};
+    State state;
+    for (const Vec3& x : robot.masses) {
+      state.positions.push_back({1.05f * x.x + 5, 0.02f * x.x + 0.96f * x.y - 3, x.z});
+      state.velocities.push_back({0.1f * x.y, 0.2f * x.z - 0.3f * x.x, 0.05f});
+    }
+    SharedBatch batch = this->batch({.dt = dt, .environment = environment}, std::span(&robot, 1));
+    Simulation cpu({.dt = dt, .environment = environment, .device = {.kind = DeviceKind::cpu}}, std::span(&robot, 1));
+    cpu.set_state(0, state);
+    for (int thought = 0; thought < 5; ++thought) {
+      batch->set_state(0, cpu.state(0));  // so that the same body is measured
+      for (Simulation* each : {&*batch, &cpu}) each->step(10);
+      const BrainState got = batch->brain_state(0), expected = cpu.brain_state(0);
+      ASSERT_EQ(got.senses.size(), expected.senses.size());
+      for (std::size_t i = 0; i < got.senses.size(); ++i)
+        ASSERT_NEAR(got.senses[i], expected.senses[i], 2e-6 * (1 + std::abs(expected.senses[i])))
+            << thought << ' ' << i;
+      for (std::size_t i = 0; i < got.neurons.size(); ++i)
+        ASSERT_NEAR(got.neurons[i], expected.neurons[i], 2e-6) << thought << ' ' << i;
+      for (std::size_t i = 0; i < got.weights.size(); ++i) ASSERT_NEAR(got.weights[i], expected.weights[i], 1e-6);
+      EXPECT_EQ(got.thoughts, expected.thoughts);
+    }
+  }
+}
+
 TEST(Brain, EdgesAreAMatrixWithZeros) {
   Robot dense = thinker(), sparse = thinker();
   dense.brain->layers[0].inputs[1].weights = {0, 0, 0.5f, 0, 0, 0, -0.3f, 0, 0};
@@ -519,7 +584,7 @@ TEST(Activations, NoiseIsNormal) {
 TEST(BodyFrame, IsTheRotationOfATurnedBody) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const std::array<Vec3, 3> rows = bodies::random_rotation(seed);
-    std::array<double, 9> s{};
+    double s[9] = {};
     for (int i = 0; i < (seed % 2 == 0 ? 8 : 4); ++i) {  // a cube, or a flat square
       const double x[] = {(i & 1) - 0.5, 1.5 * ((i >> 1 & 1) - 0.5), seed % 2 == 0 ? 0.7 * ((i >> 2) - 0.5) : 0.0};
       for (std::size_t a = 0; a < 3; ++a)

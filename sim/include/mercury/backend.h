@@ -51,11 +51,16 @@ struct PublishedArrays {
 // Where a program writes what drives the actuators (Simulation::actuation()), and what they drive.
 struct ActuationSources {
   static constexpr std::uint8_t no_actuator = 255;
-  const float *amplitude = nullptr, *frequency = nullptr, *phase = nullptr, *drive = nullptr;  // [robot][columns]
+  const float *amplitude = nullptr, *frequency = nullptr, *phase = nullptr;  // [robot][columns]
+  float* drive = nullptr;                                                    // the same; brains write it
   std::size_t columns = 0;
   std::span<const std::uint8_t>
       actuator_of;  // [robot][max_materials], the material's column or no_actuator; host memory
 };
+
+// Of the library's own backends (sim/physics/brain_plan.h).
+struct BrainPlan;
+struct PackedBrains;
 
 // What a batch is given besides its robots.
 struct BatchSettings {
@@ -138,6 +143,16 @@ class Backend {
   // From now on every step begins with reading these. They stay valid until the next call, load(), add() or keep(),
   // after which there are none. Returns false if the backend does not; Simulation then changes materials instead.
   virtual bool set_actuation(const ActuationSources& /*sources*/) { return false; }
+  // From now on the backend lets these brains think between its steps, one per robot, null = none, and drives the
+  // actuators of set_actuation() by them. It has their states, which write_brains() sets, with weights if there are
+  // any. The plans stay valid until the next call, load(), add(), keep() or set_actuation(), after which there are no
+  // brains. Returns false if the backend does not; Simulation then lets them think.
+  virtual bool set_brains(std::span<const BrainPlan* const> /*plans*/) { return false; }
+  virtual void write_brains(const PackedBrains& /*brains*/) {
+    throw std::logic_error("no brains think in this backend");
+  }
+  // Neurons, senses, thoughts, and weights on request.
+  virtual PackedBrains read_brains(bool weights) const;
   // step() and publish(), or put_at_rest() of the robots whose element of `mask` (shared memory, one per robot) is not
   // 0 and publish(), in a stream as Simulation::step_in_stream() says. Called only if cuda_device() is not -1.
   virtual void step_in_stream(const Clock& /*clock*/, std::int64_t /*steps*/, const PublishedArrays& /*arrays*/,

@@ -18,6 +18,13 @@
   __attribute__((always_inline)) inline  // so that it is compiled for the instruction set of its caller
 #endif
 
+// Before a loop that shall stay one on the device.
+#ifdef __CUDA_ARCH__
+#define MERCURY_NO_UNROLL _Pragma("unroll 1")
+#else
+#define MERCURY_NO_UNROLL
+#endif
+
 namespace mercury {
 
 // a b + c. One rounding on the device, two on the host.
@@ -78,6 +85,21 @@ MERCURY_HOST_DEVICE std::int32_t bits_of(float a) {
   return __float_as_int(a);
 #else
   return std::bit_cast<std::int32_t>(a);
+#endif
+}
+
+MERCURY_HOST_DEVICE std::uint64_t bits_of(double a) {
+#ifdef __CUDA_ARCH__
+  return static_cast<std::uint64_t>(__double_as_longlong(a));
+#else
+  return std::bit_cast<std::uint64_t>(a);
+#endif
+}
+MERCURY_HOST_DEVICE double double_of(std::uint64_t bits) {
+#ifdef __CUDA_ARCH__
+  return __longlong_as_double(static_cast<long long>(bits));
+#else
+  return std::bit_cast<double>(bits);
 #endif
 }
 

@@ -148,9 +148,9 @@ class Simulation {
   // keep() make other arrays with the same values for the robots that stay.
   const Actuation& actuation();
 
-  // Brains (mercury/brain.h) think by themselves while the simulation steps. step_in_stream() waits for a batch with
-  // brains. They drive their actuators through actuation(), where what a program writes for these lasts until the brain
-  // thinks again.
+  // Brains (mercury/brain.h) think by themselves while the simulation steps: on the device if that is one CUDA device,
+  // else on the host. They drive their actuators through actuation(), where what a program writes for these lasts until
+  // the brain thinks again.
   bool has_brains() const;
   BrainState brain_state(std::size_t robot) const;  // empty without a brain
   // Throws std::invalid_argument if the numbers are not as many as the robot's brain has.

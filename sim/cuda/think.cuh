@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: Apache-2.0
+// A thought of a brain (mercury/brain.h), between two steps, by the warps of its robot:
+//
+//   measure   each warp     sums over a share of the masses or springs            -> BrainTables::sums
+//   -- barrier of the robot's warps, as after each of the following --
+//   conclude  each warp     a place from its sums, the frame, the turn rate       -> measures, bodies
+//   sense     each thread   one sense                                             -> samples, scratch
+//   update    8 lanes each  the sum of one neuron                                 -> scratch
+//             each thread   one neuron, one weight that learns                    -> scratch, activations, weights
+//   drive     each thread   one output, then one driven material                  -> drives, materials
+//
+// The order of every sum depends only on the robot, not on its number of warps. What the threads exchange lies in
+// device memory, of which the cache has little to do meanwhile: so brains take nothing from the robots on the chip.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "sim/cuda/actuate.cuh"
+#include "sim/cuda/thread_context.cuh"
+#include "sim/physics/activation.h"
+
+namespace mercury::cuda {
+
+// Waits for the warps of one robot of the block. Barrier 0 is __syncthreads().
+__device__ inline void wait_for_robot(std::uint32_t warps) {
+  if (warps == 1) return __syncwarp();
+  asm volatile("bar.sync %0, %1;" ::"r"(1 + threadIdx.x / (warps * lanes)), "r"(warps * lanes) : "memory");
+}
+
+// Sums of 16 values over the lanes of a warp. Lanes exchange halves of what they have, so that lanes 2 i and 2 i + 1
+// have the sum of value i in the end.
+__device__ inline double sums_of_warp(double (&values)[sums_per_share]) {
+#pragma unroll
+  for (unsigned half = 8, distance = 16; half > 0; half /= 2, distance /= 2) {
+    const bool upper = threadIdx.x & distance;
+#pragma unroll
+    for (unsigned i = 0; i < half; ++i) {
+      const double give = upper ? values[i] : values[i + half], keep = upper ? values[i + half] : values[i];
+      values[i] = keep + __shfl_xor_sync(0xffffffffu, give, distance);
+    }
+  }
+  return values[0] + __shfl_xor_sync(0xffffffffu, values[0], 1);
+}
+
+// A robot of a block as its brain sees it.
+template <class Memory>
+struct ThinkingBody {
+  const StepArguments& arguments;
+  typename Memory::Address masses;  // of slot 0
+  std::uint32_t robot, warp, lane;
+  std::uint32_t tile_bytes;
+
+  __device__ std::uint32_t warps() const { return arguments.launch.warps_per_robot; }
+  __device__ std::uint32_t threads() const { return warps() * lanes; }
+  __device__ std::uint32_t thread() const { return warp * lanes + lane; }
+  __device__ const RobotHeader& header() const { return arguments.batch.robots[robot]; }
+  __device__ Mass<Memory> mass_at(std::uint32_t slot) const {
+    return {masses + (slot / lanes * tile_bytes + slot % lanes * 4)};
+  }
+};
+
+template <class Memory>
+class Thought {
+ public:
+  __device__ Thought(const ThinkingBody<Memory>& robot, const Clock& clock)
+      : robot_(robot), thoughts_(robot.arguments.thoughts), tables_(thoughts_.tables),
+        of_(tables_.robots[thoughts_.thinkers[robot.robot]]), clock_(clock), z_(tables_.scratch + of_.first_scratch) {}
+
+  __device__ void think() const {
+    prefetch(tables_.weights + of_.first_weight, of_.weights);
+    prefetch(tables_.senses + of_.first_sense, of_.senses);
+    prefetch(tables_.neurons + of_.first_neuron, of_.neurons);
+    prefetch(tables_.samples + of_.first_sample, of_.senses);
+    prefetch(tables_.activations + of_.first_activation, of_.neurons);
+    prefetch(tables_.clamps + of_.first_activation, of_.neurons);
+    prefetch(thoughts_.driven + of_.first_driven, of_.driven);
+    if (of_.shares > 0) {
+      for (std::uint32_t share = robot_.warp; share < of_.shares; share += robot_.warps()) measure(share);
+      wait();
+      for (std::uint32_t place = robot_.warp; place < of_.places; place += robot_.warps()) conclude(place);
+      wait();
+    }
+    sense();
+    wait();
+    for (std::uint32_t layer = 0; layer < of_.layers; ++layer) update(tables_.layers[of_.first_layer + layer]);
+    drive();
+  }
+
+ private:
+  // Of an array that is read later.
+  template <class T>
+  __device__ void prefetch(const T* array, std::uint32_t count) const {
+    constexpr std::uint32_t line = 128;
+    const auto* const bytes = reinterpret_cast<const char*>(array);
+    for (std::uint32_t at = robot_.thread() * line; at < count * sizeof(T); at += robot_.threads() * line)
+      asm volatile("prefetch.global.L1 [%0];" ::"l"(bytes + at));
+  }
+  __device__ void wait() const { wait_for_robot(robot_.warps()); }
+  __device__ Double3 vector(std::uint32_t slot, Field field) const {
+    return Double3(robot_.mass_at(slot).vector(field));
+  }
+  __device__ double mass(std::uint32_t slot) const {
+    const BatchView& batch = robot_.arguments.batch;
+    return batch.point_masses
+               ? static_cast<double>(batch.point_masses[std::size_t{robot_.robot} * batch.tile_stride * lanes + slot])
+               : 1.0;
+  }
+
+  __device__ void measure(std::uint32_t number) const {
+    const SensingShare share = tables_.shares[of_.first_share + number];
+    double* const out = tables_.sums[of_.first_share + number];
+    if (share.kind == SensingShare::springs) return measure_springs(share, out);
+    double sums[sums_per_share] = {};
+    if (share.kind == SensingShare::tiles)
+      add_tiles(share, sums);
+    else if (share.kind == SensingShare::turning_tiles)
+      add_turning_tiles(share, sums);
+    else
+      add_masses(share, sums);
+    const double sum = sums_of_warp(sums);
+    if (robot_.lane % 2 == 0) out[robot_.lane / 2] = sum;
+  }
+
+  // Positions count from a mass, so that nothing cancels far from the origin of the world.
+  __device__ void add_tiles(const SensingShare& share, double (&sums)[sums_per_share]) const {
+    const Double3 origin = vector(0, field_x);
+    for (std::uint32_t i = 0; i < share.count; ++i) {
+      const std::uint32_t slot = (static_cast<std::uint32_t>(share.first) + i) * lanes + robot_.lane;
+      if (slot >= robot_.header().masses) break;
+      const Double3 x = vector(slot, field_x), d = x - origin, v = vector(slot, field_v);
+      add_mass(mass(slot), d, v, x.z, sums);
+      if (!of_.uses_frame) continue;
+      const Double3 X = mass(slot) * Double3(tables_.rest[of_.first_rest + slot]);
+      sums[7] = fma(X.x, d.x, sums[7]), sums[8] = fma(X.x, d.y, sums[8]), sums[9] = fma(X.x, d.z, sums[9]);
+      sums[10] = fma(X.y, d.x, sums[10]), sums[11] = fma(X.y, d.y, sums[11]), sums[12] = fma(X.y, d.z, sums[12]);
+      sums[13] = fma(X.z, d.x, sums[13]), sums[14] = fma(X.z, d.y, sums[14]), sums[15] = fma(X.z, d.z, sums[15]);
+    }
+  }
+
+  __device__ void add_turning_tiles(const SensingShare& share, double (&sums)[sums_per_share]) const {
+    const Double3 origin = vector(0, field_x);
+    for (std::uint32_t i = 0; i < share.count; ++i) {
+      const std::uint32_t slot = (static_cast<std::uint32_t>(share.first) + i) * lanes + robot_.lane;
+      if (slot >= robot_.header().masses) break;
+      const double m = mass(slot);
+      const Double3 d = vector(slot, field_x) - origin, momentum = m * cross(d, vector(slot, field_v)), md = m * d;
+      sums[0] += momentum.x, sums[1] += momentum.y, sums[2] += momentum.z;
+      sums[3] = fma(md.x, d.x, sums[3]), sums[4] = fma(md.y, d.y, sums[4]), sums[5] = fma(md.z, d.z, sums[5]);
+      sums[6] = fma(md.x, d.y, sums[6]), sums[7] = fma(md.x, d.z, sums[7]), sums[8] = fma(md.y, d.z, sums[8]);
+    }
+  }
+
+  __device__ void add_masses(const SensingShare& share, double (&sums)[sums_per_share]) const {
+    for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
+      const std::uint32_t slot = tables_.slots[share.first + i];
+      const Double3 x = vector(slot, field_x);
+      add_mass(mass(slot), x, vector(slot, field_v), x.z, sums);
+    }
+  }
+  __device__ static void add_mass(double m, Double3 d, Double3 v, double z, double (&sums)[sums_per_share]) {
+    sums[0] = fma(m, d.x, sums[0]), sums[1] = fma(m, d.y, sums[1]), sums[2] = fma(m, d.z, sums[2]);
+    sums[3] = fma(m, v.x, sums[3]), sums[4] = fma(m, v.y, sums[4]), sums[5] = fma(m, v.z, sums[5]);
+    if (on_ground(static_cast<float>(z))) sums[6] += 1;
+  }
+
+  // Springs are many: each is measured in floats.
+  __device__ void measure_springs(const SensingShare& share, double* out) const {
+    double strain = 0, rate = 0;
+#pragma unroll 4
+    for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
+      const SensedSpring spring = tables_.springs[share.first + i];
+      const Mass<Memory> a = robot_.mass_at(spring.a), b = robot_.mass_at(spring.b);
+      const Vec3 d = b.vector(field_x) - a.vector(field_x), v = b.vector(field_v) - a.vector(field_v);
+      const float length = sqrtf(dot(d, d));
+      strain += static_cast<double>(length * spring.inverse_rest_length - 1);
+      if (length > 0) rate += static_cast<double>(dot(d, v) / length * spring.inverse_rest_length);
+    }
+    for (unsigned distance = lanes / 2; distance > 0; distance /= 2) {
+      strain += __shfl_xor_sync(0xffffffffu, strain, distance);
+      rate += __shfl_xor_sync(0xffffffffu, rate, distance);
+    }
+    if (robot_.lane == 0) out[0] = strain, out[1] = rate;
+  }
+
+  // Lanes add up the shares of a place: 0 to 15 those of masses, 16 to 24 those of turning tiles, 25 and 26 those of
+  // springs. Then each lane has all sums, and all compute the same.
+  __device__ void conclude(std::uint32_t number) const {
+    const SensedPlace& place = tables_.places[of_.first_place + number];
+    const std::uint32_t lane = robot_.lane;
+    std::uint32_t first = place.first_share, count = place.mass_shares, column = lane;
+    if (lane >= 16) first += count, count = place.turning_shares, column = lane - 16;
+    if (lane >= 25) first += count, count = place.spring_shares, column = lane - 25;
+    const double(*shares)[sums_per_share] = tables_.sums + of_.first_share + first;
+    double sum = 0;
+#pragma unroll 4
+    for (std::uint32_t i = 0; i < count; ++i) sum += shares[i][min(column, sums_per_share - 1)];
+    const auto of = [&](std::uint32_t from) { return __shfl_sync(0xffffffffu, sum, static_cast<int>(from)); };
+    const auto three = [&](std::uint32_t from) {
+      const double x = of(from), y = of(from + 1), z = of(from + 2);
+      return Double3(x, y, z);
+    };
+    const double weight = number == 0 ? robot_.header().mass : place.mass, share_of_mass = 1 / weight;
+    const std::uint32_t masses = number == 0 ? robot_.header().masses : place.masses;
+    const Double3 center = share_of_mass * three(0), velocity = share_of_mass * three(3);
+    const double touching = of(6), strain = of(25), rate = of(26);
+    PlaceMeasures measured;
+    measured.center = number == 0 ? vector(0, field_x) + center : center;
+    measured.velocity = velocity;
+    measured.touch = thoughts_.world.ground ? touching / masses : 0;
+    const double share_of_springs = place.springs > 0 ? 1.0 / place.springs : 0;
+    measured.strain = share_of_springs * strain;
+    measured.strain_rate = share_of_springs * rate;
+    if (lane == 0) tables_.measures[of_.first_place + number] = measured;
+    if (number > 0 || !of_.uses_frame) return;
+    double s[9];
+#pragma unroll
+    for (std::uint32_t i = 0; i < 9; ++i) s[i] = of(7 + i);
+    BodyMeasures body;
+    if (of_.uses_turn_rate) {
+      const Double3 momentum = three(16) - weight * cross(center, velocity);
+      const Double3 squares = three(19), products = three(22), c = center, mc = weight * center;
+      const double xx = squares.x - mc.x * c.x, yy = squares.y - mc.y * c.y, zz = squares.z - mc.z * c.z;
+      body.turn_rate = angular_velocity(momentum, {yy + zz, xx + zz, xx + yy, -(products.x - mc.x * c.y),
+                                                   -(products.y - mc.x * c.z), -(products.z - mc.y * c.z)});
+    }
+    body.frame = rotation_of(s);
+    if (lane == 0) tables_.bodies[of_.brain] = body;
+  }
+
+  __device__ void sense() const {
+    float* const samples = tables_.samples + of_.first_sample;
+    const float* const neurons = tables_.activations + of_.first_activation;
+    const std::uint64_t thought = tables_.thoughts[of_.brain], seed = of_.seed + tables_.noise_seeds[of_.brain];
+    Vec3 target = tables_.targets[of_.brain];
+    if (std::isnan(target.x)) target = thoughts_.world.target;
+    // Senses of one kind follow one another: they go to different warps, which compute different kinds at once.
+    for (std::uint32_t i = robot_.warp + robot_.lane * robot_.warps(); i < of_.senses; i += robot_.threads()) {
+      const BrainPlan::Sense sense = tables_.senses[of_.first_sense + i];
+      float value = 0;
+      if (sense.kind == SensorKind::clock)
+        value = clock_sense(sense, clock_);
+      else if (sense.kind == SensorKind::neuron || sense.kind == SensorKind::neighbors)
+        value = sense.neuron == BrainPlan::none ? 0 : neurons[sense.neuron];
+      else
+        value = static_cast<float>(body_sense(sense, tables_.measures[of_.first_place + sense.place],
+                                              tables_.bodies[of_.brain], thoughts_.world, target));
+      value *= sense.gain;
+      if (sense.noise > 0) value = multiply_add(sense.noise, normal_number(seed, thought, i), value);
+      for (std::uint32_t sample = of_.samples - 1; sample > 0; --sample)
+        samples[sample * of_.senses + i] = samples[(sample - 1) * of_.senses + i];
+      samples[i] = value;
+      z_[i] = samples[sense.delay * of_.senses + i];
+    }
+    for (std::uint32_t i = robot_.thread(); i < of_.neurons; i += robot_.threads()) z_[of_.senses + i] = neurons[i];
+    wait();
+    if (robot_.thread() == 0) tables_.thoughts[of_.brain] = thought + 1;
+  }
+
+  // y <- y + alpha (act(W z + b) - y).
+  __device__ void update(const BrainPlan::Layer& layer) const {
+    float* const neurons = z_ + of_.senses;
+    float* const sums = neurons + of_.neurons;
+    float* const weights = tables_.weights + of_.first_weight;
+    const std::uint32_t groups = robot_.threads() / neuron_lanes;
+    for (std::uint32_t first = 0; first < layer.count; first += groups) {  // all lanes, since they exchange sums
+      const std::uint32_t i = first + robot_.thread() / neuron_lanes;
+      const float sum = sum_of_lanes(i < layer.count ? part_of_sum(layer.first + i, weights) : 0);
+      if (i < layer.count && robot_.thread() % neuron_lanes == 0) sums[i] = sum;
+    }
+    wait();
+    for (std::uint32_t i = robot_.thread(); i < layer.count; i += robot_.threads()) {
+      const BrainPlan::Neuron neuron = tables_.neurons[of_.first_neuron + layer.first + i];
+      const float clamped = tables_.clamps[of_.first_activation + layer.first + i];
+      const float y = neurons[layer.first + i], wanted = activation_of(neuron.activation, sums[i]);
+      const float changed = neuron.alpha == 1 ? wanted : multiply_add(neuron.alpha, wanted - y, y);
+      neurons[layer.first + i] = std::isnan(clamped) ? changed : clamped;
+      tables_.activations[of_.first_activation + layer.first + i] = neurons[layer.first + i];
+    }
+    wait();
+    if (layer.learnings == 0) return;
+    for (std::uint32_t i = robot_.thread(); i < layer.learnings; i += robot_.threads()) {
+      const BrainPlan::Learning learning = tables_.learnings[of_.first_learning + layer.first_learning + i];
+      const float y = neurons[learning.neuron];
+      float& weight = weights[learning.weight];
+      weight = multiply_add(learning.rate * y, fnma(y, weight, z_[learning.source]), weight);
+    }
+    wait();
+  }
+
+  // Lanes that add up a neuron's inputs together.
+  static constexpr std::uint32_t neuron_lanes = 8;
+  __device__ static float sum_of_lanes(float sum) {
+    for (unsigned distance = neuron_lanes / 2; distance > 0; distance /= 2)
+      sum += __shfl_xor_sync(0xffffffffu, sum, distance);
+    return sum;
+  }
+  // This lane's part: every eighth element of a long run, every eighth short run, and lane 0 has the bias.
+  __device__ float part_of_sum(std::uint32_t number, const float* weights) const {
+    const BrainPlan::Neuron neuron = tables_.neurons[of_.first_neuron + number];
+    const std::uint32_t lane = robot_.thread() % neuron_lanes;
+    float sum = lane == 0 && neuron.bias != BrainPlan::none ? weights[neuron.bias] : 0;
+    for (std::uint32_t r = 0; r < neuron.runs; ++r) {
+      const BrainPlan::Run run = tables_.runs[of_.first_run + neuron.first_run + r];
+      const bool is_long = run.count >= neuron_lanes;
+      if (!is_long && r % neuron_lanes != lane) continue;
+      const std::uint32_t stride = is_long ? neuron_lanes : 1;
+#pragma unroll 4
+      for (std::uint32_t k = is_long ? lane : 0; k < run.count; k += stride)
+        sum = multiply_add(weights[run.weight + k], z_[run.source + k], sum);
+    }
+    return sum;
+  }
+
+  __device__ void drive() const {
+    const ActuationSources& sources = thoughts_.sources;
+    for (std::uint32_t i = robot_.thread(); i < of_.outputs; i += robot_.threads()) {
+      const BrainPlan::Output output = tables_.outputs[of_.first_output + i];
+      sources.drive[of_.robot * sources.columns + output.actuator] = drive_of(z_[of_.senses + output.neuron]);
+    }
+    wait();
+    for (std::uint32_t i = robot_.thread(); i < of_.driven; i += robot_.threads())
+      set_driven(thoughts_.driven[of_.first_driven + i], sources, clock_);
+    wait();
+  }
+
+  const ThinkingBody<Memory>& robot_;
+  const Thoughts& thoughts_;
+  const BrainTables& tables_;
+  const ThinkingRobot& of_;
+  const Clock& clock_;
+  float* const z_;  // senses, then neurons
+};
+
+// The step of the launch before which a robot thinks first, by its place.
+__device__ inline std::uint32_t first_thought(const StepArguments& arguments, std::uint32_t place) {
+  const std::uint32_t thinker = arguments.thoughts.thinkers[place];
+  if (thinker == Thoughts::none) return Thoughts::none;
+  const std::int64_t steps = steps_to_thought(arguments.thoughts.tables.robots[thinker].period, arguments.clock);
+  return static_cast<std::uint32_t>(min(steps, std::int64_t{Thoughts::none}));
+}
+
+// All threads of a robot that thinks before this step of the launch call this. Returns the step of its next thought.
+// Not inline, so that it takes no registers from the steps.
+template <class Memory>
+__device__ __noinline__ std::uint32_t think(const StepArguments& arguments, typename Memory::Address masses,
+                                            std::uint32_t robot, std::uint32_t warp, std::uint32_t tile_bytes,
+                                            std::uint32_t step) {
+  Clock clock = arguments.clock;
+  clock.step += step;
+  const ThinkingBody<Memory> body{arguments, masses, robot, warp, threadIdx.x % lanes, tile_bytes};
+  Thought<Memory>(body, clock).think();
+  const ThinkingRobot& thinker = arguments.thoughts.tables.robots[arguments.thoughts.thinkers[robot]];
+  const std::int64_t next = step + steps_per_thought(thinker.period, clock.dt);
+  return static_cast<std::uint32_t>(min(next, std::int64_t{Thoughts::none}));
+}
+
+}  // namespace mercury::cuda
