@@ -218,7 +218,7 @@ std::vector<std::uint16_t> ends_of(const Robot& robot, const std::vector<std::ui
     masses.push_back(robot.springs[spring].b);
   }
   std::ranges::sort(masses);
-  masses.erase(std::ranges::unique(masses).begin(), masses.end());
+  masses.erase(std::unique(masses.begin(), masses.end()), masses.end());
   return masses;
 }
 
@@ -363,9 +363,10 @@ class PlanMaker {
       return weight + input.weights.size();
     }
     const auto to = [&](std::uint32_t k) { return input.edges[k].to; };
-    for (const std::uint32_t k : std::ranges::equal_range(edges_by_neuron_[number], index(neuron), {}, to)) {
-      plan_.runs.push_back({index(source + input.edges[k].from), 1, index(weight + k)});
-      learn(source + input.edges[k].from, weight + k);
+    const std::vector<std::uint32_t>& order = edges_by_neuron_[number];
+    for (auto k = std::ranges::lower_bound(order, index(neuron), {}, to); k != order.end() && to(*k) == neuron; ++k) {
+      plan_.runs.push_back({index(source + input.edges[*k].from), 1, index(weight + *k)});
+      learn(source + input.edges[*k].from, weight + *k);
     }
     return weight + input.edges.size();
   }

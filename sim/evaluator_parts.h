@@ -13,7 +13,8 @@
 // 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
 //    or in the hands of a worker, which needs no memory of others to finish it: nothing waits in a circle.
 // 4. `end` is the index after the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
-//    its first robot, and whoever works on robots from there on gives up.
+//    its first robot, and whoever works on robots from there on gives up. A portion that stop() finds in the hands of
+//    a worker before its first step is left out alone: later ones may have been stepped.
 #pragma once
 
 #include <atomic>
@@ -87,7 +88,7 @@ struct Evaluator::Parts {
 
   // Of all.
   void fail(std::size_t first, std::exception_ptr exception);  // in the portion that begins there
-  bool next_is_known() const;                                  // locked
+  bool next_is_known();                                        // locked; passes over portions that were given up
   void end_at(std::size_t index);                              // locked
   void update_demand();                                        // locked
   void notify_all();                                           // locked
@@ -107,6 +108,7 @@ struct Evaluator::Parts {
   std::size_t portion_bytes = unknown_count;  // accepted per portion because of the devices' memory
   bool all_made = false;
   std::map<std::size_t, FinishedPortion> finished;  // by the index of the first robot
+  std::map<std::size_t, std::size_t> given_up;      // the same: robots of portions that were stopped before a step
   std::size_t next_index = 0;                       // of the portion that is yielded after `current`
   std::exception_ptr error;                         // thrown by next() when it comes to `end`
   std::size_t error_index = unknown_count;

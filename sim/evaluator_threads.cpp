@@ -206,14 +206,14 @@ void Evaluator::Parts::add_load_times(const LoadTimes& before, const LoadTimes& 
   load_times.upload += after.upload - before.upload;
 }
 
-// Without results if the portion was given up.
+// Without results if the portion was given up: unwanted, or not begun when the evaluation stopped.
 void Evaluator::Parts::finish(DeviceParts& device, const Portion& portion, FinishedPortion result) {
   const std::lock_guard lock(mutex);
   --device.portions_in_hand;
   device.robots_in_hand -= portion.candidates.size();
   if (result.results.empty()) {
     memory_in_use -= portion.bytes();
-    end_at(portion.first);
+    given_up.emplace(portion.first, portion.candidates.size());
   } else {
     for (const Candidate& candidate : portion.candidates) {
       result.bytes.push_back(candidate.bytes);
@@ -231,7 +231,11 @@ void Evaluator::Parts::finish(DeviceParts& device, const Portion& portion, Finis
 
 // --- All
 
-bool Evaluator::Parts::next_is_known() const { return next_index >= end || finished.contains(next_index); }
+bool Evaluator::Parts::next_is_known() {
+  for (auto gap = given_up.find(next_index); gap != given_up.end(); gap = given_up.find(next_index))
+    next_index += gap->second;
+  return next_index >= end || finished.contains(next_index);
+}
 
 void Evaluator::Parts::end_at(std::size_t index) { end = std::min(end.load(), index); }
 

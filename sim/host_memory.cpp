@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "mercury/robot.h"
 #include "sim/host_memory.h"
 
 namespace mercury {
@@ -139,6 +140,17 @@ std::size_t available_host_memory() {
 std::size_t usable_host_memory() {
   const std::size_t available = available_host_memory();
   return available - std::min(available / 8, std::size_t{1} << 30);
+}
+
+std::size_t content_bytes(const Robot& robot) {
+  std::size_t bytes = sizeof(Robot) + robot.name.size() + robot.origin.size() +
+                      robot.materials.size() * (sizeof(Material) + sizeof(std::string)) +
+                      robot.masses.size() * sizeof(Vec3) + robot.springs.size() * sizeof(Spring) +
+                      robot.faces.size() * sizeof(Face) + robot.mass.size() * sizeof(float) +
+                      robot.velocity.size() * sizeof(Vec3) + robot.fixed.size() * sizeof(std::uint16_t);
+  for (const Actuator& actuator : robot.actuators) bytes += sizeof(Actuator) + actuator.materials.size();
+  if (robot.brain) bytes += weights_of(*robot.brain).size() * sizeof(float);
+  return bytes;
 }
 
 std::string memory_line(std::size_t needed, std::size_t usable, std::string_view fits) {

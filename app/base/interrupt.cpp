@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/base/interrupt.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/time.h>
@@ -10,8 +9,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
-#include <stdexcept>
 #include <string_view>
 
 #include "app/base/child_process.h"
@@ -60,17 +57,6 @@ void on_time_over(int) {
   }
 }
 
-// Returns false if there is a file of that name. Throws std::filesystem::filesystem_error.
-bool rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
-  if (errno == EEXIST) return false;
-  // Some file systems cannot rename this way; some of them cannot link, either.
-  if (link(from.c_str(), to.c_str()) == 0) return unlink(from.c_str()) == 0;
-  if (errno == EEXIST) return false;
-  std::filesystem::rename(from, to);
-  return true;
-}
-
 }  // namespace
 
 void catch_interrupts(bool patient) {
@@ -110,10 +96,7 @@ UnsavedResults::~UnsavedResults() {
 }
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& target)
-    : UnfinishedFile(target, std::filesystem::exists(target)) {}
-
-UnfinishedFile::UnfinishedFile(const std::filesystem::path& target, bool replaces)
-    : target_(follow_links(target)), path_(target_), replaces_(replaces) {
+    : target_(follow_links(target)), path_(target_), replaces_(std::filesystem::exists(target)) {
   path_ += fmt::format(".{}-{}.part", getpid(), file_count.fetch_add(1));
   for (int slot = 0; slot < slots && slot_ < 0; ++slot) {
     const char* empty = nullptr;
@@ -123,23 +106,23 @@ UnfinishedFile::UnfinishedFile(const std::filesystem::path& target, bool replace
 
 UnfinishedFile::~UnfinishedFile() {
   if (!path_.empty()) unlink(path_.c_str());
-  if (slot_ >= 0) unfinished[static_cast<std::size_t>(slot_)] = nullptr;
+  release();
 }
 
-void UnfinishedFile::keep() {
-  const std::filesystem::path wanted = target_;
-  if (replaces_)
-    std::filesystem::rename(path_, target_);
-  else
-    for (int number = 2; !rename_to_new(path_, target_); ++number)
-      target_ =
-          wanted.parent_path() / fmt::format("{}-{}{}", wanted.stem().string(), number, wanted.extension().string());
+void UnfinishedFile::release() {
   if (slot_ >= 0) unfinished[static_cast<std::size_t>(slot_)] = nullptr;
   slot_ = -1;
   path_.clear();
-  if (target_ != wanted)
-    throw std::runtime_error(fmt::format("{} was written by another program in the meantime; this one is {}",
-                                         wanted.string(), target_.string()));
+}
+
+void UnfinishedFile::keep() {
+  try {
+    publish(path_, target_, replaces_);
+  } catch (const NameTaken&) {
+    release();
+    throw;
+  }
+  release();
 }
 
 }  // namespace mercury

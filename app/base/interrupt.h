@@ -49,19 +49,16 @@ class UnfinishedFile {
   // Chooses path(): in the folder of `target`, links followed, with its name and this process's id. Does not create the
   // file.
   explicit UnfinishedFile(const std::filesystem::path& target);
-  // The same for a beginning before this call. `replaces`: the target existed then.
-  UnfinishedFile(const std::filesystem::path& target, bool replaces);
   ~UnfinishedFile();  // removes the file unless keep() was called
   UnfinishedFile(const UnfinishedFile&) = delete;
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // Renames the file to `target` and replaces the file that had this name from the beginning. If another program has
-  // written one since, both are kept: this one gets a free name, as in a-2.h5, and std::runtime_error says so. Throws
-  // std::filesystem::filesystem_error.
+  // Gives the file its name, and replaces the one that had it from the beginning: publish() of mercury/file_links.h.
   void keep();
 
  private:
+  void release();
   std::filesystem::path target_, path_;
   bool replaces_;  // the target existed from the beginning
   int slot_ = -1;

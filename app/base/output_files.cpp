@@ -200,6 +200,7 @@ bool OutputFiles::check() const {
   for (const Output& output : outputs_) {
     require_usable(output);
     const auto status = status_of(output.name);
+    if (output.kind != Kind::folder) note_output(output.target, status.has_value());
     if (!status || is_standard_output(output.name) || output.kind == Kind::folder) continue;
     if (output.is_folder() ? !fs::is_empty(output.name, ignored) : !is_device_or_pipe(output.name))
       existing.push_back(&output);
@@ -216,6 +217,16 @@ void OutputFiles::make_folders() const {
     std::error_code error;
     if (!folder.empty()) fs::create_directories(folder, error);
     if (error) throw InputError(output.option, "cannot make the folder " + folder.string() + ": " + error.message());
+  }
+}
+
+fs::path name_given(const fs::path& file, const std::function<void()>& write) {
+  try {
+    write();
+    return file;
+  } catch (const NameTaken& taken) {
+    warn(taken.what());
+    return taken.name;
   }
 }
 

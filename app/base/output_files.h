@@ -9,6 +9,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,7 +39,8 @@ class OutputFiles {
   void add_new_folder(const std::string& option, const std::string& folder, const std::filesystem::path& inside = {});
 
   // Throws InputError that begins with the option for the first output that cannot be written, and for one that exists
-  // unless it may be replaced. Writes and creates nothing. Returns whether existing files may be replaced.
+  // unless it may be replaced. Writes and creates nothing; notes which names are free, so that files of other programs
+  // that have them at the end are kept, see publish(). Returns whether existing files may be replaced.
   bool check() const;
   // Makes the missing folders of all outputs. Throws InputError.
   void make_folders() const;
@@ -62,5 +64,9 @@ class OutputFiles {
   std::vector<std::filesystem::path> inputs_;
   bool force_, may_ask_;
 };
+
+// Calls write(), which writes the file. Returns the name that it has: where another program has taken it in the
+// meantime, another one, which a warning says (NameTaken).
+std::filesystem::path name_given(const std::filesystem::path& file, const std::function<void()>& write);
 
 }  // namespace mercury

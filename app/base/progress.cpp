@@ -71,22 +71,22 @@ std::string clock_text(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-std::string progress_bar(const std::string& what, const std::string& unit, double done, std::int64_t total,
+std::string progress_bar(const std::string& what, const std::string& unit, const Done& done, std::int64_t total,
                          double elapsed, int columns) {
   constexpr int width = 24;
-  const int filled = static_cast<int>(fraction_of(done, total) * width);
-  std::string text = fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f}/{} {}{}", what, "", filled, "", width - filled,
-                                 100 * fraction_of(done, total), std::floor(done), total, unit,
-                                 rate_and_time_left(unit, done, total, elapsed));
+  const int filled = static_cast<int>(fraction_of(done.in_all, total) * width);
+  std::string text = fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %  {}/{} {}{}", what, "", filled, "", width - filled,
+                                 100 * fraction_of(done.in_all, total), done.whole, total, unit,
+                                 rate_and_time_left(unit, done.in_all, total, elapsed));
   // A line as wide as the terminal would wrap, and \r could not overwrite it.
   if (const auto room = static_cast<std::size_t>(std::max(1, columns - 1)); text.size() > room) text.resize(room);
   return text;
 }
 
-std::string progress_line(const std::string& what, const std::string& unit, double done, std::int64_t total,
+std::string progress_line(const std::string& what, const std::string& unit, const Done& done, std::int64_t total,
                           double elapsed) {
-  return fmt::format("{}: {:.0f}/{} {} ({:.0f} %){}", what, std::floor(done), total, unit,
-                     100 * fraction_of(done, total), rate_and_time_left(unit, done, total, elapsed));
+  return fmt::format("{}: {}/{} {} ({:.0f} %){}", what, done.whole, total, unit, 100 * fraction_of(done.in_all, total),
+                     rate_and_time_left(unit, done.in_all, total, elapsed));
 }
 
 Progress::Progress(std::string what, std::string unit, std::int64_t total)
@@ -96,10 +96,10 @@ Progress::Progress(std::string what, std::string unit, std::int64_t total)
 Progress::~Progress() {
   if (shown_ && terminal_) write_to_standard_error("\r\033[K");
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  say_detail(fmt::format("{}: {:.0f} of {} {} in {:.2f} s", what_, std::floor(done_), total_, unit_, elapsed));
+  say_detail(fmt::format("{}: {} of {} {} in {:.2f} s", what_, done_.whole, total_, unit_, elapsed));
 }
 
-void Progress::update_with_fraction(double done) {
+void Progress::update(Done done) {
   done_ = done;
   if (verbosity() == Verbosity::quiet) return;
   const Clock::time_point now = Clock::now();

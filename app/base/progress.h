@@ -11,6 +11,15 @@
 
 namespace mercury {
 
+// How much of a task is done, in its units.
+struct Done {
+  std::int64_t whole = 0;  // are done
+  double in_all = 0;       // the same and what is done in part of others, which counts for the bar and the time left
+
+  Done(std::int64_t done) : Done(done, static_cast<double>(done)) {}
+  Done(std::int64_t done, double with_parts) : whole(done), in_all(with_parts) {}
+};
+
 // Draws a bar with rate and time left on a terminal. Elsewhere prints a plain line at growing intervals, the first
 // after 5 s or what MERCURY_PROGRESS_SECONDS says. Writes nothing if the program is quiet (app/base/messages.h); if it
 // is verbose, says at the end how long the task took.
@@ -23,11 +32,9 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   // Reports that `done` of the total are done. Cheap: writes at most ten times per second.
-  void update(std::int64_t done) { update_with_fraction(static_cast<double>(done)); }
+  void update(Done done);
   // Draws the bar now, on a terminal, with what is done so far: before a single step that may take long.
   void show();
-  // The same as update(); what is done in part counts for the bar and the time left.
-  void update_with_fraction(double done);
 
  private:
   void draw();
@@ -38,7 +45,7 @@ class Progress {
   bool terminal_;
   std::chrono::duration<double> line_period_;
   bool shown_ = false;
-  double done_ = 0;
+  Done done_{0};
   Clock::time_point start_, last_;
 };
 
@@ -48,10 +55,10 @@ bool draws_on_terminal();
 int terminal_columns();
 
 // The bar: "rendering [#####     ]  50 %  150/300 frames  42.1 frames/s  0:04 left", cut to `columns`.
-std::string progress_bar(const std::string& what, const std::string& unit, double done, std::int64_t total,
+std::string progress_bar(const std::string& what, const std::string& unit, const Done& done, std::int64_t total,
                          double elapsed, int columns);
 // The plain line: "rendering: 150/300 frames (50 %)  42.1 frames/s  0:04 left".
-std::string progress_line(const std::string& what, const std::string& unit, double done, std::int64_t total,
+std::string progress_line(const std::string& what, const std::string& unit, const Done& done, std::int64_t total,
                           double elapsed);
 
 // A number with three digits and k, M, G, T or P: "4", "1.50 k", "23.1 G".

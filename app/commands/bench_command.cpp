@@ -232,12 +232,12 @@ class Results {
     if (prints_rows_) print(csv_row(measurement));
     std::error_code ignored;
     const bool is_special =
-        std::filesystem::exists(options_.csv, ignored) && !std::filesystem::is_regular_file(options_.csv, ignored);
-    if (writes_file() && !is_special) write_results(options_.csv, csv_);
+        std::filesystem::exists(file_, ignored) && !std::filesystem::is_regular_file(file_, ignored);
+    if (writes_file() && !is_special) write();
   }
 
   // Prints what the rows did not.
-  void finish() const {
+  void finish() {
     if (!prints_rows_ && options_.json) {
       nlohmann::ordered_json json = nlohmann::ordered_json::array();
       for (const Measurement& m : all_) json.push_back(json_of(m));
@@ -245,19 +245,24 @@ class Results {
     } else if (!prints_rows_) {
       print(table_of(all_.front()));
     }
-    if (writes_file()) write_results(options_.csv, csv_);
+    if (writes_file()) write();
   }
 
   bool empty() const { return all_.empty(); }
+  bool renamed() const { return file_ != options_.csv; }  // since another program has taken the name
 
  private:
   static void print(const std::string& text) {
     fmt::print("{}", text);
     flush_results_so_far();
   }
-  bool writes_file() const { return !options_.csv.empty() && !is_standard_output(options_.csv); }
+  bool writes_file() const { return !file_.empty() && !is_standard_output(file_); }
+  void write() {
+    file_ = name_given(file_, [&] { write_results(file_, csv_); }).string();
+  }
 
   const BenchOptions& options_;
+  std::string file_ = options_.csv;
   bool prints_rows_;
   std::vector<Measurement> all_;
   std::string csv_ = csv_head;
@@ -304,7 +309,7 @@ int bench(const BenchOptions& options) {
   }
   if (results.empty()) throw_if_interrupted();
   results.finish();
-  return interrupted() ? 1 : 0;
+  return interrupted() || results.renamed() ? 1 : 0;
 }
 
 }  // namespace

@@ -43,9 +43,10 @@ ContestResult best_of(const Contest& contest, const MakeRobot& make, std::uint64
   std::vector<Evaluation> of_robot;
   found.interrupted =
       !take_results(evaluator, progress, request.settling + request.steps, results, [&](const Evaluation& trial) {
+        const std::size_t index = trial.index / per_robot;
+        if (!of_robot.empty() && of_robot.front().index / per_robot != index) of_robot.clear();
         of_robot.push_back(trial);
         if (of_robot.size() < per_robot) return;
-        const std::size_t index = trial.index / per_robot;
         RobotResult result = result_of(identity_of(robots, index, index), of_robot, request, contest.trials);
         of_robot.clear();
         ++found.fates[result.fate];

@@ -146,7 +146,6 @@ std::string json_of(const CheckReport& report) {
 }
 
 int check(const CheckOptions& options) {
-  const bool replaces_csv = is_there(options.csv);
   OutputFiles outputs = options.output.files();
   for (const std::filesystem::path& file : options.robots.files()) outputs.add_input(file);
   if (!options.csv.empty()) outputs.add_stream("--csv", options.csv);
@@ -194,7 +193,7 @@ int check(const CheckOptions& options) {
     std::fwrite(text.data(), 1, text.size(), stdout);
     flush_standard_output();
   }
-  if (!options.csv.empty()) write_results(options.csv, csv_of(report), replaces_csv);
+  if (!options.csv.empty()) write_results(options.csv, csv_of(report));
   return report.count(Verdict::confirmed) == report.robots.size() ? 0 : 1;
 }
 

@@ -19,6 +19,12 @@ template <class Take>
 bool take_results(Evaluator& evaluator, Progress& progress, std::int64_t steps, UnsavedResults& results,
                   const Take& take) {
   constexpr std::chrono::milliseconds period{100};
+  const auto show = [&] {
+    const EvaluationProgress now = evaluator.progress();
+    if (now.robot_steps > 0) results.begin();
+    progress.update({static_cast<std::int64_t>(now.done),
+                     static_cast<double>(now.robot_steps) / static_cast<double>(std::max<std::int64_t>(1, steps))});
+  };
   bool stopped = false;
   for (std::uint64_t turn = 0;; ++turn) {
     if (!stopped && interrupted()) {
@@ -26,14 +32,13 @@ bool take_results(Evaluator& evaluator, Progress& progress, std::int64_t steps, 
       evaluator.stop();
     }
     const bool is_ready = evaluator.wait_for(period);
-    if (!is_ready || turn % 1024 == 0) {
-      const std::int64_t made = evaluator.progress().robot_steps;
-      if (made > 0) results.begin();
-      progress.update_with_fraction(static_cast<double>(made) / static_cast<double>(std::max<std::int64_t>(1, steps)));
-    }
+    if (!is_ready || turn % 1024 == 0) show();
     if (!is_ready) continue;
     const std::optional<Evaluation> result = evaluator.next();
-    if (!result) return !stopped;
+    if (!result) {
+      show();
+      return !stopped;
+    }
     take(*result);
   }
 }

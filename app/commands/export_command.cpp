@@ -137,25 +137,32 @@ int export_poses(const ExportOptions& options, const LoadedRobots& loaded, const
   targets.check(options);
   if (options.output.dry_run()) return describe(targets, robots_text(targets.robots().size(), " at rest"));
   Progress progress("exporting", "robots", static_cast<std::int64_t>(targets.robots().size()));
+  int status = 0;
   for (std::size_t i = 0; i < targets.files().size(); ++i) {
     throw_if_interrupted();
     const Robot& robot = *loaded.robots[targets.robots()[i]];
-    targets.format().pose(exported_robot(robot), rest_pose(robot), targets.files()[i],
-                          {.springs = options.springs, .stage = options.stage, .world = world});
-    print_name(targets.files()[i]);
+    const fs::path& file = targets.files()[i];
+    const fs::path given = name_given(file, [&] {
+      targets.format().pose(exported_robot(robot), rest_pose(robot), file,
+                            {.springs = options.springs, .stage = options.stage, .world = world});
+    });
+    print_name(given);
+    if (given != file) status = 1;
     progress.update(static_cast<std::int64_t>(i + 1));
   }
-  return 0;
+  return status;
 }
 
-void write_motions(const ExportOptions& options, const Targets& targets, std::vector<RecordedMotion>& motions,
-                   ExportNotes notes, const std::optional<ImportedSettings>& world = {}) {
+// Returns the exit status.
+int write_motions(const ExportOptions& options, const Targets& targets, std::vector<RecordedMotion>& motions,
+                  ExportNotes notes, const std::optional<ImportedSettings>& world = {}) {
   std::int64_t total = 0, before = 0;
   for (const RecordedMotion& motion : motions) {
     total += static_cast<std::int64_t>(motion.frames());
     if (!motion.problem().empty()) say(motion.problem());
   }
   Progress progress("exporting", "frames", total);
+  int status = 0;
   for (std::size_t i = 0; i < targets.files().size(); ++i) {
     const fs::path& file = targets.files()[i];
     const std::int64_t count = targets.together() ? total : static_cast<std::int64_t>(motions[i].frames());
@@ -165,20 +172,25 @@ void write_motions(const ExportOptions& options, const Targets& targets, std::ve
                                 .notes = notes,
                                 .watch = [&](std::size_t done, std::size_t of) {
                                   throw_if_interrupted();
-                                  progress.update_with_fraction(static_cast<double>(before) +
-                                                                static_cast<double>(count) * static_cast<double>(done) /
-                                                                    static_cast<double>(of));
+                                  const double frames = static_cast<double>(before) + static_cast<double>(count) *
+                                                                                          static_cast<double>(done) /
+                                                                                          static_cast<double>(of);
+                                  progress.update({static_cast<std::int64_t>(frames), frames});
                                 }};
-    if (targets.together())
-      targets.format().motions(motions, file, choices);
-    else if (options.still)
-      targets.format().pose(motions[i].robot(), motions[i].pose_with_velocities(0), file, choices);
-    else
-      targets.format().motion(motions[i].robot(), motions[i], file, choices);
-    print_name(file);
+    const fs::path given = name_given(file, [&] {
+      if (targets.together())
+        targets.format().motions(motions, file, choices);
+      else if (options.still)
+        targets.format().pose(motions[i].robot(), motions[i].pose_with_velocities(0), file, choices);
+      else
+        targets.format().motion(motions[i].robot(), motions[i], file, choices);
+    });
+    print_name(given);
+    if (given != file) status = 1;
     before += count;
     throw_if_interrupted();
   }
+  return status;
 }
 
 // Simulates the robots and exports their motion.
@@ -223,8 +235,7 @@ int export_simulated(const ExportOptions& options, const Configuration& configur
   const auto reader = std::make_shared<TrajectoryReader>(recording.path());
   std::vector<RecordedMotion> motions;
   for (std::size_t i = 0; i < chosen.size(); ++i) motions.emplace_back(reader, i);
-  write_motions(options, targets, motions, std::move(chosen_notes));
-  return 0;
+  return write_motions(options, targets, motions, std::move(chosen_notes));
 }
 
 // A configuration as a world of VXA.
@@ -302,8 +313,7 @@ int export_recording(const ExportOptions& options, const fs::path& file) {
   std::optional<ImportedSettings> world;
   if (targets.format().holds_world)
     world = world_with_warnings(recording->configuration(), recording->time(recording->frames() - 1));
-  write_motions(options, targets, motions, {.title = {}, .command = options.command, .captions = {}}, world);
-  return 0;
+  return write_motions(options, targets, motions, {.title = {}, .command = options.command, .captions = {}}, world);
 }
 
 // The lines of a caption.

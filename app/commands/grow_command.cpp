@@ -38,7 +38,7 @@ int grow(const GrowOptions& options) {
   if (options.output.dry_run())
     return print_dry_run("grow", {{"robots", size_text(robots)}, {"write", options.output.description()}});
   for (const Robot& robot : robots) files.write(generator_of(robot)->regrow(robot));
-  return 0;
+  return files.renamed() ? 1 : 0;
 }
 
 }  // namespace

@@ -247,15 +247,20 @@ std::size_t add_outputs(OutputFiles& outputs, const std::vector<ImportedFile>& i
   return robots;
 }
 
-void write_robots(const std::vector<ImportedFile>& imports, std::size_t count) {
+// Writes a file. Returns whether it has its name, see name_given().
+bool writes(const std::string& file, const std::function<void()>& write) { return name_given(file, write) == file; }
+
+bool write_robots(const std::vector<ImportedFile>& imports, std::size_t count) {
   Progress progress("writing", "robots", static_cast<std::int64_t>(count));
   std::int64_t written = 0;
+  bool named = true;
   for (const ImportedFile& file : imports)
     for (std::size_t i = 0; i < file.robot_files.size(); ++i) {
       throw_if_interrupted();
-      save_robot(file.robot_files[i], file.import.robots[i]);
+      named &= writes(file.robot_files[i], [&] { save_robot(file.robot_files[i], file.import.robots[i]); });
       progress.update(++written);
     }
+  return named;
 }
 
 // A recording of a motion that another program simulated.
@@ -320,15 +325,18 @@ int import_files(ImportCommandOptions options) {
   const bool nothing =
       std::ranges::all_of(imports, [](const ImportedFile& file) { return file.import.robots.empty(); });
   if (!nothing) outputs.make_folders();
-  write_robots(imports, robots);
+  complete &= write_robots(imports, robots);
   for (const ImportedFile& file : imports) {
     if (!file.configuration_file.empty())
-      write_results(file.configuration_file, to_toml(file.import.settings, file.import.report));
-    if (!file.recording_file.empty()) write_motion(file.import, file.recording_file);
+      complete &= writes(file.configuration_file, [&] {
+        write_results(file.configuration_file, to_toml(file.import.settings, file.import.report));
+      });
+    if (!file.recording_file.empty())
+      complete &= writes(file.recording_file, [&] { write_motion(file.import, file.recording_file); });
     if (file.import.robots.empty())
       warn(fmt::format("{}: no robot in it: {}", printable(file.import.report.file), file.import.report.notes.front()));
   }
-  if (!common.empty()) write_results(common, common_toml(*settings, imports));
+  if (!common.empty()) complete &= writes(common, [&] { write_results(common, common_toml(*settings, imports)); });
   print_reports(imports, common, options);
   if (nothing) warn("nothing was imported");
   return complete && !nothing ? 0 : 1;

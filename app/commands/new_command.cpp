@@ -113,8 +113,7 @@ void report(const ContestResult& found, const NewOptions& options) {
 
 // A search may take hours. So everything is attempted that can save a part of its result: first what is printed, then
 // each file, even if the one before could not be written.
-void publish(const ContestResult& found, const NewOptions& options, RobotFiles files, const std::string& csv,
-             bool replaces_csv) {
+void publish(const ContestResult& found, const NewOptions& options, RobotFiles& files, const std::string& csv) {
   std::exception_ptr problem;
   const auto attempt = [&](const auto& write) {
     try {
@@ -124,14 +123,13 @@ void publish(const ContestResult& found, const NewOptions& options, RobotFiles f
     }
   };
   report(found, options);
-  if (!options.csv.empty()) attempt([&] { write_results(options.csv, csv, replaces_csv); });
+  if (!options.csv.empty()) attempt([&] { write_results(options.csv, csv); });
   for (const Winner& winner : found.winners) attempt([&] { files.write(*winner.robot); });
   if (problem) std::rethrow_exception(problem);
 }
 
 int keep_best(const NewOptions& options, const std::string& kind, const MakeRobot& make) {
   std::string csv = csv_heading();
-  const bool replaces_csv = is_there(options.csv);
   Contest contest{.kind = kind,
                   .seed = options.output.seed(),
                   .candidates = options.best_of,
@@ -153,8 +151,8 @@ int keep_best(const NewOptions& options, const std::string& kind, const MakeRobo
   if (output.dry_run()) return describe_work(options, kind);
   UnsavedResults results;
   const ContestResult found = best_of(contest, make, options.output.count(), results);
-  publish(found, options, std::move(files), csv, replaces_csv);
-  return found.interrupted || found.winners.size() < options.output.count() ? 1 : 0;
+  publish(found, options, files, csv);
+  return found.interrupted || files.renamed() || found.winners.size() < options.output.count() ? 1 : 0;
 }
 
 // The environment that the robots are made for or tried in; their origin names it. Empty if the user named none.

@@ -82,7 +82,7 @@ int write_children(const RobotOutput& output, RobotFiles files, std::uint64_t co
     }
     progress.update(static_cast<std::int64_t>(first + portion));
   }
-  return all ? 0 : 1;
+  return all && !files.renamed() ? 0 : 1;
 }
 
 }  // namespace mercury

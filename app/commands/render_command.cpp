@@ -210,12 +210,17 @@ int render_robots(RenderOptions& options) {
     say(fmt::format("{} needs even sides: drawn at {}x{}", options.video.output_of(""), width, height));
   for (const std::string& note : task.subject.notes) say(note);
   Filming filming(options, task, may_replace);
-  for (const Output& output : outputs)
-    if (!filming.make(output)) {
+  int status = 0;
+  for (const Output& output : outputs) {
+    bool whole = true;
+    const std::string name = options.video.output_of(output.name);
+    if (name_given(name, [&] { whole = filming.make(output); }) != name) status = 1;
+    if (!whole) {
       say("stopped early; the video ends there");
       return 1;
     }
-  return 0;
+  }
+  return status;
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -61,12 +60,7 @@ void print_results(std::string_view content) {
 
 }  // namespace
 
-bool is_there(const std::string& file) {
-  std::error_code ignored;
-  return std::filesystem::exists(file, ignored);
-}
-
-void write_results(const std::string& file, std::string_view content, bool replaces) {
+void write_results(const std::string& file, std::string_view content) {
   if (is_standard_output(file)) {
     print_results(content);
     return;
@@ -74,10 +68,7 @@ void write_results(const std::string& file, std::string_view content, bool repla
   flush_results_so_far();  // what was printed so far is not lost if this takes long, or fails
   std::optional<PipeWithReader> pipe;
   if (is_named_pipe(file)) pipe.emplace(file);
-  if (replaces) return write_whole_file(file, content);
-  UnfinishedFile unfinished(file, false);
-  write_whole_file(unfinished.path(), content);
-  unfinished.keep();
+  write_whole_file(file, content);
 }
 
 }  // namespace mercury

@@ -10,11 +10,8 @@
 namespace mercury {
 
 // Writes a file whole or not at all; writes directly into a device, a pipe or standard output ("-", "/dev/stdout").
-// Waits for the reader of a named pipe. Throws InputError or std::runtime_error if it cannot be written, Interrupted.
-// `replaces`: the file existed when the command began, see is_there(). Otherwise, one that is there now is another
-// program's, and both are kept (UnfinishedFile::keep()).
-void write_results(const std::string& file, std::string_view content, bool replaces = true);
-// False if that cannot be said.
-bool is_there(const std::string& file);
+// Waits for the reader of a named pipe. Throws InputError or std::runtime_error if it cannot be written, Interrupted;
+// NameTaken as publish().
+void write_results(const std::string& file, std::string_view content);
 
 }  // namespace mercury

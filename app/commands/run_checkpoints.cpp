@@ -10,6 +10,7 @@
 #include "app/base/progress.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {
@@ -39,6 +40,10 @@ void Checkpoints::write(const Simulation& simulation, const TrialProgress& progr
     }
     save_checkpoint(path_, simulation, notes_);
     failed_ = false;
+  } catch (const NameTaken& taken) {  // the next ones replace this one
+    warn(taken.what());
+    path_ = taken.name;
+    renamed_ = true;
   } catch (const std::exception& error) {
     failed_ = true;
     warn(fmt::format("no checkpoint at {:.6g} s: {}", simulation.time(), error.what()));

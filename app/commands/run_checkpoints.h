@@ -33,15 +33,15 @@ class Checkpoints {
   bool due() const;
   // Flushes the recorder, if there is one, so that the checkpoint's frames are in its file.
   void write(const Simulation& simulation, const TrialProgress& progress, Recorder* recorder);
-  // Whether the last write failed.
-  bool failed() const { return failed_; }
+  // Whether the last write failed, or has another name than was wanted.
+  bool failed() const { return failed_ || renamed_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   std::filesystem::path path_;
   double period_;
   CheckpointNotes notes_;
-  bool failed_ = false;
+  bool failed_ = false, renamed_ = false;
   Clock::time_point last_ = Clock::now();
 };
 

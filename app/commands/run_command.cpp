@@ -41,7 +41,6 @@ struct RunOptions {
   TrialSettings trials = one_trial();
   OutputOptions output;
   std::string csv, record, checkpoint;
-  bool replaces_csv = false;
   std::string resume;    // the checkpoint to go on from; empty = none
   bool goes_on = false;  // --resume
   std::optional<std::int64_t> every;
@@ -133,7 +132,7 @@ void publish(const RunOptions& options, const RunReport& report) {
   } catch (const std::exception&) {
     problem = std::current_exception();
   }
-  if (!options.csv.empty()) write_results(options.csv, csv_of(report), options.replaces_csv);
+  if (!options.csv.empty()) write_results(options.csv, csv_of(report));
   if (problem) std::rethrow_exception(problem);
 }
 
@@ -354,7 +353,6 @@ int run_resumed(RunOptions options) {
 }
 
 int run(RunOptions& options) {  // its robots count what is left out
-  options.replaces_csv = is_there(options.csv);
   if (options.resume.empty()) prepare_outputs(options);
   if (options.json && is_standard_output(options.csv))
     throw InputError("--csv", options.csv + " and --json both mean standard output; give --csv a file");

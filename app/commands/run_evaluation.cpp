@@ -185,15 +185,16 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   std::vector<Evaluation> of_robot;     // those of its trials that have come so far
   const auto take = [&](const Evaluation& trial) {
     const std::size_t robot = trial.index / per_robot;
-    if (trial.index % per_robot == 0) of_robot.clear();
+    if (!of_robot.empty() && of_robot.front().index / per_robot != robot) of_robot.clear();
     if (trial.failure.empty()) {
       const bool has_settled = trial.steps > 0 || request.settling == 0 || request.steps == 0;
       if (!has_settled || (reached && trial.steps != *reached)) return;
       reached = trial.steps;
     }
     of_robot.push_back(trial);
-    if (of_robot.size() == per_robot)
-      report.robots.push_back(result_of(identity_of(robots, robot), of_robot, request, trials));
+    if (of_robot.size() < per_robot) return;
+    report.robots.push_back(result_of(identity_of(robots, robot), of_robot, request, trials));
+    of_robot.clear();
   };
   bool stopped = false;
   {

@@ -15,14 +15,6 @@ namespace {
 
 using Springs = ExportFormat::Springs;
 
-std::vector<std::filesystem::path> beside_obj(const std::filesystem::path& obj) { return {materials_beside(obj)}; }
-
-std::vector<std::filesystem::path> beside_pc2(const std::filesystem::path& pc2) {
-  return {mesh_beside(pc2), materials_beside(mesh_beside(pc2))};
-}
-
-std::vector<std::filesystem::path> beside_xdmf(const std::filesystem::path& xdmf) { return {frame_links_beside(xdmf)}; }
-
 // The grid and the materials of the robot's origin; where its masses are does not matter.
 void write_vxa_file(const ExportedRobot& robot, const Pose&, const std::filesystem::path& path,
                     const ExportChoices& choices) {

@@ -34,11 +34,13 @@ void write_materials(OutputStream& file, const SkinShape& shape, const std::vect
   }
 }
 
-}  // namespace
-
 std::filesystem::path materials_beside(const std::filesystem::path& obj) {
   return std::filesystem::path(obj).replace_extension(".mtl");
 }
+
+}  // namespace
+
+std::vector<std::filesystem::path> beside_obj(const std::filesystem::path& obj) { return {materials_beside(obj)}; }
 
 void add_obj(OutputStreams& files, const ExportedRobot& exported, const SkinShape& shape, const Pose& pose,
              const std::filesystem::path& path) {
@@ -63,9 +65,12 @@ void add_obj(OutputStreams& files, const ExportedRobot& exported, const SkinShap
 
 void write_obj(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
                const ExportChoices& choices) {
-  OutputStreams files;
-  add_obj(files, robot, skin_shape(robot.robot, choices.springs), pose, path);
-  files.keep();
+  write_together(path, beside_obj, [&](const std::filesystem::path& name) {
+    OutputStreams files;
+    add_obj(files, robot, skin_shape(robot.robot, choices.springs), pose, name);
+    files.close();
+    files.keep();
+  });
 }
 
 }  // namespace mercury

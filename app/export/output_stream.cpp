@@ -4,9 +4,11 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
+#include "mercury/file_links.h"
 #include "robots/file/whole_file.h"
 
 namespace mercury {
@@ -36,6 +38,7 @@ void OutputStream::flush() {
 }
 
 void OutputStream::close() {
+  if (descriptor_ < 0) return;
   flush();
   if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target_, errno);
   // Some file systems report a full disk only now.
@@ -50,9 +53,41 @@ void OutputStream::keep() {
   }
 }
 
+void OutputStreams::close(const std::vector<std::filesystem::path>& beside) {
+  for (OutputStream& file : files_) file.close();
+  const auto require_own = [](const std::filesystem::path& name) {
+    if (is_taken(name)) throw NameTaken(name, name);
+  };
+  for (const OutputStream& file : files_) require_own(file.target());
+  for (const std::filesystem::path& name : beside) require_own(name);
+}
+
 void OutputStreams::keep() {
   for (OutputStream& file : files_) file.close();
   for (OutputStream& file : files_) file.keep();
+}
+
+void write_together(const std::filesystem::path& path,
+                    std::vector<std::filesystem::path> (*beside)(const std::filesystem::path&),
+                    const std::function<void(const std::filesystem::path& path)>& write) {
+  const auto succeeds = [&](const std::filesystem::path& name) {
+    try {
+      write(name);
+      return true;
+    } catch (const NameTaken&) {
+      return false;
+    }
+  };
+  if (succeeds(path)) return;
+  for (int number = 2;; ++number) {
+    const std::filesystem::path name = numbered(path, number);
+    std::vector<std::filesystem::path> files = beside(name);
+    files.push_back(name);
+    std::error_code ignored;
+    if (std::ranges::any_of(files, [&](const auto& file) { return std::filesystem::exists(file, ignored); })) continue;
+    for (const std::filesystem::path& file : files) note_output(file, false);
+    if (succeeds(name)) throw NameTaken(path, name);
+  }
 }
 
 }  // namespace mercury

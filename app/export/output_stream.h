@@ -8,11 +8,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <list>
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "app/base/interrupt.h"
 #include "mercury/vec3.h"
@@ -53,6 +55,7 @@ class OutputStream {
     bytes(values.data(), values.size_bytes());
   }
 
+  const std::filesystem::path& target() const { return target_; }
   std::uint64_t size() const { return written_ + buffer_.size(); }  // so far [bytes]
 
   // Ends the file: all of it is on the disk.
@@ -78,11 +81,21 @@ class OutputStream {
 class OutputStreams {
  public:
   OutputStream& add(const std::filesystem::path& target) { return files_.emplace_back(target); }
-  // In the order of add().
+  // Ends all files of write_together(). Throws NameTaken if another program has taken the name of one, or of what goes
+  // `beside` them.
+  void close(const std::vector<std::filesystem::path>& beside = {});
+  // Ends all files, then gives them their names in the order of add().
   void keep();
 
  private:
   std::list<OutputStream> files_;
 };
+
+// Writes files that name each other: `write` makes `path` and what goes `beside` it, such as a.obj and a.mtl. If
+// another program has taken one of their names in the meantime, all are written again under other names, and NameTaken
+// says so.
+void write_together(const std::filesystem::path& path,
+                    std::vector<std::filesystem::path> (*beside)(const std::filesystem::path&),
+                    const std::function<void(const std::filesystem::path& path)>& write);
 
 }  // namespace mercury

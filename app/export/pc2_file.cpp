@@ -8,12 +8,14 @@
 
 namespace mercury {
 
+namespace {
+
 std::filesystem::path mesh_beside(const std::filesystem::path& pc2) {
   return std::filesystem::path(pc2).replace_extension(".obj");
 }
 
-void write_pc2(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
-               const ExportChoices& choices) {
+void write_cache(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                 const ExportChoices& choices) {
   const SkinShape shape = skin_shape(robot.robot, choices.springs);
   OutputStreams files;
   add_obj(files, robot, shape, motion.pose(0), mesh_beside(path));
@@ -28,7 +30,22 @@ void write_pc2(const ExportedRobot& robot, RecordedMotion& motion, const std::fi
     file.raw(std::span<const Vec3>(vertices_of(shape, motion.pose(frame).positions)));
     choices.watch(frame + 1, motion.frames());
   }
+  files.close();
   files.keep();
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> beside_pc2(const std::filesystem::path& pc2) {
+  std::vector<std::filesystem::path> files = beside_obj(mesh_beside(pc2));
+  files.push_back(mesh_beside(pc2));
+  return files;
+}
+
+void write_pc2(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+               const ExportChoices& choices) {
+  write_together(path, beside_pc2,
+                 [&](const std::filesystem::path& name) { write_cache(robot, motion, name, choices); });
 }
 
 }  // namespace mercury

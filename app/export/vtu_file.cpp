@@ -200,8 +200,10 @@ std::filesystem::path frames_beside(const std::filesystem::path& pvd) {
   return pvd.parent_path() / (pvd.stem().string() + "-frames");
 }
 
-void write_pvd(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
-               const ExportChoices& choices) {
+namespace {
+
+void write_series(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                  const ExportChoices& choices) {
   const CellGrid grid(robot);
   const std::filesystem::path folder = frames_beside(path);
   FrameFiles frames(folder);
@@ -219,8 +221,18 @@ void write_pvd(const ExportedRobot& robot, RecordedMotion& motion, const std::fi
     choices.watch(frame + 1, motion.frames());
   }
   list.text("</Collection>\n</VTKFile>\n");
+  files.close({folder});
   frames.keep();
   files.keep();
+}
+
+}  // namespace
+
+void write_pvd(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+               const ExportChoices& choices) {
+  write_together(
+      path, [](const std::filesystem::path& pvd) { return std::vector{frames_beside(pvd)}; },
+      [&](const std::filesystem::path& name) { write_series(robot, motion, name, choices); });
 }
 
 }  // namespace mercury

@@ -56,8 +56,8 @@ struct ExportChoices {
 
 void write_obj(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
                const ExportChoices& choices);
-// The .mtl file of an .obj file.
-std::filesystem::path materials_beside(const std::filesystem::path& obj);
+// Its materials, in an .mtl file.
+std::vector<std::filesystem::path> beside_obj(const std::filesystem::path& obj);
 // Adds both to the files that are written.
 void add_obj(OutputStreams& files, const ExportedRobot& robot, const SkinShape& shape, const Pose& pose,
              const std::filesystem::path& path);
@@ -84,7 +84,7 @@ void write_glb_motion(const ExportedRobot& robot, RecordedMotion& motion, const 
 // The first frame as an .obj file beside the point cache, which moves its vertices.
 void write_pc2(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                const ExportChoices& choices);
-std::filesystem::path mesh_beside(const std::filesystem::path& pc2);
+std::vector<std::filesystem::path> beside_pc2(const std::filesystem::path& pc2);
 
 void write_usda(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
                 const ExportChoices& choices);
@@ -109,8 +109,7 @@ void write_usdz_motions(std::span<RecordedMotion> motions, const std::filesystem
 // frames. Throws InputError for a recording that was not finished.
 void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                 const ExportChoices& choices);
-
-std::filesystem::path frame_links_beside(const std::filesystem::path& xdmf);
+std::vector<std::filesystem::path> beside_xdmf(const std::filesystem::path& xdmf);
 
 // A web page that plays all motions side by side. They are of one recording.
 void write_html(std::span<RecordedMotion> motions, const std::filesystem::path& path, const ExportChoices& choices);

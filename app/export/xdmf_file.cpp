@@ -15,6 +15,10 @@
 namespace mercury {
 namespace {
 
+std::filesystem::path frame_links_beside(const std::filesystem::path& xdmf) {
+  return std::filesystem::path(xdmf).replace_extension(".frames.h5");
+}
+
 std::string recording_seen_from(const RecordedMotion& motion, const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path recording = std::filesystem::proximate(
@@ -88,22 +92,14 @@ class XdmfWriter {
   std::size_t masses_ = 0;
 };
 
-}  // namespace
-
-std::filesystem::path frame_links_beside(const std::filesystem::path& xdmf) {
-  return std::filesystem::path(xdmf).replace_extension(".frames.h5");
-}
-
-void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
-                const ExportChoices& choices) {
-  if (motion.recording().unfinished())
-    throw InputError(motion.recording().path().string(),
-                     "was not finished, and other programs do not open it; give another format");
+void write_description(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                       const ExportChoices& choices) {
   std::vector<std::size_t> numbers;
   for (std::size_t frame = 0; frame < motion.frames(); ++frame) numbers.push_back(motion.recorded_frame(frame));
   OutputStreams files;
   XdmfWriter(files.add(path), motion, path).write(robot.robot);
   choices.watch(motion.frames(), motion.frames());  // the last chance to stop: what follows leaves both files
+  files.close(beside_xdmf(path));
   write_frame_links(frame_links_beside(path),
                     {.recording = recording_seen_from(motion, path),
                      .group = motion.group(),
@@ -111,6 +107,19 @@ void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::f
                      .masses = robot.robot.masses.size()},
                     numbers);
   files.keep();
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> beside_xdmf(const std::filesystem::path& xdmf) { return {frame_links_beside(xdmf)}; }
+
+void write_xdmf(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+                const ExportChoices& choices) {
+  if (motion.recording().unfinished())
+    throw InputError(motion.recording().path().string(),
+                     "was not finished, and other programs do not open it; give another format");
+  write_together(path, beside_xdmf,
+                 [&](const std::filesystem::path& name) { write_description(robot, motion, name, choices); });
 }
 
 }  // namespace mercury

@@ -9,7 +9,6 @@
 
 #include "app/base/progress.h"
 #include "mercury/error.h"
-#include "mercury/host_memory.h"
 
 namespace mercury {
 namespace {
@@ -21,8 +20,7 @@ double mean_bytes(RandomRobots request, const MemoryUse& use) {
   std::vector<FailedRobot> failed;
   double sum = 0;
   const std::vector<Robot> robots = make_random_robots(request, &failed, shown_work());
-  for (const Robot& robot : robots)
-    sum += static_cast<double>(use.per_robot) + use.per_content * static_cast<double>(content_bytes(robot));
+  for (const Robot& robot : robots) sum += use.of(robot);
   return robots.empty() ? 0 : sum / static_cast<double>(robots.size());
 }
 
@@ -33,17 +31,6 @@ std::string rounded(double count) {
 }
 
 }  // namespace
-
-std::size_t content_bytes(const Robot& robot) {
-  std::size_t bytes = sizeof(Robot) + robot.name.size() + robot.origin.size() +
-                      robot.materials.size() * (sizeof(Material) + sizeof(std::string)) +
-                      robot.masses.size() * sizeof(Vec3) + robot.springs.size() * sizeof(Spring) +
-                      robot.faces.size() * sizeof(Face) + robot.mass.size() * sizeof(float) +
-                      robot.velocity.size() * sizeof(Vec3) + robot.fixed.size() * sizeof(std::uint16_t);
-  for (const Actuator& actuator : robot.actuators) bytes += sizeof(Actuator) + actuator.materials.size();
-  if (robot.brain) bytes += weights_of(*robot.brain).size() * sizeof(float);
-  return bytes;
-}
 
 void require_memory_for(std::span<const RandomRobots> requests, const MemoryUse& use, std::size_t usable) {
   constexpr std::size_t few = 16;

@@ -96,9 +96,11 @@ RobotFiles RobotOutput::open(std::uint64_t robots, const RobotNames& names, cons
   } else {
     outputs.add_folder("-o", path_);
     std::error_code error;
-    for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error))
-      if (entry->path().extension() == "." + format_ && names(entry->path().stem().string()))
-        outputs.add_stream("-o", entry->path().string());
+    for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
+      if (entry->path().extension() != "." + format_) continue;
+      files.existing_.insert(entry->path());
+      if (names(entry->path().stem().string())) outputs.add_stream("-o", entry->path().string());
+    }
   }
   files.may_replace_ = outputs.check();
   if (!dry_run()) outputs.make_folders();
@@ -118,11 +120,15 @@ void RobotFiles::write(const Robot& robot) {
   }
   if (!is_file_) require_inside(path_, file);
   if (is_device_or_pipe(file)) return save_robot(file, robot, format_);
-  if (!may_replace_ && !written_.contains(file) && fs::exists(file))
-    throw InputError(file.string(), "exists already; use --force to replace it, or give another name");
-  save_robot(file, robot);
-  written_.insert(file);
-  fmt::print("{}\n", printable(file.string(), 10000));
+  if (!is_file_ && written_.insert(file).second) {
+    const bool exists = existing_.contains(file);
+    if (exists && !may_replace_)
+      throw InputError(file.string(), "exists already; use --force to replace it, or give another name");
+    note_output(file, exists);
+  }
+  const fs::path given = name_given(file, [&] { save_robot(file, robot); });
+  renamed_ = renamed_ || given != file;
+  fmt::print("{}\n", printable(given.string(), 10000));
 }
 
 RobotNames numbered_names(std::function<std::string(std::uint64_t index)> name_of, std::uint64_t count) {
@@ -153,7 +159,7 @@ int write_robots(const RobotOutput& output, RobotFiles files, const MakeRobot& m
     }
     progress.update(static_cast<std::int64_t>(first + count));
   }
-  return all ? 0 : 1;
+  return all && !files.renamed() ? 0 : 1;
 }
 
 }  // namespace mercury

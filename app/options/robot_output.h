@@ -44,17 +44,19 @@ class RobotFiles {
  public:
   // Writes one robot to the file, or to NAME.json in the folder, and prints the file's name unless the robot itself is
   // printed. On an error no partial file is left. Throws InputError if the file exists, unless it may be replaced or
-  // this object wrote it.
+  // this object wrote it. Where another program has taken the name since open(), warns, and prints the name that this
+  // file has (publish()).
   void write(const Robot& robot);
+  bool renamed() const { return renamed_; }  // one of them
 
  private:
   friend class RobotOutput;
   std::filesystem::path file_of(const Robot& robot) const;
 
   std::filesystem::path path_;  // a file, or a folder
-  bool is_file_ = false, may_replace_ = false;
+  bool is_file_ = false, may_replace_ = false, renamed_ = false;
   RobotFormat format_ = RobotFormat::json;
-  std::set<std::filesystem::path> written_;
+  std::set<std::filesystem::path> existing_, written_;  // files of the folder at open()
 };
 
 // The options for where new robots go, and how many.

@@ -9,6 +9,7 @@
 
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
+#include "mercury/host_memory.h"
 #include "mercury/threads.h"
 #include "python/src/arguments.h"
 
@@ -30,6 +31,23 @@ std::int64_t portion_of(double springs_at_once, double springs, std::int64_t mos
       std::clamp(springs_at_once / std::max(1.0, springs), 1.0, static_cast<double>(most)));
 }
 
+// Raises MemoryError if the robots of a simulation that are there already would not fit with what it takes for them.
+// On a GPU, DeviceError says so.
+void require_memory_for(const SharedRobots& robots, const Configuration& configuration) {
+  constexpr std::size_t few = 16;  // are always tried
+  const bool on_gpu = configuration.device.kind == DeviceKind::cuda ||
+                      (configuration.device.kind == DeviceKind::automatic && cuda_device_count() > 0);
+  if (robots.size() <= few || on_gpu) return;
+  constexpr MemoryUse beside_robots{.per_robot = simulated_memory.per_robot,
+                                    .per_content = simulated_memory.per_content - 1};
+  double needed = 0;
+  for (const auto& robot : robots) needed += beside_robots.of(*robot);
+  const std::size_t usable = usable_host_memory();
+  if (needed <= static_cast<double>(usable)) return;
+  PyErr_SetString(PyExc_MemoryError, memory_line(static_cast<std::size_t>(needed), usable).c_str());
+  throw nb::python_error();
+}
+
 }  // namespace
 
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
@@ -45,6 +63,7 @@ Configuration configuration_of(nb::handle environment, const std::string& solver
 }
 
 Batch::Batch(const Configuration& configuration, SharedRobots robots) : robots_(std::move(robots)) {
+  require_memory_for(robots_, configuration);
   const ReleasedGil released;
   simulation_ = std::make_unique<Simulation>(configuration, robots_);
   change_robots();
@@ -130,6 +149,7 @@ void Batch::reset(nb::handle mask, nb::handle stream) {
 }
 
 std::size_t Batch::add(const SharedRobots& robots) {
+  require_memory_for(robots, use([](const Simulation& simulation) { return simulation.configuration(); }));
   const std::size_t first = change([&](Simulation& simulation) {
     const std::size_t index = simulation.add(robots);
     robots_.insert(robots_.end(), robots.begin(), robots.end());

@@ -40,7 +40,8 @@ dt: time step [s]. damping: velocities shrink by exp(-damping dt) per step [1/s]
 device: "auto" (CUDA if there is a device), "cpu", "cuda", "cuda:1", "cuda:all".
 threads: of the CPU; 0 = all cores.
 
-Raises InputError for a value or a robot that breaks a rule, DeviceError if the device is not there.)";
+Raises InputError for a value or a robot that breaks a rule, DeviceError if the device is not there, MemoryError if the
+robots do not fit into the memory that can be used.)";
 
 constexpr const char* step_description =
     R"(Advances every robot that has not exploded by `n` time steps.

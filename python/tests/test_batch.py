@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import inspect
+import os
+import re
 import subprocess
 import sys
 
@@ -253,4 +255,33 @@ batch.step(1)
 def test_ctrl_c_ends_a_long_run_and_leaves_the_batch_usable():
     done = subprocess.run([sys.executable, "-c", LONG_RUN], capture_output=True, text=True, timeout=120)
     assert done.stdout == "interrupted True\n", done.stderr
+    assert done.returncode == 0
+
+
+LITTLE_MEMORY = """
+import os, resource
+import mercurysim
+few = mercurysim.random_voxel(16, seed=1, voxels=(14, 14, 14), air=0)
+many = mercurysim.random_voxel(20, seed=1) * 1000
+mercurysim.Batch(many[:1], device="cpu", threads=1).step(1)
+taken = int(open("/proc/self/statm").read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+resource.setrlimit(resource.RLIMIT_AS, (taken + 2**23, resource.RLIM_INFINITY))
+small = mercurysim.Batch(many[:1], device="cpu", threads=1)
+for call in (lambda: mercurysim.Batch(many, device="cpu", threads=1), lambda: small.add(many),
+             lambda: [mercurysim.Batch(few, device="cpu", threads=1) for _ in range(1000)]):
+    try:
+        call()
+    except MemoryError as error:
+        print(error, flush=True)
+small.step(1)
+print(small.steps)
+"""
+
+
+@pytest.mark.skipif("asan" in os.environ.get("LD_PRELOAD", ""), reason="the sanitizer ends a program without memory")
+def test_robots_that_do_not_fit_into_memory_are_refused_in_one_line():
+    done = subprocess.run([sys.executable, "-c", LITTLE_MEMORY], capture_output=True, text=True, timeout=120)
+    needed = r"about \d+ MB of memory are needed, \d+(\.\d)? MB can be used\n"
+    assert re.fullmatch(needed + needed + r"not enough memory: more is needed than the limit, \d+ MiB \(ulimit -v\)\n1\n",
+                        done.stdout), done.stdout + done.stderr
     assert done.returncode == 0

@@ -115,8 +115,11 @@ void write_whole_file(const std::filesystem::path& path, std::string_view conten
   Descriptor file(descriptor);
   int error = write_all(file.get(), content);
   if (const int at_close = file.close(); error == 0) error = at_close;
-  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-  if (error == 0) return;
+  if (error == 0) try {
+      return publish(temporary, target);
+    } catch (const std::filesystem::filesystem_error& failure) {
+      error = failure.code().value();
+    }
   ::unlink(temporary.c_str());
   fail(path, error);
 }

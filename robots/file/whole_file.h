@@ -18,7 +18,7 @@ std::string read_whole_file(const std::filesystem::path& path);
 
 // Writes under a temporary name in the same folder, then renames, so readers find the whole old file or the whole new
 // one. Follows links. Writes directly to what is no file, such as a device or a pipe. On failure (a missing folder, no
-// permission, a full disk) throws as fail(), and leaves nothing behind.
+// permission, a full disk) throws as fail(), and leaves nothing behind; throws NameTaken as publish().
 void write_whole_file(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace mercury

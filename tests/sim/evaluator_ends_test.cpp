@@ -9,6 +9,7 @@
 #include "backend.h"
 #include "evaluations.h"
 #include "mercury/error.h"
+#include "tests/nap.h"
 
 namespace mercury {
 namespace {
@@ -81,7 +82,7 @@ TEST(EvaluatorEnds, OtherExceptionsOfTheSourceAreThrownAfterTheResultsBefore) {
 }
 
 // A device that fails in the first step.
-class BrokenBackend final : public Backend {
+class BrokenBackend : public Backend {
  public:
   std::string device_name() const override { return "broken"; }
   std::vector<std::string> notes() const override { return {}; }
@@ -145,6 +146,49 @@ TEST(EvaluatorEnds, AfterStopNoRobotsAreMade) {
   std::size_t index = 10;
   for (const Evaluation& result : rest_of(evaluator)) EXPECT_EQ(result.index, index++);
   EXPECT_LE(index, made);
+}
+
+// A device that takes no step. Robots of which the first is `slow` are loaded when `loads` says so.
+class SlowBackend final : public BrokenBackend {
+ public:
+  struct Gate {
+    const Robot* slow = nullptr;
+    std::atomic<bool> waits = false, opens = false;
+  };
+  explicit SlowBackend(Gate& gate) : gate_(gate) {}
+  void load(std::span<const Robot* const> robots, const Configuration&) override { pass(robots); }
+  void add(std::span<const Robot* const> robots, std::size_t) override { pass(robots); }
+  void step(const Clock&, std::int64_t) override {}
+
+ private:
+  void pass(std::span<const Robot* const> robots) {
+    if (robots.empty() || robots.front() != gate_.slow) return;
+    gate_.waits = true;
+    gate_.waits.notify_all();
+    gate_.opens.wait(false);
+  }
+  Gate& gate_;
+};
+
+TEST(EvaluatorEnds, StopKeepsWhatWasTriedBehindRobotsThatHaveNotStarted) {
+  const Robots robots = mixed(20);
+  SlowBackend::Gate gate{.slow = robots[4].get()};
+  EvaluationRequest request = usual();
+  request.portion = 2;
+  request.workers = 1;
+  const Evaluator::MakeBackend device = [&] { return std::make_unique<SlowBackend>(gate); };
+  Evaluator evaluator(request, source_of(robots), robots.size(), {device, device});
+  gate.waits.wait(false);
+  while (evaluator.progress().done < 18) test::nap();
+  evaluator.stop();
+  gate.opens = true;
+  gate.opens.notify_all();
+  std::vector<std::size_t> tried;
+  for (const Evaluation& result : rest_of(evaluator)) {
+    EXPECT_EQ(result.steps, request.steps);
+    tried.push_back(result.index);
+  }
+  EXPECT_EQ(tried, (std::vector<std::size_t>{0, 1, 2, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19}));
 }
 
 TEST(EvaluatorEnds, CanBeDestroyedAtAnyTime) {

@@ -144,7 +144,7 @@ class Evaluator {
   bool wait_for(std::chrono::milliseconds time);
 
   // Makes no more robots. Those that are being stepped stop within about a third of a second, and next() yields what
-  // they have reached; it omits robots that have not started, and all after them.
+  // they have reached; it omits robots that have not started.
   void stop();
 
   // Of all devices, as Simulation::device_name(). Waits until they have started; throws DeviceError.

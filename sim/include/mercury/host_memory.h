@@ -9,12 +9,28 @@
 
 namespace mercury {
 
+struct Robot;
+
 // Of the host [bytes]: the least of what Linux calls available, what the limits of the control groups (containers)
 // leave, and what the limits of the process (ulimit -v, ulimit -d) leave.
 std::size_t available_host_memory();
 
 // The same without a reserve of an eighth, at most 1 GiB, for what nobody has counted [bytes].
 std::size_t usable_host_memory();
+
+// What a robot's lists and texts take [bytes].
+std::size_t content_bytes(const Robot& robot);
+
+// About what a program takes for each robot that it holds, the robot included.
+struct MemoryUse {
+  std::size_t per_robot = 1024;  // [bytes]
+  double per_content = 1;        // times content_bytes()
+  double of(const Robot& robot) const {
+    return static_cast<double>(per_robot) + per_content * static_cast<double>(content_bytes(robot));
+  }
+};
+// In a simulation on the CPU, measured (docs/experiments.md).
+inline constexpr MemoryUse simulated_memory{.per_robot = 8 << 10, .per_content = 3.5};
 
 // "about 24 GB of memory are needed, 8.1 GB can be used; give up to 31000 robots". Without `fits`, it ends at the
 // semicolon.

@@ -7,6 +7,8 @@
 
 #include "app/base/file_name.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
+#include "robots/file/whole_file.h"
 #include "tests/app/program.h"
 
 namespace mercury::test {
@@ -175,6 +177,38 @@ TEST(FileNameOf, IsSafeAndFitsIntoAFolder) {
   // 119 letters and a character of two bytes, which is not cut in half.
   EXPECT_EQ(file_name_of(std::string(119, 'a') + "é"), std::string(119, 'a'));
   EXPECT_EQ(file_name_of(std::string(118, 'a') + "é"), std::string(118, 'a') + "é");
+}
+
+// Which files are there when the work begins decides, however the file is named.
+TEST_F(OutputFilesTest, ANewFileIsNotReplacedByTheSecondToFinish) {
+  std::filesystem::create_directory(path("x"));
+  std::filesystem::create_symlink(path("a.csv"), path("link.csv"));
+  EXPECT_EQ(refusal_of("link.csv"), "");
+  write("a.csv", "theirs");
+  for (const char* name : {"a.csv", "x/../a.csv", "link.csv"}) {
+    try {
+      write_whole_file(path(name), "mine");
+      ADD_FAILURE() << name << ": replaced a file of another program";
+    } catch (const NameTaken& taken) {
+      EXPECT_THAT(taken.what(), HasSubstr("a.csv was written by another program in the meantime; this one is "));
+      EXPECT_EQ(taken.name.extension(), ".csv");
+    }
+  }
+  EXPECT_EQ(read("a.csv"), "theirs");
+  for (const char* name : {"a-2.csv", "a-3.csv", "a-4.csv"}) EXPECT_EQ(read(name), "mine");
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a-2.csv", "a-3.csv", "a-4.csv", "a.csv", "link.csv", "x"}));
+}
+
+TEST_F(OutputFilesTest, AFileThatMayBeReplacedIsAndSoIsAnOwnOne) {
+  write("a.csv", "old");
+  EXPECT_EQ(refusal_of("a.csv", true), "");
+  write("a.csv", "theirs");
+  write_whole_file(path("a.csv"), "mine");
+  EXPECT_EQ(read("a.csv"), "mine");
+  EXPECT_EQ(refusal_of("b.csv"), "");
+  for (const char* content : {"first", "second"}) write_whole_file(path("b.csv"), content);
+  EXPECT_EQ(read("b.csv"), "second");
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a.csv", "b.csv"}));
 }
 
 }  // namespace

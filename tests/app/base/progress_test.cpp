@@ -21,8 +21,11 @@ TEST(Progress, BarShowsTheFractionAndFitsTheTerminal) {
 
 TEST(Progress, WhatIsDoneInPartCountsForTheBarAlone) {
   // Half of the work in 3 s leaves 3 s for the other half; the second of three robots is not done yet.
-  EXPECT_EQ(progress_bar("simulating", "robots", 1.5, 3, 3, 200),
+  EXPECT_EQ(progress_bar("simulating", "robots", {1, 1.5}, 3, 3, 200),
             "simulating [############............]  50 %  1/3 robots  0.50 robots/s  0:03 left");
+  // Robots that are stepped side by side: none is done before all are.
+  EXPECT_EQ(progress_line("simulating", "robots", {0, 5}, 10, 3),
+            "simulating: 0/10 robots (50 %)  1.67 robots/s  0:03 left");
 }
 
 TEST(WithMagnitude, HasThreeDigits) {

@@ -115,6 +115,40 @@ TEST_F(NewCommand, InterruptedSearchKeepsTheBest) {
   EXPECT_EQ(listing("best"), best);
 }
 
+// Both have begun with a name that is new. The first to finish has it.
+TEST_F(NewCommand, TwoSearchesWithOneNewNameKeepBothRobots) {
+  const auto child = working_mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "1000000", "--seconds", "0.1",
+                                      "--trials", "1", "--device", "cpu"});
+  while (child->running() && !testing::Value(child->messages(), testing::ContainsRegex("searching: [1-9]"))) nap();
+  write("a.json", "theirs");
+  child->signal(SIGINT);
+  const Outcome outcome = outcome_of(*child);
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_EQ(outcome.output, path("a-2.json") + "\n");
+  EXPECT_THAT(outcome.messages, testing::HasSubstr("mercury: " + path("a.json") +
+                                                   " was written by another program in the meantime; this one is " +
+                                                   path("a-2.json") + "\n"));
+  EXPECT_NO_THROW(load_robot(path("a-2.json")));
+  EXPECT_EQ(read("a.json"), "theirs");
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a-2.json", "a.json"}));
+}
+
+TEST_F(NewCommand, ARobotThatAnotherProgramWroteMeanwhileIsKept) {
+  // The last of many, while the first are written.
+  const auto child = std::make_unique<ChildProcess>(
+      MERCURY_PROGRAM, std::vector<std::string>{"new", "voxel", "-o", path("r/"), "--count", "300", "--quiet"});
+  while (child->running() && !std::filesystem::exists(path("r/voxel-1-0.json"))) nap();
+  write("r/voxel-1-299.json", "theirs");
+  const Outcome outcome = outcome_of(*child);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(outcome.messages, "mercury: " + path("r/voxel-1-299.json") +
+                                  " was written by another program in the meantime; this one is " +
+                                  path("r/voxel-1-299-2.json") + "\n");
+  EXPECT_EQ(read("r/voxel-1-299.json"), "theirs");
+  EXPECT_EQ(load_robot(path("r/voxel-1-299-2.json")), random_voxel_robot({}, 1, 299));
+  EXPECT_EQ(listing("r").size(), 301u);
+}
+
 // What cannot be written is reported after everything else is.
 TEST_F(NewCommand, AFailingCsvLosesNoRobot) {
   const Outcome outcome =

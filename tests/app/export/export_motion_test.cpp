@@ -4,8 +4,9 @@
 
 #include <limits>
 
-#include "app/export/export_format.h"
+#include "app/export/export.h"
 #include "mercury/error.h"
+#include "mercury/file_links.h"
 #include "tests/app/export/export_bodies.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
@@ -147,6 +148,61 @@ TEST_F(ExportMotion, MotionOfARobotThatExplodedEndsBeforeItsPositionsAreNoNumber
   EXPECT_EQ(moves.problem(), "pair explodes: its motion ends at 0.002 s");
   EXPECT_THROW(RecordedMotion(exploded, 0, {.from = 0.003}), InputError);
 }
+
+// Another program writes a file of the same new name between the check and the end of the work.
+class NewNameOfTwo : public ExportMotion, public testing::WithParamInterface<std::string> {
+ protected:
+  void export_as(const ExportFormat& format, const std::string& file) {
+    RecordedMotion moves = motion();
+    if (holds_motion(format))
+      format.motion(moves.robot(), moves, path(file), {});
+    else
+      format.pose(moves.robot(), moves.pose(0), path(file), {});
+  }
+};
+
+TEST_P(NewNameOfTwo, BothKeepTheirFiles) {
+  const ExportFormat& format = export_format(GetParam());
+  const std::string extension(format.extension), file = "run" + extension, other = "run-2" + extension;
+  OutputFiles outputs(false, false);
+  add_outputs(format, path(file), outputs, "-o");
+  outputs.check();
+  const auto files = [&](const std::string& name) {
+    std::vector<std::filesystem::path> all{path(name)};
+    if (format.files_beside) std::ranges::copy(format.files_beside(path(name)), std::back_inserter(all));
+    if (format.folder_beside) all.push_back(format.folder_beside(path(name)));
+    return all;
+  };
+  for (const std::filesystem::path& theirs : files(file)) write(theirs.filename().string(), "theirs");
+  try {
+    export_as(format, file);
+    FAIL() << "replaced a file of another program";
+  } catch (const NameTaken& taken) {
+    EXPECT_EQ(taken.name, path(other));
+    EXPECT_EQ(taken.what(), path(file) + " was written by another program in the meantime; this one is " + path(other));
+  }
+  for (const std::filesystem::path& theirs : files(file)) EXPECT_EQ(read(theirs.filename().string()), "theirs");
+  for (const std::filesystem::path& ours : files(other)) EXPECT_TRUE(std::filesystem::exists(ours)) << ours;
+  EXPECT_EQ(listing().size(), 1 + 2 * files(file).size()) << "temporary files are left";
+  // Files name those beside them.
+  const std::string content = read(other);
+  EXPECT_EQ(content.find("run-frames"), std::string::npos);
+  EXPECT_EQ(content.find("run.frames"), std::string::npos);
+  EXPECT_EQ(content.find("mtllib run.mtl"), std::string::npos);
+  // What this program has written it may replace.
+  std::filesystem::rename(path(file), path("theirs"));
+  if (!format.files_beside && !format.folder_beside) {
+    export_as(format, file);
+    export_as(format, file);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Export, NewNameOfTwo, testing::ValuesIn([] {
+                           std::vector<std::string> names;
+                           for (const ExportFormat& format : export_formats()) names.emplace_back(format.name);
+                           return names;
+                         }()),
+                         [](const auto& format) { return format.param; });
 
 }  // namespace
 }  // namespace mercury::test

@@ -8,6 +8,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/base/output_files.h"
+#include "app/video/picture_file.h"
+#include "mercury/file_links.h"
+#include "tests/app/program.h"
+
 namespace mercury::test {
 namespace {
 
@@ -148,6 +153,21 @@ TEST(Figure, APdfHoldsThePictureItsOpacitiesAndTextAsText) {
   EXPECT_THAT(drawing, HasSubstr("(A \\(b\\) \xb5m) Tj"));
   EXPECT_THAT(drawing, HasSubstr("(strain) Tj"));
   EXPECT_THAT(drawing, HasSubstr(" sh Q"));
+}
+
+// As in outputs.md: the first to finish has the name.
+class PictureFile : public FolderTest {};
+
+TEST_F(PictureFile, ANewPictureIsNotReplacedByTheSecondToFinish) {
+  OutputFiles outputs(false, false);
+  outputs.add_stream("-o", path("a.png"));
+  outputs.check();
+  write("a.png", "theirs");
+  const render::Image image{.width = 1, .height = 1, .bytes = {1, 2, 3}};
+  EXPECT_THROW(write_picture(path("a.png"), image), NameTaken);
+  EXPECT_EQ(read("a.png"), "theirs");
+  EXPECT_THAT(read("a-2.png"), HasSubstr("IHDR"));
+  EXPECT_EQ(listing(), (std::vector<std::string>{"a-2.png", "a.png"}));
 }
 
 }  // namespace
