@@ -111,6 +111,8 @@ void validate_sensor(const Robot& robot, const std::vector<Actuator>& actuators,
   if ((sensor.kind == SensorKind::neuron) != !sensor.layer.empty())
     throw InputError(where, sensor.layer.empty() ? "a sensor of a neuron names its layer"
                                                  : std::string(kind.name) + " is of no layer");
+  if (sensor.kind != SensorKind::neuron && sensor.neuron != 0)
+    throw InputError(where, std::string(kind.name) + " is of no neuron");
   if (sensor.kind == SensorKind::neuron) {
     if (!layers) throw InputError(where, "is of a neuron, and the robot has no brain");
     require_neuron(layers->require(sensor.layer, where + "/layer"), sensor.neuron, where + "/neuron");

@@ -498,6 +498,7 @@ TEST(Brain, RefusesWhatDoesNotFit) {
   EXPECT_EQ(error([](Robot& r) { r.sensors[2].delay = -1; }), "/sensors/2/delay: -1 is not accepted; give 0 to 100 s");
   EXPECT_EQ(error([](Robot& r) { r.sensors[3].actuator = "front", r.sensors[3].masses = {1}; }),
             "/sensors/3: has more than one of actuator, springs and masses; give one of them");
+  EXPECT_EQ(error([](Robot& r) { r.sensors[0].neuron = 1; }), "/sensors/0: clock is of no neuron");
   EXPECT_EQ(error([](Robot& r) { r.sensors[0].masses = {1}; }),
             "/sensors/0: clock has no place; leave out actuator, springs and masses");
   EXPECT_EQ(error([](Robot& r) { r.sensors[0] = {.kind = SensorKind::touch, .masses = {400}}; }),
