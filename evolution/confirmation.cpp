@@ -133,7 +133,8 @@ std::optional<std::vector<Confirmation>> check_robots(
     if (watch && !watch(done, all)) return std::nullopt;
     if (device_name) *device_name = evaluator.device_name();
   }
-  const bool is_distance = objective.formula() == "distance";
+  constexpr std::string_view distances[] = {"distance", "-target_distance", "target_approach"};
+  const bool is_distance = std::ranges::find(distances, objective.formula()) != std::end(distances);
   const bool travels = std::ranges::any_of(objective.uses(), [](std::size_t q) { return quantities()[q].of_travel; });
   for (std::size_t i = 0; i < count; ++i) judge(checked[i], is_distance ? same_place * lengths[i] : 0, travels);
   return checked;

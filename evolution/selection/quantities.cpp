@@ -14,6 +14,8 @@ double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
 double seconds(const Trial& trial) { return static_cast<double>(trial.evaluation.steps) * trial.configuration.dt; }
 
+Vec3 center_at_end(const Trial& trial) { return trial.evaluation.end.center_of_mass; }
+
 Vec3 displacement(const Trial& trial) {
   return trial.evaluation.end.center_of_mass - trial.evaluation.start.center_of_mass;
 }
@@ -27,6 +29,17 @@ double distance(const Trial& trial) {
 template <float Vec3::*axis>
 double speed_along(const Trial& trial) {
   return ratio(displacement(trial).*axis, seconds(trial));
+}
+
+double target_distance(const Trial& trial) {
+  return distance_between(center_at_end(trial), trial.configuration.environment.target,
+                          trial.configuration.environment);
+}
+
+double target_approach(const Trial& trial) {
+  const Environment& environment = trial.configuration.environment;
+  return distance_between(trial.evaluation.start.center_of_mass, environment.target, environment) -
+         target_distance(trial);
 }
 
 double straightness(const Trial& trial) {
@@ -59,8 +72,6 @@ double materials_in_use(const Trial& trial) {
   const std::vector<bool> used = base_materials_in_use(trial.robot);
   return static_cast<double>(std::ranges::count(used, true));
 }
-
-Vec3 center_at_end(const Trial& trial) { return trial.evaluation.end.center_of_mass; }
 
 double along(const Trial& trial, Vec3 from, Vec3 to) {
   return distance_between(from, to, trial.configuration.environment);
@@ -101,6 +112,9 @@ constexpr Quantity table[] = {
     {"straightness", "", "distance per path: 1 = along a line", false, 0, 1, straightness, true},
     {"direction", "degrees", "of the displacement in the x-y plane: 0 = along x, 90 = along y", false, -180, 180,
      direction},
+    {"target_distance", "m", "distance of the center of mass from the target at the end; on land along the ground",
+     false, 0, 5, target_distance},
+    {"target_approach", "m", "by how much target_distance is less than at the start", false, 0, 5, target_approach},
     {"height", "m", "how far the center of mass rose above its start", false, 0, 1, height},
     {"work", "J", "that the muscles did", false, 0, 100, [](const Trial& trial) { return trial.evaluation.work; }},
     {"efficiency", "m/J", "distance per work; 0 where the muscles did none", false, 0, 1,

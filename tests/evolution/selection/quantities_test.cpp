@@ -57,6 +57,17 @@ TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
   EXPECT_NEAR(value("direction"), 53.130102354155978, 1e-12);  // of the triangle 3, 4, 5
 }
 
+// From (1, 1, 1), 13 m from a target at (4, 5, 13), to a place 24 m below that.
+TEST_F(OneTrial, TheTargetIsThatOfTheEnvironment) {
+  configuration.environment.target = {4, 5, 13};
+  EXPECT_DOUBLE_EQ(value("target_distance"), 24);
+  EXPECT_DOUBLE_EQ(value("target_approach"), 13 - 24);
+  configuration.environment = Land{};
+  configuration.environment.target = {7, 9, 13};
+  EXPECT_DOUBLE_EQ(value("target_distance"), 5);
+  EXPECT_DOUBLE_EQ(value("target_approach"), 5);
+}
+
 TEST_F(OneTrial, OnLandOnlyTheWayAlongTheGroundCounts) {
   configuration.environment = Land{};
   EXPECT_DOUBLE_EQ(value("distance"), 5);
