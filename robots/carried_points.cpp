@@ -37,6 +37,13 @@ void carry_brain(const Robot& from, Robot& to) {
   }
 }
 
+void carry_control(const Robot& from, Robot& to) {
+  const bool same_table =
+      materials_of(to).size() == materials_of(from).size() && to.material_names == from.material_names;
+  if (same_table) to.actuators = from.actuators;
+  carry_brain(from, to);
+}
+
 void carry_points(const Robot& from, Robot& to) {
   if (from.mass.empty() && from.velocity.empty() && from.fixed.empty()) return;
   std::map<Place, std::size_t> places;

@@ -14,4 +14,9 @@ void carry_points(const Robot& from, Robot& to);
 // name springs or masses by index only where the topology is the same.
 void carry_brain(const Robot& from, Robot& to);
 
+// Gives `to`, which grew from `from` or its like, the actuators of `from`, and sensors and brain as carry_brain().
+// Actuators name materials by id, so they stay if these ids have not changed their meaning: the table has as many
+// materials as before, with the same names. Their values may differ.
+void carry_control(const Robot& from, Robot& to);
+
 }  // namespace mercury

@@ -24,16 +24,6 @@ Generator tapered_generator();
 
 namespace {
 
-// Actuators name materials by id. A robot that grew from another keeps them if these ids have not changed their
-// meaning: the table has as many materials as before, with the same names. Their values may differ. It keeps the brain,
-// too, if that fits.
-void keep_actuators(Robot& grown, const Robot& from) {
-  const bool same_table =
-      materials_of(grown).size() == materials_of(from).size() && grown.material_names == from.material_names;
-  if (same_table) grown.actuators = from.actuators;
-  carry_brain(from, grown);
-}
-
 // The robot with the real body that another has, if it has one.
 Robot with_body_of(const Robot& other, Robot robot) {
   const std::optional<RealMaterial> material = real_material_of(other);
@@ -82,7 +72,7 @@ Generator with_records(Generator generator) {
   generator.regrow = [regrow = std::move(generator.regrow)](const Robot& robot) {
     Robot again = with_body_of(robot, regrow(without_real_body(robot)));
     again.origin = robot.origin;
-    keep_actuators(again, robot);
+    carry_control(robot, again);
     carry_points(robot, again);
     return again;
   };
@@ -94,7 +84,7 @@ Generator with_records(Generator generator) {
                                                 .mutation_seed = request.seed,
                                                 .strength = request.strength,
                                                 .muscles = request.muscles});
-    keep_actuators(child, parent);
+    carry_control(parent, child);
     carry_points(parent, child);
     return child;
   };
@@ -103,7 +93,7 @@ Generator with_records(Generator generator) {
                                                            const std::string& name) {
       Robot child = with_body_of(a, cross(without_real_body(a), without_real_body(b), seed, name));
       child.origin = with_ancestry(child.origin, {.parents = {a.name, b.name}, .crossover_seed = seed});
-      keep_actuators(child, a);
+      carry_control(a, child);
       carry_points(a, child);
       return child;
     };

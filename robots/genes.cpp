@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
@@ -12,7 +13,8 @@
 namespace mercury {
 namespace {
 
-constexpr std::array<std::string_view, 3> genes_names{"body", "muscles", "both"};
+constexpr std::array<std::pair<Genes, std::string_view>, 4> genes_words{
+    {{Genes::body, "body"}, {Genes::muscles, "muscles"}, {Genes::brain, "brain"}, {Genes::both, "both"}}};
 
 MaterialGenes filled_in(const MaterialGenes& genes) { return genes.empty() ? base_materials_of(Robot{}) : genes; }
 
@@ -88,12 +90,37 @@ void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vec
   }
 }
 
-std::string_view name_of(Genes genes) { return genes_names[static_cast<std::size_t>(genes)]; }
+std::vector<Genes> all_gene_sets() {
+  return {Genes::body,
+          Genes::muscles,
+          Genes::both,
+          Genes::brain,
+          Genes::body | Genes::brain,
+          Genes::muscles | Genes::brain,
+          Genes::both | Genes::brain};
+}
+
+std::string name_of(Genes genes) {
+  if (genes == Genes::both) return "both";
+  std::string name;
+  for (const auto& [gene, word] : genes_words)
+    if (gene != Genes::both && contains(genes, gene)) name.append(name.empty() ? "" : ",").append(word);
+  return name;
+}
 
 Genes genes_named(std::string_view name) {
-  for (std::size_t i = 0; i < genes_names.size(); ++i)
-    if (genes_names[i] == name) return static_cast<Genes>(i);
-  throw ParameterError("genes", std::string("\"").append(name) + "\" is not accepted; give body, muscles or both");
+  std::optional<Genes> genes;
+  for (std::string_view rest = name;;) {
+    const std::string_view word = rest.substr(0, rest.find(','));
+    const auto found = std::ranges::find(genes_words, word, &std::pair<Genes, std::string_view>::second);
+    if (found == genes_words.end())
+      throw ParameterError("genes", std::string("\"").append(name.substr(0, 80)) +
+                                        "\" is not accepted; give body, muscles, both, brain, or several of them with "
+                                        "commas between them");
+    genes = genes ? *genes | found->first : found->first;
+    if (word.size() == rest.size()) return *genes;
+    rest.remove_prefix(word.size() + 1);
+  }
 }
 
 Changes changes_of(Genes genes, std::uint64_t seed) {

@@ -11,6 +11,7 @@
 #include "app/commands/description.h"
 #include "app/commands/run_film.h"
 #include "app/options/generator_options.h"
+#include "mercury/names.h"
 #include "mercury/quantity.h"
 
 namespace mercury {
@@ -48,8 +49,10 @@ std::string genome_text(const GenomeSpaceRequest& space) {
       for (const auto& [option, value] : options_of(*generator, space.values))
         text += fmt::format(", {} {}", option.substr(2), value);
   }
-  return text +
-         "; what changes: " + (space.genes == Genes::both ? "body and muscles" : std::string(name_of(space.genes)));
+  std::vector<std::string> genes;
+  for (const Genes gene : {Genes::body, Genes::muscles, Genes::brain})
+    if (contains(space.genes, gene)) genes.push_back(name_of(gene));
+  return text + "; what changes: " + list_of(genes, " and ");
 }
 
 std::string trials_text(const TrialSettings& trials) {

@@ -26,7 +26,7 @@ namespace mercury {
 // A new run that starts from robots of the window.
 struct EvolveRequest {
   std::filesystem::path folder;  // of the run; new or empty
-  std::string genes = "body";    // what changes: "body", "muscles" or "both"
+  std::string genes = "body";    // what changes: name_of(Genes)
   EvolutionSettings settings{.algorithm = {.population = 64}, .generations = 50};
 };
 

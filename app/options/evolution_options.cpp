@@ -76,7 +76,11 @@ void EvolutionOptions::add_to(const Command& command) {
       .in_group(search_group)
       .on_first_screen();
   founder_files_.add_options_to(command);
-  add_choice(command, "--genes", genes_, {"body", "muscles", "both"}, "What changes (default body)")
+  std::vector<std::string> gene_sets;
+  for (const Genes genes : all_gene_sets()) gene_sets.push_back(name_of(genes));
+  add_text(command, "--genes", genes_,
+           "What changes: body, muscles, brain, or several of them; both = body,muscles (default body)", "GENE,...")
+      .offering(gene_sets)
       .in_group(search_group);
   add_value(command, "--algorithm", algorithm_,
             "Algorithm (default afpo; nsga2 with several objectives, map-elites with --axis)",

@@ -101,7 +101,8 @@ class BodySpace : public GenomeSpace {
       return genome(founders_[index % founders_.size()])->mutate(strength, mutation_seed);
     }
     GenesPointer genes = context_->kind.of(generator_.make(values_, context_->environment, seed, index));
-    if (context_->genes != Genes::body) genes = genes->mutated(Genes::muscles, strongest_at_first, mutation_seed);
+    if (contains(context_->genes, Genes::muscles))
+      genes = genes->mutated(Genes::muscles, strongest_at_first, mutation_seed);
     return genome(std::move(genes));
   }
   std::size_t founders() const override { return founders_.size(); }
@@ -116,8 +117,6 @@ class BodySpace : public GenomeSpace {
   }
 
  private:
-  static constexpr double strongest_at_first = 4;  // mutation of the robots that a run begins with
-
   GenomePointer genome(GenesPointer genes) const { return std::make_shared<BodyGenome>(std::move(genes), context_); }
   // A body or materials that were changed by hand would be lost without a word.
   GenesPointer genes_of(const Robot& founder) const try {
@@ -182,17 +181,34 @@ Physics physics_of(const GenomeSpaceRequest& request) {
   return request.founders.empty() ? Physics::paper : physics_of(request.founders.front());
 }
 
-std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request) {
-  if (!request.environment.empty()) environment_named(request.environment);  // or it throws
-  if (!request.founders.empty() && request.genes == Genes::muscles &&
-      !std::ranges::all_of(request.founders, moves_materials_together))
+namespace {
+
+// Of bodies and muscles, as far as these change.
+std::unique_ptr<GenomeSpace> make_body_space(const GenomeSpaceRequest& request) {
+  const bool bodies_stay = !contains(request.genes, Genes::body),
+             muscles_stay = !contains(request.genes, Genes::muscles);
+  if (!request.founders.empty() && bodies_stay &&
+      (muscles_stay || !std::ranges::all_of(request.founders, moves_materials_together)))
     return make_given_body_space(request);
   const Generator& generator = generator_named(kind_for(request));
   if (!generator.genes) throw ParameterError("kind", generator.kind + " robots cannot be evolved");
   GenomeSpaceRequest whole = request;
+  whole.genes = request.genes & Genes::both;
   if (whole.environment.empty())
     whole.environment = request.founders.empty() ? generator.environment : environment_of(request.founders.front());
   return std::make_unique<BodySpace>(generator, whole);
+}
+
+}  // namespace
+
+std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request) {
+  if (!request.environment.empty()) environment_named(request.environment);  // or it throws
+  require_brains(request);
+  std::unique_ptr<GenomeSpace> bodies = make_body_space(request);
+  const bool has_brains =
+      contains(request.genes, Genes::brain) ||
+      std::ranges::any_of(request.founders, [](const Robot& robot) { return robot.brain.has_value(); });
+  return has_brains ? make_brain_space(request, std::move(bodies)) : std::move(bodies);
 }
 
 }  // namespace mercury

@@ -70,7 +70,7 @@ class GivenBodySpace : public GenomeSpace {
       GivenBody body{founder, base_materials_of(founder), base_materials_in_use(founder)};
       for (std::size_t i = 0; i < body.materials.size(); ++i)
         if (body.materials[i].amplitude == 0) body.in_use[i] = false;  // passive materials do not change
-      if (std::ranges::find(body.in_use, true) == body.in_use.end())
+      if (contains(request.genes, Genes::muscles) && std::ranges::find(body.in_use, true) == body.in_use.end())
         throw InputError("robot " + founder.name, "has no muscles that could change");
       if (!request.environment.empty()) add_environment(body.robot, request.environment);
       bodies->push_back(std::move(body));

@@ -10,12 +10,21 @@
 
 namespace mercury {
 
+// Mutation of the robots that a run begins with, at most.
+inline constexpr double strongest_at_first = 4;
+
 // The first two bytes of every genome: its kind and the version of its encoding.
 void write_head(ByteWriter& writer, std::uint8_t tag);
 // Throws InputError unless the bytes are of this kind, and of a version that this program knows.
 void read_head(ByteReader& reader, std::uint8_t tag);
 
-// Genomes of the muscles of given bodies: robots of any kind, whose materials alone change.
+// Genomes of brains, each with one of these bodies, which may change as well: what the request says.
+std::unique_ptr<GenomeSpace> make_brain_space(const GenomeSpaceRequest& request, std::unique_ptr<GenomeSpace> bodies);
+// Throws ParameterError if brains alone should change and a robot has none.
+void require_brains(const GenomeSpaceRequest& request);
+
+// Genomes of the muscles of given bodies: robots of any kind, whose materials alone change, or
+// nothing at all: then its random genomes are the founders, by number.
 std::unique_ptr<GenomeSpace> make_given_body_space(const GenomeSpaceRequest& request);
 
 }  // namespace mercury

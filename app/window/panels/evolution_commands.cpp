@@ -22,7 +22,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<const char*> all_genes{"body", "muscles", "both"};
+const std::vector<std::string>& names_of_gene_sets() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> made;
+    for (const Genes genes : all_gene_sets()) made.push_back(name_of(genes));
+    return made;
+  }();
+  return names;
+}
 
 int index_in(const std::vector<const char*>& words, const std::string& word) {
   const auto found = std::ranges::find(words, word);
@@ -86,12 +93,15 @@ EvolveRequest EvolveForm::request() const {
 }
 
 std::string EvolveForm::problem_of_founders(const std::string& genes) const {
-  if (genes == "muscles") return {};
+  const auto has_brain = [](const LiveRobot& robot) { return robot.robot->brain.has_value(); };
+  if (genes_named(genes) == Genes::brain && !std::ranges::all_of(founders_, has_brain))
+    return "a robot has no brain: only brains together with muscles or bodies can evolve";
+  if (!contains(genes_named(genes), Genes::body)) return {};
   std::set<std::string> kinds;
   for (const LiveRobot& robot : founders_) kinds.insert(kind_of(*robot.robot));
-  if (kinds.size() > 1) return "the robots are of several kinds: only their muscles can evolve together";
+  if (kinds.size() > 1) return "the robots are of several kinds: only their muscles and brains can evolve together";
   if (!find_generator(*kinds.begin()))
-    return "nothing is known of how these bodies were made: only their muscles can evolve";
+    return "nothing is known of how these bodies were made: only their muscles and brains can evolve";
   return {};
 }
 
@@ -121,7 +131,8 @@ bool EvolveForm::draw(EventLog& log) {
   row("in", "the folder in which the new one is made");
   text_field("##folder", folder_);
   log.item("evolve.folder");
-  std::vector<const char*> names;
+  std::vector<const char*> names, all_genes;
+  for (const std::string& genes : names_of_gene_sets()) all_genes.push_back(genes.c_str());
   std::string help;
   for (const AlgorithmDescription& algorithm : algorithms()) {
     names.push_back(algorithm.name.data());
@@ -131,7 +142,9 @@ bool EvolveForm::draw(EventLog& log) {
   combo("algorithm", help.c_str(), algorithm, names);
   log.item("evolve.algorithm");
   values_.settings.algorithm.name = names[static_cast<std::size_t>(algorithm)];
-  combo("what changes", "the bodies, how the muscles move (amplitude, frequency, phase), or both", genes, all_genes);
+  combo("what changes",
+        "the bodies, how the muscles move (amplitude, frequency, phase), both of that, or the weights of brains", genes,
+        all_genes);
   log.item("evolve.genes");
   values_.genes = all_genes[static_cast<std::size_t>(genes)];
   row("objective", "a formula; more is better, as in \"distance - 0.1 * strain\"");

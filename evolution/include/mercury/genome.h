@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Genomes: what evolution changes. A robot is grown from a genome.
 //
-// Mercury brings genomes of voxel grids, painted grids, networks, shells, and of the muscles of a given body
+// Mercury brings genomes of voxel grids, painted grids, networks, shells, of the muscles of a given body, and of brains
 // (make_genome_space below). A program may bring its own: it derives from Genome and GenomeSpace.
 #pragma once
 
@@ -62,7 +62,7 @@ struct GenomeSpaceRequest {
   ParameterValues values{};    // of that generator
   std::string environment{};   // for the origins of the robots; empty = none is named
   Genes genes = Genes::body;
-  std::vector<Robot> founders;  // robots to start from, all of one kind; for Genes::muscles robots of any kind
+  std::vector<Robot> founders;  // robots to start from, all of one kind; any kind if the body stays
 };
 
 // What the robots of this space are made for.

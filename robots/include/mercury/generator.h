@@ -71,14 +71,25 @@ struct MutationRequest {
 // Throws ParameterError("strength", ...) unless both strengths are finite and at least 0.
 void validate(const MutationRequest& request);
 
-// What may change in a body that has muscles.
-enum class Genes {
-  body,     // the form and where which material is; the muscle laws stay
-  muscles,  // amplitude, frequency and phase of each base muscle; the body stays
-  both
+// What may change in a robot: a set.
+enum class Genes : std::uint8_t {
+  body = 1,     // the form and where which material is
+  muscles = 2,  // amplitude, frequency and phase of each base muscle
+  both = body | muscles,
+  brain = 4  // the weights of its brain
 };
-std::string_view name_of(Genes genes);     // "body", "muscles", "both"
-Genes genes_named(std::string_view name);  // throws ParameterError("genes", ...)
+constexpr Genes operator|(Genes a, Genes b) {
+  return static_cast<Genes>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
+}
+constexpr Genes operator&(Genes a, Genes b) {
+  return static_cast<Genes>(static_cast<std::uint8_t>(a) & static_cast<std::uint8_t>(b));
+}
+// Whether any of `some` is in the set.
+constexpr bool contains(Genes set, Genes some) { return (set & some) != Genes{}; }
+
+std::vector<Genes> all_gene_sets();        // but the empty one
+std::string name_of(Genes genes);          // "body", "both", "muscles,brain", "body,muscles,brain"
+Genes genes_named(std::string_view name);  // words in any order, "both" among them; throws ParameterError("genes", ...)
 
 struct GenesKind;  // robots/genes.h
 

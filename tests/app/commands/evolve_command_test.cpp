@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <set>
 #include <sstream>
@@ -17,6 +18,7 @@
 #include "mercury/quantity.h"
 #include "mercury/robot_file.h"
 #include "mercury/run_folder.h"
+#include "mercury/samples.h"
 #include "tests/app/program.h"
 #include "tests/nap.h"
 
@@ -399,6 +401,37 @@ TEST_F(EvolveCommand, MusclesOfAnyBody) {
   EXPECT_FALSE(std::ranges::equal(materials_of(last), materials_of(eel)));
 }
 
+TEST_F(EvolveCommand, BrainsGoOnAsIfTheRunHadNotStopped) {
+  const Arguments brains{"--genes", "brain,both", "--target", "1,0,0", "--objective", "-target_distance"};
+  ASSERT_EQ(evolve("whole", joined(small("4"), brains)).status, 0);
+  ASSERT_EQ(evolve("parts", joined(small("1"), brains)).status, 0);
+  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  EXPECT_EQ(lineage("parts"), lineage("whole"));
+  const RunHistory whole(path("whole")), parts(path("parts"));
+  EXPECT_EQ(whole.settings().space.genes, Genes::both | Genes::brain);
+  for (std::uint64_t id = 0; id < whole.individuals().size(); ++id) {
+    EXPECT_EQ(parts.genome(id)->encode(), whole.genome(id)->encode()) << id;
+    const Robot robot = whole.grow(id);
+    EXPECT_EQ(robot.brain.has_value(), !actuators_of(robot).empty()) << id;
+  }
+}
+
+TEST_F(EvolveCommand, ChampionsHaveTheBrainThatEvolved) {
+  const Outcome outcome = evolve("run", {"--from", "sample:hunter", "--genes", "brain", "--target", "-2,3,0",
+                                         "--objective", "-target_distance", "--population", "4", "--generations", "1",
+                                         "--seconds", "0.5", "--trials", "1", "--no-confirm", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const RunHistory history(path("run"));
+  std::set<std::filesystem::path> files;
+  for (const auto& file : std::filesystem::directory_iterator(path("run/best"))) files.insert(file.path());
+  ASSERT_FALSE(files.empty());
+  const Robot champion = load_robot(*files.rbegin()), hunter = load_robot(sample_or_path("sample:hunter"));
+  EXPECT_EQ(champion.brain, history.grow(history.living().front()).brain);
+  EXPECT_EQ(champion.springs, hunter.springs);
+  EXPECT_EQ(champion.sensors, hunter.sensors);
+  EXPECT_NE(champion.brain, hunter.brain);
+}
+
 TEST_F(EvolveCommand, SaysWhyNoRobotCanBeTried) {
   const Outcome outcome =
       evolve("run", {"--from", "shell", "--damage", "0.1", "--population", "4", "--seconds", "0.1", "--quiet"});
@@ -426,25 +459,28 @@ TEST_P(EvolveOptions, AreRefusedInOneLineBeforeAnythingIsMade) {
 
 INSTANTIATE_TEST_SUITE_P(
     Bad, EvolveOptions,
-    testing::Values(BadOptions{{"--from", "fish:3"}, "--from: \"fish:3\" is neither a file or folder nor a kind"},
-                    BadOptions{{"--from", "voxel:6x4"}, "--from: \"6x4\" is not accepted"},
-                    BadOptions{{"--algorithm", "luck"}, "--algorithm: "},
-                    BadOptions{{"--objective", "distance -"}, "--objective: "},
-                    BadOptions{{"--objective", "elegance"}, "--objective: "},
-                    BadOptions{{"--objective", "distance", "--objective", "-work", "--algorithm", "ga"},
-                               "--algorithm: ga takes one objective"},
-                    BadOptions{{"--axis", "charm"}, "--axis: \"charm\" is not a quantity"},
-                    BadOptions{{"--axis", "masses", "--algorithm", "ga"}, "--axis: goes with"},
-                    BadOptions{{"--axis", "masses:5:2"}, "--axis: masses needs two finite ends"},
-                    BadOptions{{"--axis", "masses:1:2:0"}, "--axis: masses needs at least one cell"},
-                    BadOptions{{"--axis", "masses:1:2:5000", "--axis", "work:1:2:5000"}, "--axis: the map has more"},
-                    BadOptions{{"--population", "0"}, "--population: "}, BadOptions{{"--settle", "20"}, "--settle: "},
-                    BadOptions{{"--trials", "0"}, "--trials: "},
-                    BadOptions{{"--racing", "--trials", "2"}, "--racing: "},
-                    BadOptions{{"--damage", "1"}, "--damage: "}, BadOptions{{"--mutation", "-1"}, "--mutation: "},
-                    BadOptions{{"--generations", "-1"}, "--generations: "},
-                    BadOptions{{"--genes", "soul"}, "--genes: "},
-                    BadOptions{{"--shard", "0/4"}, "--shard: \"0/4\" is not accepted"}, BadOptions{{"--resume"}, ""}));
+    testing::Values(
+        BadOptions{{"--from", "fish:3"}, "--from: \"fish:3\" is neither a file or folder nor a kind"},
+        BadOptions{{"--from", "voxel:6x4"}, "--from: \"6x4\" is not accepted"},
+        BadOptions{{"--algorithm", "luck"}, "--algorithm: "},
+        BadOptions{{"--objective", "distance -"}, "--objective: "},
+        BadOptions{{"--objective", "elegance"}, "--objective: "},
+        BadOptions{{"--objective", "distance", "--objective", "-work", "--algorithm", "ga"},
+                   "--algorithm: ga takes one objective"},
+        BadOptions{{"--axis", "charm"}, "--axis: \"charm\" is not a quantity"},
+        BadOptions{{"--axis", "masses", "--algorithm", "ga"}, "--axis: goes with"},
+        BadOptions{{"--axis", "masses:5:2"}, "--axis: masses needs two finite ends"},
+        BadOptions{{"--axis", "masses:1:2:0"}, "--axis: masses needs at least one cell"},
+        BadOptions{{"--axis", "masses:1:2:5000", "--axis", "work:1:2:5000"}, "--axis: the map has more"},
+        BadOptions{{"--population", "0"}, "--population: "}, BadOptions{{"--settle", "20"}, "--settle: "},
+        BadOptions{{"--trials", "0"}, "--trials: "}, BadOptions{{"--racing", "--trials", "2"}, "--racing: "},
+        BadOptions{{"--damage", "1"}, "--damage: "}, BadOptions{{"--mutation", "-1"}, "--mutation: "},
+        BadOptions{{"--generations", "-1"}, "--generations: "},
+        BadOptions{{"--genes", "soul"}, "--genes: \"soul\" is not accepted; give body, muscles, both, brain"},
+        BadOptions{{"--genes", "brain"}, "--genes: brain alone needs robots that have one, and voxel robots"},
+        BadOptions{{"--from", "sample:eel", "--genes", "brain"},
+                   "--genes: brain alone needs robots that have one, and robot eel has none; start from"},
+        BadOptions{{"--shard", "0/4"}, "--shard: \"0/4\" is not accepted"}, BadOptions{{"--resume"}, ""}));
 
 }  // namespace
 }  // namespace mercury::test

@@ -15,6 +15,7 @@
 #include "mercury/random_voxel.h"
 #include "mercury/real_body.h"
 #include "mercury/voxel.h"
+#include "robots/brain_genes.h"
 #include "tests/refusal.h"
 
 namespace mercury {
@@ -22,7 +23,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A kind and what may change. "given" = the muscles of given robots.
+// A kind and what may change. "given" = given robots whose bodies stay.
 struct Case {
   std::string kind;
   Genes genes;
@@ -34,8 +35,16 @@ Robot given_robot() {
   return robot;
 }
 
+Robot thinking_robot() {
+  Robot robot = given_robot();
+  give_brain_per_actuator(robot, 3);
+  set_weights(*robot.brain, random_brain_genes(*robot.brain, 1).weights);
+  return robot;
+}
+
 GenomeSpaceRequest request_for(const Case& chosen) {
-  if (chosen.kind == "given") return {.genes = chosen.genes, .founders = {given_robot()}};
+  if (chosen.kind == "given")
+    return {.genes = chosen.genes, .founders = {chosen.genes == Genes::muscles ? given_robot() : thinking_robot()}};
   GenomeSpaceRequest request{.kind = chosen.kind, .environment = "land", .genes = chosen.genes};
   if (chosen.kind == "nn") request.values = {{"points", std::int64_t{64}}, {"hidden", std::vector<int>{8, 8}}};
   return request;
@@ -111,23 +120,25 @@ TEST_P(EveryGenome, RobotsOfOneIdentityAreTheSame) {
 TEST_P(EveryGenome, ChangesOnlyWhatMayChange) {
   const GenomePointer parent = space_->random(1, 1);
   const Robot before = parent->grow("robot");
-  bool body_changed = false, muscles_changed = false;
+  bool body_changed = false, muscles_changed = false, brain_changed = false;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const Robot after = parent->mutate(1, seed)->grow("robot");
     const bool same_muscles = std::ranges::equal(materials_of(before), materials_of(after));
     body_changed |= after.masses != before.masses || after.springs != before.springs;
     muscles_changed |= !same_muscles;
-    if (GetParam().genes == Genes::muscles) {
+    brain_changed |= after.brain && before.brain && after.brain != before.brain;
+    if (!contains(GetParam().genes, Genes::body)) {
       EXPECT_EQ(after.masses, before.masses);
       EXPECT_EQ(after.faces, before.faces);
     }
     // A shell lists the muscles that it needs.
-    if (GetParam().genes == Genes::body && GetParam().kind != "shell") {
+    if (!contains(GetParam().genes, Genes::muscles) && GetParam().kind != "shell") {
       EXPECT_TRUE(same_muscles) << seed;
     }
   }
-  EXPECT_EQ(body_changed, GetParam().genes != Genes::muscles || GetParam().kind == "shell");
-  EXPECT_EQ(muscles_changed, GetParam().genes != Genes::body || GetParam().kind == "shell");
+  EXPECT_EQ(body_changed, contains(GetParam().genes, Genes::body) || GetParam().kind == "shell");
+  EXPECT_EQ(muscles_changed, contains(GetParam().genes, Genes::muscles) || GetParam().kind == "shell");
+  EXPECT_EQ(brain_changed, contains(GetParam().genes, Genes::brain));
 }
 
 TEST_P(EveryGenome, RefusesBytesThatBreakOffOrGoOn) {
@@ -184,15 +195,17 @@ TEST_P(EveryGenome, DamagedBytesGiveAGenomeOrALine) {
 }
 
 std::vector<Case> cases() {
-  std::vector<Case> all{{"given", Genes::muscles}};
+  std::vector<Case> all{{"given", Genes::muscles}, {"given", Genes::brain}, {"given", Genes::muscles | Genes::brain}};
   for (const std::string kind : {"voxel", "cppn", "shell", "nn", "tapered"})
-    for (const Genes genes : {Genes::body, Genes::muscles, Genes::both})
-      if (kind != "nn" || MERCURY_NN) all.push_back({kind, genes});
+    for (const Genes genes : all_gene_sets())
+      if (genes != Genes::brain && (kind != "nn" || MERCURY_NN)) all.push_back({kind, genes});
   return all;
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryGenome, testing::ValuesIn(cases()), [](const auto& parameter) {
-  return parameter.param.kind + "_" + std::string(name_of(parameter.param.genes));
+  std::string name = parameter.param.kind + "_" + name_of(parameter.param.genes);
+  std::ranges::replace(name, ',', '_');
+  return name;
 });
 
 TEST(GenomeSpaces, EveryGeneratorHasOne) {
@@ -272,8 +285,22 @@ TEST(GenomeSpaces, RefuseFoundersThatCannotBeUsed) {
   EXPECT_THAT(refused({.kind = "fish"}), HasSubstr("kind: \"fish\" is not a kind of robot"));
   EXPECT_THAT(refused({.kind = "voxel", .values = {{"air", 7.0}}}), HasSubstr("air: 7 is not accepted"));
   EXPECT_THAT(refused({.environment = "moon"}), HasSubstr("moon"));
-  EXPECT_EQ(refusal([] { genes_named("all"); }), "genes: \"all\" is not accepted; give body, muscles or both");
-  EXPECT_EQ(genes_named(name_of(Genes::both)), Genes::both);
+}
+
+TEST(GeneSets, HaveNamesThatFilesKeep) {
+  EXPECT_EQ(name_of(Genes::body), "body");
+  EXPECT_EQ(name_of(Genes::muscles), "muscles");
+  EXPECT_EQ(name_of(Genes::both), "both");
+  EXPECT_EQ(name_of(Genes::brain), "brain");
+  EXPECT_EQ(name_of(Genes::muscles | Genes::brain), "muscles,brain");
+  EXPECT_EQ(name_of(Genes::both | Genes::brain), "body,muscles,brain");
+  for (const Genes genes : all_gene_sets()) EXPECT_EQ(genes_named(name_of(genes)), genes);
+  EXPECT_EQ(genes_named("brain,both"), Genes::both | Genes::brain);
+  EXPECT_EQ(genes_named("muscles,body"), Genes::both);
+  for (const std::string name : {"all", "", "body,", ",body", "body, brain", "body,soul"})
+    EXPECT_EQ(refusal([&] { genes_named(name); }),
+              "genes: \"" + name +
+                  "\" is not accepted; give body, muscles, both, brain, or several of them with commas between them");
 }
 
 // A muscle of a real tapered robot is several materials, since its springs are of several stiffnesses.

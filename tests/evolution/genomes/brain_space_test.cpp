@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// Evolution of brains: what changes, what stays, and that it finds a target. genome_space_test.cpp has what holds for
+// genomes of all kinds.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mercury/error.h"
+#include "mercury/evolution.h"
+#include "mercury/genome.h"
+#include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
+#include "mercury/simulation.h"
+#include "mercury/trials.h"
+#include "mercury/voxel.h"
+#include "robots/brain_genes.h"
+#include "tests/refusal.h"
+
+namespace mercury {
+namespace {
+
+Robot thinking_robot(std::uint64_t seed = 3, float clock = 3) {
+  Robot robot = random_voxel_robot({.smallest = {4, 2, 2}, .largest = {4, 2, 2}}, seed);
+  give_brain_per_actuator(robot, clock);
+  set_weights(*robot.brain, random_brain_genes(*robot.brain, seed).weights);
+  return robot;
+}
+
+TEST(BrainSpaces, BrainAloneChangesWeightsAndNothingElse) {
+  Robot founder = thinking_robot();
+  founder.mass.assign(founder.masses.size(), 2);  // any robot will do
+  founder.sensors.push_back({.kind = SensorKind::touch, .masses = {1, 2}});
+  for (std::uint32_t neuron = 0; neuron < 4; ++neuron) {
+    auto& weights = founder.brain->layers[0].inputs[0].weights;
+    weights.insert(weights.begin() + 9 * neuron + 8, 0.25f);
+  }
+  const auto space = make_genome_space({.genes = Genes::brain, .founders = {founder}});
+  EXPECT_EQ(space->random(1, 0)->grow(founder.name), founder);
+  for (std::uint64_t index = 1; index < 5; ++index) {
+    Robot child = space->random(1, index)->mutate(1, index)->grow(founder.name);
+    EXPECT_NE(weights_of(*child.brain), weights_of(*founder.brain));
+    set_weights(*child.brain, weights_of(*founder.brain));
+    EXPECT_EQ(child, founder);
+  }
+}
+
+TEST(BrainSpaces, SampleHunterCanEvolveInAllWays) {
+  const Robot hunter = load_robot(MERCURY_HUNTER);
+  for (const Genes genes : all_gene_sets()) {
+    const auto space = make_genome_space({.genes = genes, .founders = {hunter}});
+    const Robot first = space->random(1, 0)->grow("first");
+    EXPECT_EQ(first.brain, hunter.brain) << name_of(genes);
+    EXPECT_EQ(first.sensors, hunter.sensors) << name_of(genes);
+    const Robot child = space->random(1, 3)->grow("child");
+    EXPECT_NO_THROW(validate(child)) << name_of(genes);
+    ASSERT_TRUE(child.brain) << name_of(genes);
+    EXPECT_EQ(child.brain != hunter.brain, contains(genes, Genes::brain)) << name_of(genes);
+    EXPECT_EQ(child.masses != hunter.masses, contains(genes, Genes::body)) << name_of(genes);
+  }
+}
+
+TEST(BrainSpaces, RandomRobotsGetABrainPerActuator) {
+  for (const Genes genes : {Genes::body | Genes::brain, Genes::muscles | Genes::brain, Genes::both | Genes::brain}) {
+    const auto space = make_genome_space({.kind = "voxel", .genes = genes});
+    const GenomePointer a = space->random(1, 0), b = space->random(1, 1);
+    const Robot robot = a->grow("a");
+    ASSERT_TRUE(robot.brain);
+    EXPECT_TRUE(robot.brain->per_actuator);
+    EXPECT_NE(weights_of(*robot.brain), weights_of(*b->grow("b").brain));
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const Robot child = a->mutate(4, seed)->grow("child");
+      EXPECT_EQ(child.brain.has_value(), !actuators_of(child).empty()) << seed;
+    }
+  }
+  // Given robots without a brain as well.
+  Robot founder = thinking_robot();
+  founder.brain.reset();
+  founder.sensors.clear();
+  const auto space = make_genome_space({.genes = Genes::both | Genes::brain, .founders = {founder}});
+  EXPECT_EQ(space->random(1, 0)->encode(), space->random(2, 0)->encode());
+  EXPECT_TRUE(space->random(1, 0)->grow("a").brain);
+}
+
+// One of them or both, a third each.
+TEST(BrainSpaces, BodiesAndBrainsTakeTurns) {
+  const auto space = make_genome_space({.genes = Genes::body | Genes::brain, .founders = {thinking_robot()}});
+  const GenomePointer parent = space->random(1, 0);
+  const Robot before = parent->grow("robot");
+  int body_alone = 0, brain_alone = 0, together = 0;
+  constexpr int children = 300;
+  for (std::uint64_t seed = 0; seed < children; ++seed) {
+    const Robot after = parent->mutate(1, seed)->grow("robot");
+    const bool body = after.springs != before.springs, brain = after.brain != before.brain;
+    body_alone += body && !brain;
+    brain_alone += brain && !body;
+    together += body && brain;
+  }
+  const double spread = 4 * std::sqrt(children * 2.0 / 9);
+  EXPECT_NEAR(body_alone, children / 3.0, spread);
+  EXPECT_NEAR(brain_alone, children / 3.0, spread);
+  EXPECT_NEAR(together, children / 3.0, spread);
+}
+
+TEST(BrainSpaces, BrainsOfOtherStructureAreNotMixed) {
+  const Robot a = thinking_robot(3), b = thinking_robot(3, 5), c = thinking_robot(4);
+  const auto space = make_genome_space({.genes = Genes::brain, .founders = {a, b, c}});
+  const auto founder = [&](std::uint64_t i) { return space->random(1, i); };
+  int mixed = 0;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    EXPECT_EQ(founder(0)->cross(*founder(1), seed)->grow("a").brain, a.brain);
+    const Robot child = founder(0)->cross(*founder(2), seed)->grow("a");
+    EXPECT_EQ(child.masses, a.masses);
+    mixed += child.brain != a.brain && child.brain != c.brain;
+  }
+  EXPECT_GT(mixed, 5);  // of 10, one in 16 of which has no or all neurons of the other parent
+}
+
+TEST(BrainSpaces, RefuseWhatHasNothingToChange) {
+  const auto refused = [](const GenomeSpaceRequest& request) { return refusal([&] { make_genome_space(request); }); };
+  const std::string what = "; start from sample:hunter or a file with a brain, or give body,brain or muscles,brain";
+  EXPECT_EQ(refused({.kind = "voxel", .genes = Genes::brain}),
+            "genes: brain alone needs robots that have one, and voxel robots have none" + what);
+  Robot robot = thinking_robot(), brainless = robot;
+  brainless.brain.reset();
+  brainless.name = "stone";
+  EXPECT_EQ(refused({.genes = Genes::brain, .founders = {robot, brainless}}),
+            "genes: brain alone needs robots that have one, and robot stone has none" + what);
+  for (NeuronLayer& layer : robot.brain->layers) layer.bias.clear(), layer.inputs.clear();
+  EXPECT_EQ(refused({.genes = Genes::brain, .founders = {robot}}),
+            "robot " + robot.name + ": its brain has no weights that could change");
+}
+
+// A flat body of 10 x 2 voxels, whose sides have four muscles each. Its neurons know the time and where the target is,
+// and do not move it yet.
+Robot eel_without_skills() {
+  VoxelGrid grid(10, 2, 1);
+  for (int x = 0; x < 10; ++x)
+    for (int y = 0; y < 2; ++y) grid.cell(x, y, 0) = static_cast<MaterialId>(1 + 4 * y + 2 * x / 5);
+  Robot robot = make_voxel_robot(grid, {.name = "eel"});
+  robot.actuators = {{"left front", {1}},  {"left 2", {2}},  {"left 3", {3}},  {"left back", {4}},
+                     {"right front", {5}}, {"right 2", {6}}, {"right 3", {7}}, {"right back", {8}}};
+  robot.sensors = {{.kind = SensorKind::clock, .frequency = 12}, {.kind = SensorKind::target_direction}};
+  NeuronLayer motor{.name = "motor", .neurons = 8, .bias = std::vector<float>(8)};
+  motor.inputs = {{.from = "senses", .weights = std::vector<float>(8 * 5)}};
+  robot.brain = Brain{.layers = {motor}};
+  validate(robot);
+  return robot;
+}
+
+// A search for a target beside it.
+EvolutionSettings search_for_a_target() {
+  EvolutionSettings settings;
+  settings.algorithm.name = "ga";
+  settings.algorithm.population = 16;
+  settings.objectives = {"-target_distance"};
+  settings.trials = one_trial();
+  settings.trials.seconds = 8;
+  settings.configuration.environment = Ocean{};
+  settings.configuration.environment.stiffness_scale = 20;  // strong muscles
+  settings.configuration.environment.target = {1.5f, 0.5f, 0};
+  settings.configuration.dt = 0.004;
+  settings.configuration.device = {.kind = DeviceKind::cpu, .threads = 2};
+  settings.generations = 20;
+  return settings;
+}
+
+// Not by the quantity: through a simulation, and the mean of the positions in double precision.
+double distance_after_the_trial(const Robot& robot, const EvolutionSettings& settings) {
+  Simulation simulation(settings.configuration, std::span(&robot, 1));
+  simulation.step(std::llround(settings.trials.seconds / settings.configuration.dt));
+  double sum[3] = {};
+  const State state = simulation.state(0);
+  for (const Vec3& p : state.positions) {
+    sum[0] += static_cast<double>(p.x);
+    sum[1] += static_cast<double>(p.y);
+    sum[2] += static_cast<double>(p.z);
+  }
+  const auto count = static_cast<double>(state.positions.size());
+  const Vec3 target = settings.configuration.environment.target;
+  return std::hypot(sum[0] / count - target.x, sum[1] / count - target.y, sum[2] / count - target.z);
+}
+
+TEST(BrainEvolution, BringsARobotNearerToItsTarget) {
+  const Robot founder = eel_without_skills();
+  const auto space = make_genome_space({.genes = Genes::brain, .founders = {founder}});
+  const EvolutionSettings settings = search_for_a_target();
+  const auto assessor = make_assessor(settings);
+  Evolution evolution(settings, *space);
+  while (evolution.advance(*assessor)) {
+  }
+  const Individual& best = evolution.living().front();
+  const Robot champion = best.genome->grow("champion");
+  const double before = distance_after_the_trial(founder, settings),
+               after = distance_after_the_trial(champion, settings);
+  EXPECT_NEAR(-best.score(), after, 1e-5);
+  EXPECT_EQ(champion.masses, founder.masses);
+  EXPECT_EQ(champion.springs, founder.springs);
+  EXPECT_LT(after, before - 0.1) << before;
+}
+
+// From the bytes of the living, which is all that a run folder keeps.
+TEST(BrainEvolution, GoesOnBitForBitAfterItWasStopped) {
+  for (const Genes genes : {Genes::brain, Genes::both | Genes::brain}) {
+    const auto space = make_genome_space({.genes = genes, .founders = {thinking_robot(3), thinking_robot(4)}});
+    EvolutionSettings settings = search_for_a_target();
+    settings.generations = 4;
+    settings.trials.seconds = 0.4;
+    settings.algorithm.crossover = 0.5;
+    const auto assessor = make_assessor(settings);
+    Evolution whole(settings, *space), stopped(settings, *space);
+    std::uint64_t born = 0;
+    for (int i = 0; i < 2; ++i) {
+      whole.advance(*assessor);
+      born += stopped.advance(*assessor)->born.size();
+    }
+    const auto again = make_genome_space({.genes = genes, .founders = {thinking_robot(3), thinking_robot(4)}});
+    std::vector<Individual> living = stopped.living();
+    for (Individual& individual : living) individual.genome = again->decode(individual.genome->encode());
+    Evolution resumed(settings, *again);
+    resumed.restore(1, std::move(living), born);
+    while (!whole.is_over()) {
+      const std::optional<Generation> expected = whole.advance(*assessor), got = resumed.advance(*assessor);
+      EXPECT_EQ(got->living, expected->living);
+      ASSERT_EQ(got->born.size(), expected->born.size());
+      for (std::size_t i = 0; i < got->born.size(); ++i) {
+        ASSERT_EQ(got->born[i].genome->encode(), expected->born[i].genome->encode());
+        ASSERT_EQ(got->born[i].parents, expected->born[i].parents);
+        ASSERT_EQ(got->born[i].assessment.hash, expected->born[i].assessment.hash);  // of the final states
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mercury
