@@ -17,21 +17,22 @@ struct SensedSpring {
 
 // BrainPlan::Place with slots.
 struct SensedPlace {
-  std::uint32_t first_share;                                 // of the robot's, those of masses; then come
-  std::uint32_t mass_shares, turning_shares, spring_shares;  // how many there are of each
+  std::uint32_t first_row;                   // of its sums among those of the robot
+  std::uint32_t mass_shares, spring_shares;  // first come the rows of masses, then those of springs
   std::uint32_t masses, springs;
   double mass;  // of its masses together [kg]
   std::uint8_t measures;
 };
 
-// What a warp adds up for a place at once. The cut does not depend on the number of warps, nor do the sums.
+// What a warp adds up for a place at once, into a row of sums; of tiles of a body that senses how it turns, into two.
+// The cut does not depend on the number of warps, nor do the sums.
 struct SensingShare {
-  enum Kind : std::uint32_t { tiles, turning_tiles, masses, springs };
+  enum Kind : std::uint32_t { tiles, masses, springs };
   Kind kind;
-  std::uint32_t count;
+  std::uint32_t row, count;
   std::uint64_t first;  // tile of the robot, or entry of the lists
 };
-inline constexpr std::uint32_t tiles_per_share = 3, entries_per_share = 512, sums_per_share = 16;
+inline constexpr std::uint32_t tiles_per_share = 3, entries_per_share = 512, sums_per_row = 16;
 
 // Where the parts of a brain begin in the tables.
 struct ThinkingRobot {
@@ -41,8 +42,8 @@ struct ThinkingRobot {
   std::uint64_t seed;
   std::uint64_t first_sense, first_neuron, first_run, first_learning, first_layer, first_output;  // of the plan
   std::uint32_t senses, neurons, layers, outputs, samples, weights;
-  std::uint64_t first_place, first_share, first_rest, first_activation, first_sample, first_weight, first_driven,
-      first_scratch;
+  std::uint64_t first_place, first_share, first_row, first_rest, first_activation, first_sample, first_weight,
+      first_driven, first_scratch;
   std::uint32_t places, shares, driven;
   bool uses_frame, uses_turn_rate;
 };
@@ -67,10 +68,10 @@ struct BrainTables {
   std::uint64_t* thoughts;
   const std::uint64_t* noise_seeds;
   // For the time of a thought.
-  double (*sums)[sums_per_share];  // one per share
-  PlaceMeasures* measures;         // one per place
-  BodyMeasures* bodies;            // one per brain
-  float* scratch;                  // senses, neurons, sums of neurons, of each brain
+  double (*sums)[sums_per_row];
+  PlaceMeasures* measures;  // one per place
+  BodyMeasures* bodies;     // one per brain
+  float* scratch;           // senses, neurons, sums of neurons, of each brain
 };
 
 // What a launch of steps needs of brains.

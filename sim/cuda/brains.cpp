@@ -29,7 +29,7 @@ class TableMaker {
   std::vector<std::uint16_t> slots;
   std::vector<SensedSpring> springs;
   std::vector<Vec3> rest;
-  std::size_t activations = 0, samples = 0, weights = 0, scratch = 0;
+  std::size_t activations = 0, samples = 0, weights = 0, scratch = 0, rows = 0;
 
   void add(const DeviceBrains::Thinker& thinker) {
     const BrainPlan& plan = *thinker.plan;
@@ -41,7 +41,8 @@ class TableMaker {
     robot.first_place = places.size();
     robot.places = static_cast<std::uint32_t>(plan.places.size());
     robot.first_share = shares.size();
-    for (std::size_t i = 0; i < plan.places.size(); ++i) add_place(thinker, i, robot.first_share);
+    robot.first_row = rows;
+    for (std::size_t i = 0; i < plan.places.size(); ++i) add_place(thinker, i, robot.first_row);
     robot.shares = static_cast<std::uint32_t>(shares.size() - robot.first_share);
     robot.first_rest = rest.size();
     if (plan.uses_frame) add_rest(thinker);
@@ -93,12 +94,11 @@ class TableMaker {
     return robot;
   }
 
-  void add_place(const DeviceBrains::Thinker& thinker, std::size_t number, std::size_t first_share) {
+  void add_place(const DeviceBrains::Thinker& thinker, std::size_t number, std::size_t first_row) {
     const BrainPlan& plan = *thinker.plan;
     const BrainPlan::Place& from = plan.places[number];
-    SensedPlace place{.first_share = static_cast<std::uint32_t>(shares.size() - first_share),
+    SensedPlace place{.first_row = static_cast<std::uint32_t>(rows - first_row),
                       .mass_shares = 0,
-                      .turning_shares = 0,
                       .spring_shares = 0,
                       .masses = static_cast<std::uint32_t>(from.masses.size()),
                       .springs = 0,
@@ -106,15 +106,17 @@ class TableMaker {
                       .measures = from.measures};
     const auto cut = [&](SensingShare::Kind kind, std::size_t first, std::size_t count, std::uint32_t most) {
       const std::size_t before = shares.size();
-      for (std::size_t done = 0; done < count; done += most)
-        shares.push_back({kind, static_cast<std::uint32_t>(std::min<std::size_t>(most, count - done)), first + done});
+      for (std::size_t done = 0; done < count; done += most) {
+        shares.push_back({kind, static_cast<std::uint32_t>(rows - first_row),
+                          static_cast<std::uint32_t>(std::min<std::size_t>(most, count - done)), first + done});
+        rows += kind == SensingShare::tiles && plan.uses_turn_rate ? 2 : 1;
+      }
       return static_cast<std::uint32_t>(shares.size() - before);
     };
     if (number == 0) {
       const std::uint32_t tiles = tiles_for(thinker.body->masses.size());
       if (from.measures & ~(measure_strain | measure_strain_rate))
         place.mass_shares = cut(SensingShare::tiles, 0, tiles, tiles_per_share);
-      if (plan.uses_turn_rate) place.turning_shares = cut(SensingShare::turning_tiles, 0, tiles, tiles_per_share);
     } else {
       const std::size_t first = slots.size();
       for (const std::uint16_t mass : from.masses) {
@@ -193,7 +195,7 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
   targets_ = DeviceArray<Vec3>(made.robots.size());
   thoughts_ = DeviceArray<std::uint64_t>(made.robots.size());
   noise_seeds_ = DeviceArray<std::uint64_t>(made.robots.size());
-  sums_ = DeviceArray<double>(made.shares.size() * sums_per_share);
+  sums_ = DeviceArray<double>(made.rows * sums_per_row);
   measures_ = DeviceArray<PlaceMeasures>(made.places.size());
   bodies_ = DeviceArray<BodyMeasures>(made.robots.size());
   scratch_ = DeviceArray<float>(made.scratch);
@@ -216,7 +218,7 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
              .targets = targets_.data(),
              .thoughts = thoughts_.data(),
              .noise_seeds = noise_seeds_.data(),
-             .sums = reinterpret_cast<double(*)[sums_per_share]>(sums_.data()),
+             .sums = reinterpret_cast<double(*)[sums_per_row]>(sums_.data()),
              .measures = measures_.data(),
              .bodies = bodies_.data(),
              .scratch = scratch_.data()};

@@ -30,7 +30,7 @@ __device__ inline void wait_for_robot(std::uint32_t warps) {
 
 // Sums of 16 values over the lanes of a warp. Lanes exchange halves of what they have, so that lanes 2 i and 2 i + 1
 // have the sum of value i in the end.
-__device__ inline double sums_of_warp(double (&values)[sums_per_share]) {
+__device__ inline double sums_of_warp(double (&values)[sums_per_row]) {
 #pragma unroll
   for (unsigned half = 8, distance = 16; half > 0; half /= 2, distance /= 2) {
     const bool upper = threadIdx.x & distance;
@@ -100,68 +100,104 @@ class Thought {
   __device__ Double3 vector(std::uint32_t slot, Field field) const {
     return Double3(robot_.mass_at(slot).vector(field));
   }
-  __device__ double mass(std::uint32_t slot) const {
+  __device__ float mass(std::uint32_t slot) const {
     const BatchView& batch = robot_.arguments.batch;
-    return batch.point_masses
-               ? static_cast<double>(batch.point_masses[std::size_t{robot_.robot} * batch.tile_stride * lanes + slot])
-               : 1.0;
+    return batch.point_masses ? batch.point_masses[std::size_t{robot_.robot} * batch.tile_stride * lanes + slot] : 1;
   }
 
   __device__ void measure(std::uint32_t number) const {
     const SensingShare share = tables_.shares[of_.first_share + number];
-    double* const out = tables_.sums[of_.first_share + number];
-    if (share.kind == SensingShare::springs) return measure_springs(share, out);
-    double sums[sums_per_share] = {};
-    if (share.kind == SensingShare::tiles)
-      add_tiles(share, sums);
-    else if (share.kind == SensingShare::turning_tiles)
-      add_turning_tiles(share, sums);
+    double* const out = tables_.sums[of_.first_row + share.row];
+    if (share.kind == SensingShare::springs)
+      measure_springs(share, out);
+    else if (share.kind == SensingShare::tiles)
+      measure_tiles(share, out);
     else
-      add_masses(share, sums);
-    const double sum = sums_of_warp(sums);
-    if (robot_.lane % 2 == 0) out[robot_.lane / 2] = sum;
+      measure_masses(share, out);
   }
+
+  // m d, m v, and masses on the ground, of the few masses that a lane has: rounding is that of the positions.
+  struct MassSums {
+    Vec3 md, mv;
+    float touching = 0;
+
+    __device__ void add(float m, Vec3 d, Vec3 v, float z) {
+      md += m * d;
+      mv += m * v;
+      if (on_ground(z)) touching += 1;
+    }
+    __device__ void to(double* sums) const {
+      const float all[] = {md.x, md.y, md.z, mv.x, mv.y, mv.z, touching};
+#pragma unroll
+      for (int i = 0; i < 7; ++i) sums[i] = static_cast<double>(all[i]);
+    }
+  };
+  // m d x v and m d d^T.
+  struct TurningSums {
+    Vec3 momentum, squares, products;
+
+    __device__ void add(float m, Vec3 d, Vec3 v) {
+      const Vec3 md = m * d;
+      momentum += cross(md, v);
+      squares += Vec3{md.x * d.x, md.y * d.y, md.z * d.z};
+      products += Vec3{md.x * d.y, md.x * d.z, md.y * d.z};
+    }
+    __device__ void to(double* sums) const {
+      const float all[] = {momentum.x, momentum.y, momentum.z, squares.x, squares.y,
+                           squares.z,  products.x, products.y, products.z};
+#pragma unroll
+      for (int i = 0; i < 9; ++i) sums[i] = static_cast<double>(all[i]);
+    }
+  };
 
   // Positions count from a mass, so that nothing cancels far from the origin of the world.
-  __device__ void add_tiles(const SensingShare& share, double (&sums)[sums_per_share]) const {
-    const Double3 origin = vector(0, field_x);
-    for (std::uint32_t i = 0; i < share.count; ++i) {
+  __device__ void measure_tiles(const SensingShare& share, double* out) const {
+    const Vec3 origin = robot_.mass_at(0).vector(field_x);
+    MassSums masses;
+    TurningSums turning;
+    double shape[9] = {};
+#pragma unroll
+    for (std::uint32_t i = 0; i < tiles_per_share; ++i) {
       const std::uint32_t slot = (static_cast<std::uint32_t>(share.first) + i) * lanes + robot_.lane;
-      if (slot >= robot_.header().masses) break;
-      const Double3 x = vector(slot, field_x), d = x - origin, v = vector(slot, field_v);
-      add_mass(mass(slot), d, v, x.z, sums);
+      if (i >= share.count || slot >= robot_.header().masses) continue;
+      const float m = mass(slot);
+      const Vec3 x = robot_.mass_at(slot).vector(field_x), d = x - origin, v = robot_.mass_at(slot).vector(field_v);
+      masses.add(m, d, v, x.z);
+      if (of_.uses_turn_rate) turning.add(m, d, v);
       if (!of_.uses_frame) continue;
-      const Double3 X = mass(slot) * Double3(tables_.rest[of_.first_rest + slot]);
-      sums[7] = fma(X.x, d.x, sums[7]), sums[8] = fma(X.x, d.y, sums[8]), sums[9] = fma(X.x, d.z, sums[9]);
-      sums[10] = fma(X.y, d.x, sums[10]), sums[11] = fma(X.y, d.y, sums[11]), sums[12] = fma(X.y, d.z, sums[12]);
-      sums[13] = fma(X.z, d.x, sums[13]), sums[14] = fma(X.z, d.y, sums[14]), sums[15] = fma(X.z, d.z, sums[15]);
+      const Vec3 rest = tables_.rest[of_.first_rest + slot];
+      const Double3 X(m * rest), to(d);
+      shape[0] = fma(X.x, to.x, shape[0]), shape[1] = fma(X.x, to.y, shape[1]), shape[2] = fma(X.x, to.z, shape[2]);
+      shape[3] = fma(X.y, to.x, shape[3]), shape[4] = fma(X.y, to.y, shape[4]), shape[5] = fma(X.y, to.z, shape[5]);
+      shape[6] = fma(X.z, to.x, shape[6]), shape[7] = fma(X.z, to.y, shape[7]), shape[8] = fma(X.z, to.z, shape[8]);
     }
+    double sums[sums_per_row];
+    masses.to(sums);
+#pragma unroll
+    for (int i = 0; i < 9; ++i) sums[7 + i] = shape[i];
+    write_sums(sums, out);
+    if (!of_.uses_turn_rate) return;
+    turning.to(sums);
+#pragma unroll
+    for (std::uint32_t i = 9; i < sums_per_row; ++i) sums[i] = 0;
+    write_sums(sums, out + sums_per_row);
   }
 
-  __device__ void add_turning_tiles(const SensingShare& share, double (&sums)[sums_per_share]) const {
-    const Double3 origin = vector(0, field_x);
-    for (std::uint32_t i = 0; i < share.count; ++i) {
-      const std::uint32_t slot = (static_cast<std::uint32_t>(share.first) + i) * lanes + robot_.lane;
-      if (slot >= robot_.header().masses) break;
-      const double m = mass(slot);
-      const Double3 d = vector(slot, field_x) - origin, momentum = m * cross(d, vector(slot, field_v)), md = m * d;
-      sums[0] += momentum.x, sums[1] += momentum.y, sums[2] += momentum.z;
-      sums[3] = fma(md.x, d.x, sums[3]), sums[4] = fma(md.y, d.y, sums[4]), sums[5] = fma(md.z, d.z, sums[5]);
-      sums[6] = fma(md.x, d.y, sums[6]), sums[7] = fma(md.x, d.z, sums[7]), sums[8] = fma(md.y, d.z, sums[8]);
-    }
-  }
-
-  __device__ void add_masses(const SensingShare& share, double (&sums)[sums_per_share]) const {
+  __device__ void measure_masses(const SensingShare& share, double* out) const {
+    MassSums masses;
     for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
       const std::uint32_t slot = tables_.slots[share.first + i];
-      const Double3 x = vector(slot, field_x);
-      add_mass(mass(slot), x, vector(slot, field_v), x.z, sums);
+      const Vec3 x = robot_.mass_at(slot).vector(field_x);
+      masses.add(mass(slot), x - robot_.mass_at(0).vector(field_x), robot_.mass_at(slot).vector(field_v), x.z);
     }
+    double sums[sums_per_row] = {};
+    masses.to(sums);
+    write_sums(sums, out);
   }
-  __device__ static void add_mass(double m, Double3 d, Double3 v, double z, double (&sums)[sums_per_share]) {
-    sums[0] = fma(m, d.x, sums[0]), sums[1] = fma(m, d.y, sums[1]), sums[2] = fma(m, d.z, sums[2]);
-    sums[3] = fma(m, v.x, sums[3]), sums[4] = fma(m, v.y, sums[4]), sums[5] = fma(m, v.z, sums[5]);
-    if (on_ground(static_cast<float>(z))) sums[6] += 1;
+
+  __device__ void write_sums(double (&sums)[sums_per_row], double* out) const {
+    const double sum = sums_of_warp(sums);
+    if (robot_.lane % 2 == 0) out[robot_.lane / 2] = sum;
   }
 
   // Springs are many: each is measured in floats.
@@ -183,18 +219,21 @@ class Thought {
     if (robot_.lane == 0) out[0] = strain, out[1] = rate;
   }
 
-  // Lanes add up the shares of a place: 0 to 15 those of masses, 16 to 24 those of turning tiles, 25 and 26 those of
-  // springs. Then each lane has all sums, and all compute the same.
+  // Lanes add up the shares of a place: 0 to 15 those of masses, 16 to 24 what else tiles have of turning, 25 and 26
+  // those of springs. Then each lane has all sums, and all compute the same.
   __device__ void conclude(std::uint32_t number) const {
     const SensedPlace& place = tables_.places[of_.first_place + number];
     const std::uint32_t lane = robot_.lane;
-    std::uint32_t first = place.first_share, count = place.mass_shares, column = lane;
-    if (lane >= 16) first += count, count = place.turning_shares, column = lane - 16;
-    if (lane >= 25) first += count, count = place.spring_shares, column = lane - 25;
-    const double(*shares)[sums_per_share] = tables_.sums + of_.first_share + first;
+    const std::uint32_t rows = number == 0 && of_.uses_turn_rate ? 2 : 1;  // of a share of masses
+    std::uint32_t row = place.first_row, count = place.mass_shares, column = lane, stride = rows;
+    if (lane >= 16) ++row, column = lane - 16, count = rows == 2 ? count : 0;
+    if (lane >= 25) row = place.first_row + rows * place.mass_shares, column = lane - 25, count = place.spring_shares;
+    if (lane >= 25) stride = 1;
+    if (lane >= 27) count = 0;
+    const double* const sums = tables_.sums[of_.first_row + row] + column;
     double sum = 0;
 #pragma unroll 4
-    for (std::uint32_t i = 0; i < count; ++i) sum += shares[i][min(column, sums_per_share - 1)];
+    for (std::uint32_t i = 0; i < count; ++i) sum += sums[i * stride * sums_per_row];
     const auto of = [&](std::uint32_t from) { return __shfl_sync(0xffffffffu, sum, static_cast<int>(from)); };
     const auto three = [&](std::uint32_t from) {
       const double x = of(from), y = of(from + 1), z = of(from + 2);
@@ -205,7 +244,7 @@ class Thought {
     const Double3 center = share_of_mass * three(0), velocity = share_of_mass * three(3);
     const double touching = of(6), strain = of(25), rate = of(26);
     PlaceMeasures measured;
-    measured.center = number == 0 ? vector(0, field_x) + center : center;
+    measured.center = Double3(robot_.mass_at(0).vector(field_x)) + center;
     measured.velocity = velocity;
     measured.touch = thoughts_.world.ground ? touching / masses : 0;
     const double share_of_springs = place.springs > 0 ? 1.0 / place.springs : 0;
