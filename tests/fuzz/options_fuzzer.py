@@ -28,6 +28,7 @@ from pathlib import Path
 NOBODY = 65534
 STATUSES = {0, 1, 2, *range(130, 144)}
 LIMIT = 60  # seconds; only a hang takes as long
+SKIPPED = 77
 MOST_LINES = 40  # of messages: a folder of bad files has a line for each
 LIBRARY_WORDS = re.compile(r"json\.exception|std::|basic_string|vector::|bad_alloc|CLI::|toml::|filesystem error|terminate called|"
                            r"HDF5-DIAG|AddressSanitizer|runtime error|Assertion|tbb::|GNU MP")
@@ -39,6 +40,13 @@ WORDS = ["", " ", "-", "--", "---", "-1", "0", "1", "2", "7", "1e-30", "1e30", "
          "1e-320", "1,2,3", "1,2", "1,,2", "nan,0,0", "1x1", "0x0x0", "16385x1", "2x2x2..1x1x1", "a=b", "y:nan", "voxel:2",
          "nn:1", "shell:1", "cppn:1", "voxel:0", "voxel:-1", "voxel:1:2:3:4", "voxel:99999999999", "follow:", "eel", "\u00e9\u202e",
          "\x1b[31mred\x1b[0m", "two\nlines", "%s%n", "'", '"', "$(id)", "../..", "a" * 300, "x" * 100_000, b"\xff\xfe", b"\xc3"]
+
+
+def can_be_run(program):
+    try:
+        return subprocess.run([program, "--version"], stdout=subprocess.DEVNULL, preexec_fn=nobody).returncode == 0
+    except OSError:
+        return False
 
 
 def nobody():
@@ -215,6 +223,9 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int)
     arguments = parser.parse_args()
+    if not can_be_run(arguments.program):
+        print(f"skipped: the user nobody, as whom this runs, cannot read {arguments.program}")
+        return SKIPPED
     scratch = Scratch(arguments.program)
     failures, number, statuses, end = 0, 0, {}, time.monotonic() + 60 * (arguments.minutes or 0)
     try:

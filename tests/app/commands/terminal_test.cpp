@@ -20,9 +20,7 @@ struct ShortRun {
 
 const std::vector<ShortRun> short_runs{
     {"run", {"run", "@/a.json", "--seconds", "0.01", "--device", "cpu"}},
-    {"render",
-     {"render", "@/a.json", "--still", "0", "--size", "64x64", "--gl", "osmesa", "--device", "cpu", "-o", "@/new.png"},
-     false},
+    {"render", {"render", "@/a.json", "--still", "0", "--size", "64x64", "--device", "cpu", "-o", "@/new.png"}, false},
     {"evolve", {"evolve", "@/run", "--population", "2", "--generations", "1", "--seconds", "0.01", "--device", "cpu"}},
     {"new", {"new", "voxel", "-o", "@/new/"}},
     {"mutate", {"mutate", "@/a.json", "-o", "@/mutated/"}},
@@ -179,8 +177,7 @@ TEST_P(Signals, EndWith128AndTheirNumber) {
   const std::vector<std::vector<std::string>> long_runs{
       {"run", path("a.json"), "--seconds", "1e6", "--device", "cpu"},
       {"run", "--random", "voxel:100000", "--seconds", "1e4", "--device", "cpu"},
-      {"render", path("a.json"), "--seconds", "1e5", "--size", "64x64", "--gl", "osmesa", "--device", "cpu", "-o",
-       path("frames/")},
+      {"render", path("a.json"), "--seconds", "1e5", "--size", "64x64", "--device", "cpu", "-o", path("frames/")},
       {"evolve", path("run"), "--population", "8", "--generations", "100000", "--device", "cpu"},
       {"new", "voxel", "-o", path("new/"), "--count", "1000000"},
       {"new", "voxel", "-o", path("best/"), "--best-of", "1000000000", "--device", "cpu"},
