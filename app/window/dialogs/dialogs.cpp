@@ -50,12 +50,13 @@ void Dialogs::draw_question(EventLog& log) {
   const bool low = screen.y < 26 * text;  // a form fills the screen
   ImGui::SetNextWindowPos({screen.x / 2, (low ? 0.5f : 0.42f) * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(0.94f * screen.x, 34 * text), 0});
-  const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
+  const ImVec2 spacing = ImGui::GetStyle().ItemSpacing, padding = ImGui::GetStyle().FramePadding;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {spacing.x, low ? 0.3f * spacing.y : spacing.y});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {padding.x, low ? 0.5f * padding.y : padding.y});
   if (!ImGui::BeginPopupModal(id.c_str(), nullptr,
                               ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
     open_ = shown_ = false;
-    ImGui::PopStyleVar();
+    ImGui::PopStyleVar(2);
     return;
   }
   shown_ = open_;
@@ -81,7 +82,7 @@ void Dialogs::draw_question(EventLog& log) {
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
   answer(pressed);
 }
 
