@@ -3,14 +3,13 @@
 // with actuators that a program drives, with a brain that senses its body as a whole, and with one that also senses the
 // strain of each muscle group. They take turns, so that a change of the clock rate affects all: bench_brains [device]
 // [voxels per edge] [robots] [turns]
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mercury/brain.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
@@ -20,17 +19,6 @@ namespace {
 
 constexpr int steps = 200, thought = 20;
 constexpr std::size_t senses = 32, neurons = 64;
-
-double seconds_of(const auto& call) {
-  const auto start = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 Robot with_brain(Robot robot, bool strains) {
   const std::vector<Actuator> actuators = actuators_of(robot);

@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures what telemetry of a whole batch adds to a call of 100 steps. Calls with and without telemetry take turns, so
 // that a change of the clock rate affects both: bench_telemetry [device] [robots] [turns]
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 
 namespace mercury {
 namespace {
-
-double seconds_of(const auto& call) {
-  const auto start = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 void measure(const Configuration& configuration, const std::vector<Robot>& robots, int turns) {
   Simulation simulation(configuration, robots);

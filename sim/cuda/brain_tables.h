@@ -21,7 +21,6 @@ struct SensedPlace {
   std::uint32_t mass_shares, spring_shares;  // first come the rows of masses, then those of springs
   std::uint32_t masses, springs;
   double mass;  // of its masses together [kg]
-  std::uint8_t measures;
 };
 
 // What a warp adds up for a place at once, into a row of sums; of tiles of a body that senses how it turns, into two.

@@ -102,8 +102,7 @@ class TableMaker {
                       .spring_shares = 0,
                       .masses = static_cast<std::uint32_t>(from.masses.size()),
                       .springs = 0,
-                      .mass = 0,
-                      .measures = from.measures};
+                      .mass = 0};
     const auto cut = [&](SensingShare::Kind kind, std::size_t first, std::size_t count, std::uint32_t most) {
       const std::size_t before = shares.size();
       for (std::size_t done = 0; done < count; done += most) {

@@ -97,9 +97,6 @@ class Thought {
       asm volatile("prefetch.global.L1 [%0];" ::"l"(bytes + at));
   }
   __device__ void wait() const { wait_for_robot(robot_.warps()); }
-  __device__ Double3 vector(std::uint32_t slot, Field field) const {
-    return Double3(robot_.mass_at(slot).vector(field));
-  }
   __device__ float mass(std::uint32_t slot) const {
     const BatchView& batch = robot_.arguments.batch;
     return batch.point_masses ? batch.point_masses[std::size_t{robot_.robot} * batch.tile_stride * lanes + slot] : 1;
