@@ -133,6 +133,18 @@ std::size_t Renderer::spring_count() const { return parts_->bodies.spring_count(
 std::span<const std::uint32_t> Renderer::mass_offsets() const { return parts_->bodies.mass_offsets(); }
 unsigned Renderer::position_buffer() const { return parts_->bodies.positions.get(); }
 
+void Renderer::mix_positions(const PositionSource& a, const PositionSource& b, float share) {
+  const auto bind = [&](unsigned at, const PositionSource& source) {
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, at, source.buffer, GLintptr(source.offset),
+                      GLsizeiptr(12 * mass_count()));
+  };
+  if (mass_count() == 0) return;
+  parts_->bodies.positions.bind_storage(binding::positions);
+  bind(binding::first_free, a);
+  bind(binding::first_free + 1, b);
+  parts_->mix.mix(3 * mass_count(), share);
+}
+
 std::vector<Bounds> Renderer::body_bounds() {
   parts_->bodies.positions.bind_storage(binding::positions);
   parts_->bounds.measure(parts_->bodies);

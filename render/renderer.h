@@ -69,6 +69,14 @@ class Renderer {
   // Scene::positions. set_bodies() replaces its storage.
   unsigned position_buffer() const;
 
+  // 3 * mass_count() floats in a GL buffer.
+  struct PositionSource {
+    unsigned buffer = 0;
+    std::size_t offset = 0;  // [bytes]; a multiple of 256
+  };
+  // Fills position_buffer() with a + share (b - a), each operation rounded to float.
+  void mix_positions(const PositionSource& a, const PositionSource& b, float share);
+
   // The box around each body in its own coordinates, from position_buffer(). Waits for the GPU.
   std::vector<Bounds> body_bounds();
 

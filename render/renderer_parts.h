@@ -77,6 +77,7 @@ struct Renderer::Parts {
   std::optional<Overlay> text;  // of the last picture
   float text_size = 0;
   std::optional<Passes> passes;
+  MixPass mix;
   BoundsPass bounds;
   FitPass fit;
   CutPass cut;

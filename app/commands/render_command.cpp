@@ -178,11 +178,10 @@ int describe_work(const RenderOptions& options, const RenderTask& task, const st
     const auto count = static_cast<std::int64_t>(subject.recording->robots().size());
     intentions.emplace_back("play", subject.recording->path().string() + ": " + count_text(count, "robot", "robots"));
   } else {
-    const double last =
-        task.plan.timing.start + static_cast<double>(task.plan.timing.frames - 1) * task.plan.timing.interval;
+    const FramePlace last = place_of_frame(task.plan.timing.frames - 1, task.plan.timing, subject.configuration.dt);
     intentions.emplace_back("robots", size_text(robots));
     intentions.emplace_back("simulate",
-                            time_text(subject.configuration, std::llround(last / subject.configuration.dt)));
+                            time_text(subject.configuration, last.step + (last.is_between_steps() ? 1 : 0)));
     intentions.emplace_back("in", environment_text(subject.configuration));
     if (task.view.compare) intentions.emplace_back("beside", task.view.compare->text());
     intentions.emplace_back("on", device_text(subject.configuration.device));

@@ -153,13 +153,14 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
 }  // namespace
 
 std::vector<FilmedGroup> Subject::groups_of(const Clip& clip, const ViewSettings& view) const {
-  const auto simulation = [](const Subject& subject, const Clip& of) {
-    return subject.recording ? playback(subject.recording) : Simulation(subject.configuration, of.robots, shown_work());
+  const auto group = [](const Subject& subject, const Clip& of, const std::string& above) -> FilmedGroup {
+    if (!subject.recording) return {Simulation(subject.configuration, of.robots, shown_work()), of.captions, above};
+    const auto share = std::make_shared<float>();
+    return {playback(subject.recording, share), of.captions, above, share};
   };
   std::vector<FilmedGroup> groups;
-  groups.push_back({simulation(*this, clip), clip.captions, others.empty() ? "" : title});
-  for (const Subject& other : others)
-    groups.push_back({simulation(other, other.clips.front()), other.clips.front().captions, other.title});
+  groups.push_back(group(*this, clip, others.empty() ? "" : title));
+  for (const Subject& other : others) groups.push_back(group(other, other.clips.front(), other.title));
   if (view.compare)
     groups.push_back({Simulation(view.compare->over(configuration), clip.robots, shown_work()), clip.captions});
   return groups;

@@ -7,6 +7,9 @@
 #include <utility>
 #include <variant>
 
+#include "app/base/frame_places.h"
+#include "app/video/group_drawing.h"
+
 namespace mercury {
 namespace {
 
@@ -61,8 +64,6 @@ std::vector<render::Vector3> offsets_of(const Snapshot& snapshot, const ViewSett
 }
 
 constexpr std::size_t most_snapshots = 5;
-
-Vec3 between(Vec3 a, Vec3 b, float t) { return a + t * (b - a); }
 
 // Steps per second of wall time; 0 = paused or unlimited.
 double rate_of(const Snapshot& snapshot) {
@@ -235,10 +236,9 @@ SlowMotion::Shown SlowMotion::at(double wall) {
   const auto share = static_cast<float>(std::clamp((shown_ - a.time) / (b.time - a.time), 0.0, 1.0));
   const std::span<const Vec3> from = a.positions.host(), to = b.positions.host();
   positions_.resize(to.size());
-  for (std::size_t i = 0; i < positions_.size(); ++i) positions_[i] = between(from[i], to[i], share);
+  for (std::size_t i = 0; i < positions_.size(); ++i) positions_[i] = interpolated(from[i], to[i], share);
   telemetry_ = newest.telemetry;
-  for (std::size_t i = 0; i < telemetry_.size(); ++i)
-    telemetry_[i].center_of_mass = between(a.telemetry[i].center_of_mass, b.telemetry[i].center_of_mass, share);
+  interpolate_centers(a.telemetry, b.telemetry, share, telemetry_);
   return {.time = shown_, .positions = positions_, .telemetry = telemetry_};
 }
 

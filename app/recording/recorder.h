@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "app/recording/frame_places.h"
+#include "app/base/frame_places.h"
 #include "app/recording/trajectory_reader.h"
 #include "app/recording/trajectory_writer.h"
 #include "mercury/simulation.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "mercury/backend.h"
@@ -14,8 +15,9 @@ namespace {
 // Writes recorded states into a CPU backend, which answers all questions about them.
 class Playback final : public Backend {
  public:
-  explicit Playback(std::shared_ptr<TrajectoryReader> trajectory)
-      : trajectory_(std::move(trajectory)), robots_(make_cpu_backend({.kind = DeviceKind::cpu})) {}
+  Playback(std::shared_ptr<TrajectoryReader> trajectory, std::shared_ptr<const float> share)
+      : trajectory_(std::move(trajectory)), robots_(make_cpu_backend({.kind = DeviceKind::cpu})),
+        share_(std::move(share)) {}
 
   std::string device_name() const override { return "recording of " + trajectory_->device_name(); }
   std::vector<std::string> notes() const override { return {}; }
@@ -59,19 +61,20 @@ class Playback final : public Backend {
 
   void go_to(std::int64_t step) {
     step_ = step;
-    shown_ = false;
+    shown_.reset();
   }
 
   // Frames are read on demand, not for every step.
   Backend& current() const {
-    if (!shown_) show();
-    shown_ = true;
+    const float share = share_ ? *share_ : 0;
+    if (shown_ != share) show(share);
+    shown_ = share;
     return *robots_;
   }
 
-  void show() const {
+  void show(float share_of_step) const {
     const std::int64_t step = trajectory_->step(0) + step_;
-    const auto [frame, share] = place_of(step);
+    const auto [frame, share] = place_of(step, share_of_step);
     State now = state(frame);
     if (share > 0) {
       const State next = state(frame + 1);
@@ -92,18 +95,19 @@ class Playback final : public Backend {
     return {{positions.begin(), positions.end()}, {velocities.begin(), velocities.end()}};
   }
 
-  // The last frame at or before a step, and the share of the way to the next one.
-  std::pair<std::size_t, float> place_of(std::int64_t step) const {
+  // The last frame at or before a moment, and the share of the way to the next one.
+  std::pair<std::size_t, float> place_of(std::int64_t step, double share_of_step) const {
     const TrajectoryReader& frames = *trajectory_;
+    const double steps = static_cast<double>(step - frames.step(0)) + share_of_step;
     const auto between = [&frames](std::size_t frame, double now, const auto& at) -> std::pair<std::size_t, float> {
       if (!(at(frame) < now) || frame + 1 >= frames.frames()) return {frame, 0.0f};
       return {frame, static_cast<float>((now - at(frame)) / (at(frame + 1) - at(frame)))};
     };
     if (!frames.frame_rate()) {
       const auto step_at = [&](std::size_t frame) { return static_cast<double>(frames.step(frame) - frames.step(0)); };
-      return between(frames.frame_of_step(step), static_cast<double>(step - frames.step(0)), step_at);
+      return between(frames.frame_of_step(step), steps, step_at);
     }
-    const double time = frames.time(0) + static_cast<double>(step - frames.step(0)) * frames.configuration().dt;
+    const double time = frames.time(0) + steps * frames.configuration().dt;
     return between(frames.frame_at(time), time, [&](std::size_t frame) { return frames.time(frame); });
   }
 
@@ -117,17 +121,18 @@ class Playback final : public Backend {
   std::shared_ptr<TrajectoryReader> trajectory_;
   std::unique_ptr<Backend> robots_;
   Configuration configuration_;
-  std::int64_t step_ = 0;  // since the first frame
-  mutable bool shown_ = false;
+  std::shared_ptr<const float> share_;
+  std::int64_t step_ = 0;               // since the first frame
+  mutable std::optional<float> shown_;  // the share that robots_ are at
 };
 
 }  // namespace
 
-Simulation playback(std::shared_ptr<TrajectoryReader> trajectory) {
+Simulation playback(std::shared_ptr<TrajectoryReader> trajectory, std::shared_ptr<const float> share) {
   if (trajectory->frames() == 0) throw InputError(trajectory->path().string(), "holds no frames");
   std::vector<Robot> robots;
   for (const RecordedRobot& recorded : trajectory->robots()) robots.push_back(recorded.robot);
-  return Simulation(trajectory->configuration(), robots, std::make_unique<Playback>(trajectory));
+  return Simulation(trajectory->configuration(), robots, std::make_unique<Playback>(trajectory, std::move(share)));
 }
 
 }  // namespace mercury

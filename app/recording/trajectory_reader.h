@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/recording/frame_places.h"
+#include "app/base/frame_places.h"
 #include "app/recording/hdf5_handle.h"
 #include "mercury/clock.h"
 #include "mercury/configuration.h"

@@ -3,7 +3,8 @@
 //
 //   simulating thread   steps, and copy into a Store's memory     (CUDA, the simulation's stream)
 //   drawing thread      wait for the mark; copy from the same     (OpenGL)
-//                       memory into the renderer's buffer; fence
+//                       memory into the renderer's buffer, or
+//                       mix that of two steps into it; fence
 //
 // 1. The memory belongs to both interfaces all the time (device_memory.h). Mapping an OpenGL buffer in CUDA for each
 //    picture would make each side wait until the other has nothing left to do.
@@ -22,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/base/frame_places.h"
 #include "app/video/device_memory.h"
 #include "app/video/position_bridge.h"
 #include "mercury/error.h"
@@ -96,7 +98,7 @@ class DevicePool : public std::enable_shared_from_this<DevicePool> {
       if (store->size >= bytes) return store;
     }
     // Making memory that OpenGL can read takes milliseconds, so it is made for several stores at once.
-    constexpr std::size_t stores = 8, alignment = 256;
+    constexpr std::size_t stores = 8, alignment = 256;  // as shaders of any GPU accept
     const std::size_t each = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
     const auto block = std::make_shared<const DeviceMemory>(device_, stores * each);
     for (std::size_t i = 1; i < stores; ++i) free_.push_back(std::make_unique<Store>(block, i * each, each));
@@ -120,22 +122,39 @@ class CudaSnapshot final : public PositionSnapshot {
     if (simulation.copy_positions(store_->data())) store_->taken.set(cudaStreamLegacy);
   }
 
+  // Between two snapshots of one step each.
+  CudaSnapshot(const CudaSnapshot& earlier, const CudaSnapshot& later, float share)
+      : device_(earlier.device_), masses_(earlier.masses_), store_(earlier.store_), later_(later.store_),
+        share_(share) {}
+
   void read(std::span<Vec3> out) const override {
+    read_store(*store_, out);
+    if (!later_) return;
+    std::vector<Vec3> next(out.size());
+    read_store(*later_, next);
+    interpolate(out, next, share_);
+  }
+
+  const std::shared_ptr<Store>& store() const { return store_; }
+  // If it is between two steps: the second, and the share of the way to it.
+  const std::shared_ptr<Store>& later() const { return later_; }
+  float share() const { return share_; }
+  std::size_t masses() const { return masses_; }
+
+ private:
+  void read_store(const Store& store, std::span<Vec3> out) const {
     check(cudaSetDevice(device_), "choosing the device");
-    store_->taken.wait();
-    check(cudaMemcpyAsync(out.data(), store_->data(), std::min(out.size(), masses_) * sizeof(Vec3),
+    store.taken.wait();
+    check(cudaMemcpyAsync(out.data(), store.data(), std::min(out.size(), masses_) * sizeof(Vec3),
                           cudaMemcpyDeviceToHost, cudaStreamPerThread),
           "reading positions");
     check(cudaStreamSynchronize(cudaStreamPerThread), "reading positions");
   }
 
-  const std::shared_ptr<Store>& store() const { return store_; }
-  std::size_t masses() const { return masses_; }
-
- private:
   int device_;
   std::size_t masses_;
-  std::shared_ptr<Store> store_;
+  std::shared_ptr<Store> store_, later_;
+  float share_ = 0;
 };
 
 class CudaBridge final : public PositionBridge {
@@ -157,16 +176,28 @@ class CudaBridge final : public PositionBridge {
     return snapshot;
   }
 
+  std::unique_ptr<PositionSnapshot> mix(const PositionSnapshot& earlier, const PositionSnapshot& later,
+                                        float share) override {
+    return std::make_unique<CudaSnapshot>(dynamic_cast<const CudaSnapshot&>(earlier),
+                                          dynamic_cast<const CudaSnapshot&>(later), share);
+  }
+
   void show(const PositionSnapshot& snapshot, render::Renderer& renderer, render::Scene& scene) override {
     const auto& shown = dynamic_cast<const CudaSnapshot&>(snapshot);
     check(cudaSetDevice(device_), "choosing the device");
     while (!in_use_.empty() && in_use_.front().fence.passed()) in_use_.pop_front();
-    const DeviceBuffer& buffer = buffer_of(shown.store()->memory);
+    const unsigned buffer = buffer_of(shown.store()->memory);
     shown.store()->taken.wait();
     if (renderer.mass_count() != shown.masses())
       throw std::logic_error("the renderer's bodies are not those of the simulation");
-    glCopyNamedBufferSubData(buffer.name(), renderer.position_buffer(), static_cast<GLintptr>(shown.store()->offset), 0,
-                             static_cast<GLsizeiptr>(shown.masses() * sizeof(Vec3)));
+    if (const std::shared_ptr<Store>& later = shown.later()) {
+      later->taken.wait();
+      renderer.mix_positions({buffer, shown.store()->offset}, {buffer_of(later->memory), later->offset}, shown.share());
+      in_use_.push_back({{}, later});
+    } else {
+      glCopyNamedBufferSubData(buffer, renderer.position_buffer(), static_cast<GLintptr>(shown.store()->offset), 0,
+                               static_cast<GLsizeiptr>(shown.masses() * sizeof(Vec3)));
+    }
     in_use_.push_back({{}, shown.store()});
     scene.positions = {};
   }
@@ -181,12 +212,13 @@ class CudaBridge final : public PositionBridge {
     std::shared_ptr<Store> store;
   };
 
-  const DeviceBuffer& buffer_of(const std::shared_ptr<const DeviceMemory>& memory) {
+  // OpenGL's name of the memory.
+  unsigned buffer_of(const std::shared_ptr<const DeviceMemory>& memory) {
     std::erase_if(imports_, [](const Import& import) { return import.memory.expired(); });
     const auto known = std::ranges::find_if(imports_, [&](const Import& i) { return i.memory.lock() == memory; });
-    if (known != imports_.end()) return *known->buffer;
+    if (known != imports_.end()) return known->buffer->name();
     imports_.push_back({memory, std::make_unique<DeviceBuffer>(*memory)});
-    return *imports_.back().buffer;
+    return imports_.back().buffer->name();
   }
 
   int device_;

@@ -14,6 +14,7 @@
 #include "app/video/figure.h"
 #include "app/video/frame_encoder.h"
 #include "app/video/group_drawing.h"
+#include "app/video/moment_sampler.h"
 #include "app/video/picture_memory.h"
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
@@ -135,6 +136,9 @@ struct Film::Parts {
   Environment environment;
   std::shared_ptr<GroupDrawing> drawing;
   std::unique_ptr<PositionBridge> bridge = make_host_bridge();
+  std::optional<FramePlaces> places;  // of the frames since begin_frames()
+  std::int64_t placed = 0;            // of them
+  std::optional<MomentSampler> sampler;
   std::optional<render::Readback> readback;  // used on the drawing thread only
 
   // Another drawing when the robots or the environment are others.
@@ -144,6 +148,7 @@ struct Film::Parts {
     for (std::size_t i = 0; i < simulation.size(); ++i) present.push_back(&simulation.robot(i));
     if (drawing && present == robots && now == environment) return;
     drawing = std::make_shared<GroupDrawing>(simulation, options.view, aspect_of(settings.size));
+    sampler.emplace(simulation, *drawing, *bridge, false);
     robots = std::move(present);
     environment = now;
   }
@@ -151,8 +156,36 @@ struct Film::Parts {
   void add_frame() {
     encoder->rethrow();
     follow_simulation();
+    add(drawing->take(*bridge));
+  }
+
+  void begin_frames() {
+    const double dt = simulation.configuration().dt;
+    require_frame_rate("fps", settings.frames_per_second, dt);
+    places.emplace(simulation.steps(), settings.frames_per_second, dt);
+    placed = 0;
+  }
+
+  std::int64_t next_step() {
+    follow_simulation();
+    return sampler->next_step(places->of(placed)).value();
+  }
+
+  void observe() {
+    encoder->rethrow();
+    if (simulation.steps() != next_step()) return;
+    const FramePlace place = places->of(placed);
+    sampler->observe(place);
+    if (sampler->next_step(place)) return;
+    ++placed;
+    add(sampler->moment(place));
+    // The later step of this frame may be the earlier one of the next.
+    if (next_step() == simulation.steps()) sampler->observe(places->of(placed));
+  }
+
+  void add(FrameSnapshot taken) {
     while (waiting.size() >= waiting_snapshots) take_oldest();
-    const auto snapshot = std::make_shared<FrameSnapshot>(drawing->take(*bridge));
+    const auto snapshot = std::make_shared<FrameSnapshot>(std::move(taken));
     waiting.push_back(thread.post([this, snapshot, shown = drawing](DrawingThread::Canvas& canvas) {
       prepare(canvas, settings.size, options.quality);
       show_bodies(canvas, shown);
@@ -231,6 +264,21 @@ void Film::add_frame() {
   parts_->add_frame();
 }
 
+void Film::begin_frames() {
+  parts_->require_usable();
+  parts_->begin_frames();
+}
+
+std::int64_t Film::next_step() {
+  parts_->require_usable();
+  return parts_->next_step();
+}
+
+void Film::observe() {
+  parts_->require_usable();
+  parts_->observe();
+}
+
 void Film::finish() {
   parts_->require_usable();
   try {
@@ -252,8 +300,15 @@ PictureSize Film::size() const { return parts_->settings.size; }
 
 VideoResult film_of(DrawingThread& thread, Simulation simulation, const std::string& output, const FilmOptions& options,
                     double seconds, const std::function<bool()>& go_on) {
+  std::vector<FilmedGroup> groups;
+  groups.push_back({std::move(simulation)});
+  return film_of(thread, std::move(groups), output, options, seconds, go_on);
+}
+
+VideoResult film_of(DrawingThread& thread, std::vector<FilmedGroup> groups, const std::string& output,
+                    const FilmOptions& options, double seconds, const std::function<bool()>& go_on) {
   constexpr std::chrono::milliseconds between_questions(50);
-  VideoSettings settings = video_settings(output, options, simulation);
+  VideoSettings settings = video_settings(output, options, groups.front().simulation);
   const VideoTiming timing = video_timing(seconds, options.speed, settings.frames_per_second);
   settings.expected_frames = timing.frames;
   const std::unique_ptr<FrameWriter> writer = open_frame_writer(output, settings);
@@ -264,8 +319,6 @@ VideoResult film_of(DrawingThread& thread, Simulation simulation, const std::str
   std::future<void> made = thread.post([&](DrawingThread::Canvas& canvas) {
     prepare(canvas, settings.size, options.quality);
     canvas.owner = nullptr;
-    std::vector<FilmedGroup> groups;
-    groups.push_back({std::move(simulation)});
     VideoPipeline pipeline(canvas.offscreen, std::move(groups), view);
     result = pipeline.run(*writer, settings.pixels ? render::PixelFormat::rgb : pixel_format_of(video_kind_of(output)),
                           timing, true, &control);

@@ -6,6 +6,11 @@
 //     Film film(thread, simulation, "swim.mp4", {.view = view_settings({.color = "strain"})});
 //     for (int i = 0; i < 300; ++i, simulation.step(33)) film.add_frame();
 //     film.finish();
+//
+// Or with frames at exactly the film's rate, of which most lie between two steps of 1 ms:
+//
+//     for (film.begin_frames(); simulation.steps() < 10000; film.observe())
+//       simulation.step(std::min<std::int64_t>(film.next_step(), 10000) - simulation.steps());
 #pragma once
 
 #include <cstdint>
@@ -13,11 +18,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/scene/view_settings.h"
 #include "app/video/drawing_thread.h"
 #include "app/video/frame_writer.h"
-#include "app/video/video_stages.h"
+#include "app/video/video_pipeline.h"
 #include "mercury/simulation.h"
 #include "render/readback.h"
 #include "render/renderer.h"
@@ -60,6 +66,17 @@ class Film {
   // frames are behind. After robots were added or removed, the group is laid out again. Throws what an earlier frame
   // threw, InputError when the film has ended.
   void add_frame();
+
+  // Instead of add_frame(): from the simulation's current step on, frames are frames_per_second() of simulated time
+  // apart. One between two steps is interpolated and needs both. Throws ParameterError("fps", ...) for more than one
+  // per step.
+  void begin_frames();
+  // The next step that a frame needs.
+  std::int64_t next_step();
+  // Adds the frame, or keeps the first of its two steps, if the simulation is at next_step(). Waits and throws as
+  // add_frame() does.
+  void observe();
+
   // Waits for all frames, and gives the film its name. Throws VideoError if there is none.
   void finish();
   // Drops everything. An existing file of that name stays as it was.
@@ -74,9 +91,12 @@ class Film {
   std::unique_ptr<Parts> parts_;
 };
 
-// Simulates, draws and encodes a film of `seconds` of the simulation; nothing else is drawn meanwhile. Asks `go_on`
-// about twenty times per second, on the calling thread; after it has returned false, the film is discarded and the
-// result says `interrupted`. Throws what the constructor of Film and its members throw.
+// Simulates, draws and encodes a film of `seconds` of groups, from left to right (VideoPipeline); nothing else is drawn
+// meanwhile. Asks `go_on` about twenty times per second, on the calling thread; after it has returned false, the film
+// is discarded and the result says `interrupted`. Throws what the constructor of Film and its members throw.
+VideoResult film_of(DrawingThread& thread, std::vector<FilmedGroup> groups, const std::string& output,
+                    const FilmOptions& options, double seconds, const std::function<bool()>& go_on = {});
+// The same of one group.
 VideoResult film_of(DrawingThread& thread, Simulation simulation, const std::string& output, const FilmOptions& options,
                     double seconds, const std::function<bool()>& go_on = {});
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "app/base/frame_places.h"
 #include "app/scene/group_layout.h"
 #include "app/scene/group_motion.h"
 
@@ -45,6 +46,12 @@ render::Insets free_edges(const ViewSettings& settings) {
 
 }  // namespace
 
+void interpolate_centers(std::span<const Telemetry> earlier, std::span<const Telemetry> later, float share,
+                         std::span<Telemetry> telemetry) {
+  for (std::size_t i = 0; i < telemetry.size(); ++i)
+    telemetry[i].center_of_mass = interpolated(earlier[i].center_of_mass, later[i].center_of_mass, share);
+}
+
 GroupDrawing::GroupDrawing(const Simulation& simulation, const ViewSettings& settings, float aspect,
                            std::span<const std::string> names)
     : simulation_(simulation), settings_(settings), placement_(placement_of(simulation, settings, aspect)),
@@ -56,11 +63,25 @@ GroupDrawing::GroupDrawing(const Simulation& simulation, const ViewSettings& set
   if (settings.board) scene_.set_background(placement_.tiles, placement_.texts);
 }
 
-FrameSnapshot GroupDrawing::take(PositionBridge& bridge) {
-  FrameSnapshot snapshot{.time = simulation_.time(), .telemetry = simulation_.telemetry()};
-  snapshot.details = details_.observe(snapshot.telemetry);
+FrameSnapshot GroupDrawing::take(PositionBridge& bridge, bool with_details, float share) {
+  FrameSnapshot snapshot{.time = simulation_.time() + share * static_cast<double>(simulation_.configuration().dt),
+                         .telemetry = simulation_.telemetry()};
+  if (with_details) snapshot.details = details_.observe(snapshot.telemetry);
   snapshot.positions = bridge.take(simulation_);
   return snapshot;
+}
+
+FrameSnapshot GroupDrawing::between(const FrameSnapshot& earlier, const FrameSnapshot& later, float share,
+                                    PositionBridge& bridge) {
+  const FrameSnapshot& nearer = share < 0.5f ? earlier : later;
+  FrameSnapshot between{.time = earlier.time + share * (later.time - earlier.time),
+                        .positions = bridge.mix(*earlier.positions, *later.positions, share),
+                        .telemetry = nearer.telemetry,
+                        .details = nearer.details};
+  for (std::size_t i = 0; i < between.telemetry.size(); ++i)
+    if (later.telemetry[i].exploded) between.telemetry[i] = later.telemetry[i];
+  interpolate_centers(earlier.telemetry, later.telemetry, share, between.telemetry);
+  return between;
 }
 
 void GroupDrawing::draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed) {

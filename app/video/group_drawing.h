@@ -26,6 +26,11 @@ struct FrameSnapshot {
   SceneDetails details;
 };
 
+// What pictures between two steps show of the robots: centers of mass of `telemetry` become those at that share of the
+// way.
+void interpolate_centers(std::span<const Telemetry> earlier, std::span<const Telemetry> later, float share,
+                         std::span<Telemetry> telemetry);
+
 // The simulating thread calls take() and the drawing thread everything else, possibly at the same time. Refers to the
 // simulation, whose robots stay the same.
 class GroupDrawing {
@@ -38,8 +43,13 @@ class GroupDrawing {
   // Gives the robots to a renderer. Call it before draw(), and again when the renderer has drawn others.
   void set_bodies(render::Renderer& renderer) const { scene_.set_bodies(renderer); }
 
-  // The simulation's current state.
-  FrameSnapshot take(PositionBridge& bridge);
+  // The simulation's current state. `with_details`: else its colors and arrows are not needed. `share`: positions are
+  // this share of a step later than the simulation's step (playback()).
+  FrameSnapshot take(PositionBridge& bridge, bool with_details = true, float share = 0);
+  // At that share of the way from one step to the next: centers and positions are mixed, the rest is that of the nearer
+  // step, which needs its details.
+  static FrameSnapshot between(const FrameSnapshot& earlier, const FrameSnapshot& later, float share,
+                               PositionBridge& bridge);
   // Draws it. `bridge`: that of take(). `elapsed`: since the previous picture, for the camera [s of video].
   void draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed);
 

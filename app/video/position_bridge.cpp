@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <mutex>
 
+#include "app/base/frame_places.h"
+
 namespace mercury {
 namespace {
 
@@ -36,6 +38,11 @@ class HostSnapshot final : public PositionSnapshot {
     positions_.resize(simulation.mass_count());
     simulation.read_positions(positions_);
   }
+  HostSnapshot(std::shared_ptr<HostPool> pool, const HostSnapshot& earlier, const HostSnapshot& later, float share)
+      : pool_(std::move(pool)), positions_(pool_->take()) {
+    positions_ = earlier.positions_;
+    interpolate(positions_, later.positions_, share);
+  }
   ~HostSnapshot() override { pool_->put(std::move(positions_)); }
 
   void read(std::span<Vec3> out) const override {
@@ -52,6 +59,11 @@ class HostBridge final : public PositionBridge {
  public:
   std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
     return std::make_unique<HostSnapshot>(pool_, simulation);
+  }
+  std::unique_ptr<PositionSnapshot> mix(const PositionSnapshot& earlier, const PositionSnapshot& later,
+                                        float share) override {
+    return std::make_unique<HostSnapshot>(pool_, dynamic_cast<const HostSnapshot&>(earlier),
+                                          dynamic_cast<const HostSnapshot&>(later), share);
   }
   void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
     scene.positions = dynamic_cast<const HostSnapshot&>(snapshot).floats();

@@ -38,6 +38,10 @@ class PositionBridge {
   virtual ~PositionBridge() = default;
   // Copies the current positions.
   virtual std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) = 0;
+  // Positions at that share of the way from one snapshot to another: interpolated() of app/base/frame_places.h. Called
+  // like take().
+  virtual std::unique_ptr<PositionSnapshot> mix(const PositionSnapshot& earlier, const PositionSnapshot& later,
+                                                float share) = 0;
   // Makes the renderer draw them next: sets scene.positions, which then refers to the snapshot, or writes into the
   // renderer's buffer.
   virtual void show(const PositionSnapshot& snapshot, render::Renderer& renderer, render::Scene& scene) = 0;

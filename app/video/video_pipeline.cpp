@@ -58,20 +58,22 @@ struct VideoPipeline::Side {
   render::Renderer& renderer;
   GroupDrawing drawing;
   ChosenBridge bridge;
+  std::shared_ptr<float> share;
 
-  Side(std::shared_ptr<Simulation> simulated, OffscreenRenderer& offscreen, std::optional<PictureSize> size,
-       const ViewSettings& settings, std::span<const std::string> names)
-      : simulation(std::move(simulated)), own(renderer_of(offscreen, size)), renderer(own ? *own : offscreen.renderer),
-        drawing(*simulation, settings, aspect_of(renderer), names),
+  Side(FilmedGroup& group, OffscreenRenderer& offscreen, std::optional<PictureSize> size, const ViewSettings& settings)
+      : simulation(std::make_shared<Simulation>(std::move(group.simulation))), own(renderer_of(offscreen, size)),
+        renderer(own ? *own : offscreen.renderer), drawing(*simulation, settings, aspect_of(renderer), group.names),
         // A figure is drawn twice from the same positions.
-        bridge(choose_bridge(simulation->cuda_device(), settings.interop && !settings.flat_backdrop)) {
+        bridge(choose_bridge(simulation->cuda_device(), settings.interop && !settings.flat_backdrop)),
+        share(group.share) {
     drawing.set_bodies(renderer);
   }
 
   // The same group in another way.
   Side(Side& other, const ViewSettings& settings, std::span<const std::string> names)
       : simulation(other.simulation), renderer(other.renderer),
-        drawing(*simulation, settings, aspect_of(renderer), names), bridge(choose_bridge(-1, false)) {}
+        drawing(*simulation, settings, aspect_of(renderer), names), bridge(choose_bridge(-1, false)),
+        share(other.share) {}
 
   static std::optional<render::Renderer> renderer_of(OffscreenRenderer& offscreen, std::optional<PictureSize> size) {
     if (!size) return std::nullopt;
@@ -96,8 +98,7 @@ VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, std::vector<FilmedGro
   for (std::size_t i = 0; i < groups_; ++i) {
     if (background_) of_groups[i].flat_backdrop = figure_backdrops[0];
     const std::optional<PictureSize> size = groups_ > 1 ? std::optional(sizes[i]) : std::nullopt;
-    sides_.push_back(std::make_unique<Side>(std::make_shared<Simulation>(std::move(groups[i].simulation)), offscreen,
-                                            size, of_groups[i], groups[i].names));
+    sides_.push_back(std::make_unique<Side>(groups[i], offscreen, size, of_groups[i]));
     if (groups_ > 1) show(i);
   }
   for (std::size_t i = 0; background_ && i < groups_; ++i) {
@@ -131,7 +132,7 @@ VideoResult VideoPipeline::run(FrameWriter& writer, render::PixelFormat pixels, 
       .pixels = pixels,
       .combine = [this](std::span<const render::Image> sides, render::Image& into) { combine(sides, into); }};
   for (const auto& side : sides_)
-    parts.sides.push_back({*side->simulation, *side->bridge.bridge, side->drawing, side->renderer});
+    parts.sides.push_back({*side->simulation, *side->bridge.bridge, side->drawing, side->renderer, side->share.get()});
   return run_video_stages(parts, timing, quiet, control);
 }
 

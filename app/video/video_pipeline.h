@@ -31,6 +31,7 @@ struct FilmedGroup {
   Simulation simulation;
   std::vector<std::string> names = {};  // one per robot, shown instead of its own; empty = its own
   std::string title = {};               // above it, if there are several
+  std::shared_ptr<float> share = {};    // of playback()
 };
 
 // Simulates, draws and encodes groups of robots, from left to right: owns the simulations and what is drawn of them,

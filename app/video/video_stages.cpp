@@ -14,6 +14,7 @@
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
 #include "app/video/frame_encoder.h"
+#include "app/video/moment_sampler.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -62,24 +63,50 @@ class VideoStages {
     }
   }
 
+  // One of the sides.
+  struct Sampling {
+    Stepper stepper;
+    MomentSampler sampler;
+    std::int64_t first;  // step
+    double dt;
+  };
+
   void simulate() {
-    std::vector<Stepper> steppers;
-    std::vector<std::int64_t> first;
+    std::vector<Sampling> sides;
     for (const VideoSide& side : parts_.sides) {
-      steppers.emplace_back(side.simulation);
-      first.push_back(side.simulation.steps());
+      const double dt = side.simulation.configuration().dt;
+      sides.push_back({Stepper(side.simulation),
+                       MomentSampler(side.simulation, side.drawing, side.bridge, timing_.interval < dt, side.share),
+                       side.simulation.steps(), dt});
     }
-    for (std::int64_t frame = 0; frame < timing_.frames && !interrupted_; ++frame) {
-      Moment moment;
-      for (std::size_t i = 0; i < steppers.size() && !interrupted_; ++i) {
-        const VideoSide& side = parts_.sides[i];
-        const std::int64_t step = step_of_frame(frame, timing_, side.simulation.configuration().dt);
-        interrupted_ = control_.stop || !steppers[i].advance_to(first[i] + step);
-        if (!interrupted_) moment.push_back(side.drawing.take(side.bridge));
+    for (std::int64_t frame = 0; frame < timing_.frames; ++frame) {
+      std::vector<FramePlace> places;
+      for (const Sampling& side : sides) {
+        places.push_back(place_of_frame(frame, timing_, side.dt));
+        places.back().step += side.first;
       }
-      if (!interrupted_ && !snapshots_.push(std::move(moment))) return;
+      // Sides may share a simulation: all of them see a step before it goes on.
+      while (!interrupted_ && observe_next(sides, places)) {
+      }
+      if (interrupted_) break;
+      Moment moment;
+      for (std::size_t i = 0; i < sides.size(); ++i) moment.push_back(sides[i].sampler.moment(places[i]));
+      if (!snapshots_.push(std::move(moment))) return;
     }
     snapshots_.close();
+  }
+
+  // Takes the next step that each side needs for its place. Returns false if none does.
+  bool observe_next(std::vector<Sampling>& sides, const std::vector<FramePlace>& places) {
+    bool any = false;
+    for (std::size_t i = 0; i < sides.size() && !interrupted_; ++i) {
+      const std::optional<std::int64_t> step = sides[i].sampler.next_step(places[i]);
+      if (!step) continue;
+      any = true;
+      interrupted_ = control_.stop || !sides[i].stepper.advance_to(*step);
+      if (!interrupted_) sides[i].sampler.observe(places[i]);
+    }
+    return any;
   }
 
   void draw() {
@@ -139,8 +166,8 @@ VideoTiming video_timing(double seconds, double speed, double frames_per_second)
           .pace = 1 / frames_per_second};
 }
 
-std::int64_t step_of_frame(std::int64_t frame, const VideoTiming& timing, double dt) {
-  return std::llround((timing.start + static_cast<double>(frame) * timing.interval) / dt);
+FramePlace place_of_frame(std::int64_t frame, const VideoTiming& timing, double dt) {
+  return place_after(0, (timing.start + static_cast<double>(frame) * timing.interval) / dt);
 }
 
 VideoResult run_video_stages(const VideoParts& parts, const VideoTiming& timing, bool quiet, VideoControl* control) {

@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "app/base/frame_places.h"
 #include "app/video/frame_encoder.h"
 #include "app/video/frame_writer.h"
 #include "app/video/group_drawing.h"
@@ -52,9 +53,9 @@ struct VideoResult {
   double wall_seconds = 0;
 };
 
-// The step that frame k shows: the one nearest to its time. It is computed from the first frame on, so rounding does
-// not add up.
-std::int64_t step_of_frame(std::int64_t frame, const VideoTiming& timing, double dt);
+// Where frame k is, in steps from the first one: at a step, or between two. It is computed from the first frame on, so
+// rounding does not add up.
+FramePlace place_of_frame(std::int64_t frame, const VideoTiming& timing, double dt);
 
 // A simulation and how it is drawn.
 struct VideoSide {
@@ -62,6 +63,7 @@ struct VideoSide {
   PositionBridge& bridge;
   GroupDrawing& drawing;  // of the simulation; the renderer has its bodies
   render::Renderer& renderer;
+  float* share = nullptr;  // of playback(); other simulations are interpolated between two steps
 };
 
 // What the stages work with; the caller owns all of it.

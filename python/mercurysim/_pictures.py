@@ -10,16 +10,19 @@ import shutil
 import weakref
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Sequence, TypedDict
+from typing import TYPE_CHECKING, Any, Mapping, Sequence, TypedDict, Union
 
 from . import _mercury
-from ._mercury import Batch, DeviceError, InputError, Robot, load
+from ._mercury import Batch, DeviceError, InputError, Recording, Result, Robot, load
 
 if TYPE_CHECKING:
     import numpy.typing
     from typing_extensions import Unpack
 
     Environment = Any
+    Filmed = Union[Robot, Sequence[Robot], Recording, Result, Sequence[Result], str, os.PathLike[str]]
+
+_most_sides = 4
 
 _cpp: Any = _mercury  # has functions for this file alone, which its stubs leave out
 
@@ -145,8 +148,16 @@ class Video:
         return {"text/plain": repr(self)} | ({"text/html": html} if html else {})
 
 
+def _filmed(what: Filmed) -> Any:
+    if isinstance(what, Batch):
+        raise TypeError("what: a batch is filmed by Film; give robots, results, a recording, or the path of one")
+    if isinstance(what, (str, os.PathLike)):
+        return Recording(what) if os.fspath(what).endswith(".h5") else load(what)
+    return what
+
+
 def render(
-    what: Robot | Sequence[Robot] | str | os.PathLike[str],
+    what: Filmed | Mapping[str, Filmed],
     output: str | os.PathLike[str],
     seconds: float | None = None,
     *,
@@ -162,15 +173,18 @@ def render(
     crf: int | None = None,
     **look: Unpack[Look],
 ) -> Video:
-    """Makes a video of robots, which it simulates, or of a recording, which it plays.
+    """Makes a video of robots, which it simulates, of a recording, which it plays, or of results, which it tries again.
 
-    `what` are robots, the path of a robot file or of a folder of them, or the path of a recording (.h5). While a recording
-    is played, other threads must not use h5py.
+    `what` are robots, the path of a robot file or of a folder of them, a Recording or the path of one (.h5), or a Result of
+    evaluate() or several of one call, which move exactly as they did. A dict of up to four of these stands side by side
+    in one film, from left to right, with its keys above: {"before": recording, "after": result}. While a recording is
+    played, other threads must not use h5py.
 
     `output` is a file (.mp4, .webm, .gif), which is replaced, or a new or empty folder for PNG pictures. `seconds` are
-    simulated (default 10; of a recording, all), `speed` of them per second of video, `fps` frames per second of video
-    (default 30; 25 for .gif). `crf` is the encoder's: lower is better and larger, 0 is lossless. `environment`,
-    `solver`, `dt`, `damping`, `device` and `threads` are those of Batch; a recording has its own. `look` are the options
+    simulated (default 10; of recordings and results all of the longest: recordings stay at their end, results go
+    on), `speed` of them per second of video, `fps` frames per second of video
+    (default 30; 25 for .gif), exactly: frames between two steps are interpolated. `crf` is the encoder's: lower is better and larger, 0 is lossless. `environment`,
+    `solver`, `dt`, `damping`, `device` and `threads` are those of Batch; recordings and results have their own. `look` are the options
     of Look.
 
     The result shows itself in notebooks. Ctrl-C ends it and keeps nothing. Raises InputError for what cannot be used,
@@ -178,19 +192,26 @@ def render(
     """
     path, ffmpeg = _output(output)
     rate = _rate(path, fps)
-    filming = dict(size=size, fps=rate, speed=speed, crf=-1 if crf is None else crf, ffmpeg=ffmpeg, look=_words(look))
-    if isinstance(what, Batch):
-        raise TypeError("what: a batch is filmed by Film; give robots, or the path of a recording")
-    if isinstance(what, (str, os.PathLike)) and os.fspath(what).endswith(".h5"):
-        if environment is not None:
-            raise InputError("environment: a recording has its own")
-        frames = _cpp._render_recording(os.fspath(what), path, seconds, **filming)
-    else:
-        robots = load(what) if isinstance(what, (str, os.PathLike)) else what
-        simulating = dict(
-            environment=environment, solver=solver, dt=dt, damping=damping, device=device, threads=threads
-        )
-        frames = _cpp._render_robots(robots, path, 10.0 if seconds is None else seconds, **simulating, **filming)
+    sides = what if isinstance(what, Mapping) else {"": what}
+    if not 1 <= len(sides) <= _most_sides:
+        raise InputError(f"what: {len(sides)} sides are not accepted; give 1 to {_most_sides}")
+    frames = _cpp._render(
+        [(title, _filmed(side)) for title, side in sides.items()],
+        path,
+        seconds,
+        environment=environment,
+        solver=solver,
+        dt=dt,
+        damping=damping,
+        device=device,
+        threads=threads,
+        size=size,
+        fps=rate,
+        speed=speed,
+        crf=-1 if crf is None else crf,
+        ffmpeg=ffmpeg,
+        look=_words(look),
+    )
     return Video(path, frames, _encoded(path, size), rate)
 
 
@@ -204,10 +225,12 @@ class Film:
     """Films a batch that you step yourself.
 
         with mercurysim.Film("swim.mp4", batch) as film:
-            for _ in range(300):
-                batch.step(33)
-                film.frame()
+            for _ in range(100):
+                film.step(100)
         film  # in a notebook: the video
+
+    step() steps the batch and adds the frames on the way, `fps` of them per simulated second; those between two steps
+    are interpolated. A program may also step the batch itself, and call frame() for each frame.
 
     `output`, `size`, `fps`, `crf` and `look` are those of render(). Drawing and encoding go on in the background. When
     the block of `with` ends, the film is completed; when it ends by an exception, nothing is kept. Robots that are added
@@ -234,6 +257,14 @@ class Film:
     def frame(self) -> None:
         """Adds the batch as it is now. Waits while several frames are behind. Raises what an earlier frame raised."""
         self._film.add_frame()
+
+    def step(self, n: int = 1) -> None:
+        """Advances the batch by `n` time steps and adds the frames on the way, exactly `fps` per simulated second.
+
+        The first call begins with the batch as it is. Steps that the batch makes by itself in between are not filmed.
+        Waits and raises as frame() does, and InputError for more frames than steps.
+        """
+        self._film.step(n)
 
     @property
     def frames(self) -> int:

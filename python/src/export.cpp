@@ -212,46 +212,13 @@ void export_robots(const SharedRobots& robots, const Request& request) {
   export_simulated(simulation, format, request, request.seconds.value_or(usual_seconds));
 }
 
-// Tries the robots of results again, as they were tried: the same start, time and numbers.
 void export_results(const std::vector<const Result*>& results, const Request& request) {
   refuse_choices(request);
   if (request.seconds || !request.environment.is_none())
     throw ParameterError(request.seconds ? "seconds" : "environment", "a Result has its own");
   const ExportFormat& format = format_for(request.path, request.format);
-  const Result& first = *results.front();
-  SharedRobots robots;
-  for (const Result* result : results) {
-    const std::string which = "result " + std::to_string(result->evaluation.index);
-    if (!result->was_stepped()) throw InputError(which + ": its robot was not stepped: " + result->evaluation.failure);
-    if (result->request != first.request || result->evaluation.steps != first.evaluation.steps)
-      throw InputError(which + ": it is of another call of evaluate(), or of a trial of another length, than result " +
-                       std::to_string(first.evaluation.index) + "; export them one by one");
-    robots.push_back(result->evaluation.robot);
-  }
-  Simulation simulation(first.request->configuration, robots);
-  if (first.request->start) {
-    std::vector<Vec3> positions;
-    for (std::size_t i = 0; i < robots.size(); ++i) {
-      std::vector<Vec3> own = robots[i]->masses;
-      first.request->start(results[i]->trial, *robots[i], own);
-      positions.insert(positions.end(), own.begin(), own.end());
-    }
-    simulation.reset_to(positions);
-  }
-  const auto steps = static_cast<double>(first.request->settling + first.evaluation.steps);
-  export_simulated(simulation, format, request, steps * first.request->configuration.dt);
-}
-
-// Nothing if `what` is neither a Result nor a sequence of Results.
-std::vector<const Result*> results_of(nb::handle what) {
-  std::vector<const Result*> results;
-  if (nb::isinstance<Result>(what)) results.push_back(nb::cast<const Result*>(what));
-  if (!nb::isinstance<nb::list>(what) && !nb::isinstance<nb::tuple>(what)) return results;
-  for (const nb::handle one : nb::borrow<nb::sequence>(what)) {
-    if (!nb::isinstance<Result>(one)) return {};
-    results.push_back(nb::cast<const Result*>(one));
-  }
-  return results;
+  Repetition again = repetition_of(results);
+  export_simulated(again.simulation, format, request, again.seconds);
 }
 
 void export_any(nb::handle what, nb::handle path, nb::handle format, nb::handle robot, nb::handle still,

@@ -4,10 +4,14 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/recording/trajectory_playback.h"
 #include "app/scene/view_words.h"
@@ -16,6 +20,7 @@
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
 #include "python/src/owned_array.h"
+#include "python/src/result.h"
 #include "python/src/values.h"
 #include "render/png.h"
 
@@ -243,9 +248,53 @@ class InterruptWatch {
   std::optional<nb::python_error>& interrupted_;
 };
 
-// Returns the number of frames.
-std::int64_t render_simulation(Simulation simulation, const std::string& output, double seconds,
-                               const FilmOptions& options) {
+// Something that is filmed: robots, a recording, or results of evaluate().
+struct Filmed {
+  FilmedGroup group;
+  std::optional<double> seconds = {};  // of its own
+};
+
+// Reads the file again: the Recording may be in use by another thread.
+Filmed filmed_recording(const TrajectoryReader& given, const std::string& title) {
+  const auto recording = std::make_shared<TrajectoryReader>(given.path());
+  if (recording->frames() == 0) throw InputError(given.path().string(), "holds no frames");
+  const auto share = std::make_shared<float>();
+  return {{playback(recording, share), {}, title, share},
+          recording->time(recording->frames() - 1) - recording->time(0)};
+}
+
+Filmed filmed(nb::handle what, const std::string& title, const Configuration& configuration) {
+  if (nb::isinstance<TrajectoryReader>(what)) return filmed_recording(nb::cast<const TrajectoryReader&>(what), title);
+  if (const std::vector<const Result*> results = results_of(what); !results.empty()) {
+    const ReleasedGil released;
+    Repetition again = repetition_of(results);
+    return {{std::move(again.simulation), {}, title}, again.seconds};
+  }
+  const SharedRobots robots = robots_of(what);
+  if (robots.empty()) throw InputError("there is no robot to film");
+  const ReleasedGil released;
+  return {{Simulation(configuration, robots), {}, title}};
+}
+
+// `sides`: pairs of a title and what is filmed. Returns the number of frames.
+std::int64_t render(const nb::list& sides, const std::string& output, std::optional<double> seconds,
+                    nb::handle environment, const std::string& solver, double dt, double damping, nb::handle device,
+                    int threads, nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
+                    const nb::dict& look) {
+  constexpr double usual_seconds = 10;
+  const FilmOptions options = film_options(size, fps, speed, crf, ffmpeg, look);
+  const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
+  std::vector<FilmedGroup> groups;
+  std::optional<double> longest;
+  bool simulated = false;
+  for (const nb::handle side : sides) {
+    Filmed one = filmed(side[1], nb::cast<std::string>(side[0]), configuration);
+    simulated |= !one.seconds;
+    if (one.seconds) longest = std::max(longest.value_or(0), *one.seconds);
+    groups.push_back(std::move(one.group));
+  }
+  if (!simulated && !environment.is_none())
+    throw ParameterError("environment", "recordings and results have their own");
   const std::shared_ptr<DrawingThread> thread = drawing();
   VideoResult result;
   std::optional<nb::python_error> interrupted;
@@ -253,7 +302,8 @@ std::int64_t render_simulation(Simulation simulation, const std::string& output,
     const ReleasedGil released;
     InterruptWatch watch(interrupted);
     result = with_errors([&] {
-      return film_of(*thread, std::move(simulation), output, options, seconds, [&] { return watch.go_on(); });
+      return film_of(*thread, std::move(groups), output, options, seconds.value_or(longest.value_or(usual_seconds)),
+                     [&] { return watch.go_on(); });
     });
   }
   if (interrupted) throw nb::python_error(std::move(*interrupted));
@@ -261,37 +311,11 @@ std::int64_t render_simulation(Simulation simulation, const std::string& output,
   return result.frames;
 }
 
-std::int64_t render_robots(nb::handle robots, const std::string& output, double seconds, nb::handle environment,
-                           const std::string& solver, double dt, double damping, nb::handle device, int threads,
-                           nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
-                           const nb::dict& look) {
-  const FilmOptions options = film_options(size, fps, speed, crf, ffmpeg, look);
-  const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
-  const SharedRobots shared = robots_of(robots);
-  if (shared.empty()) throw InputError("there is no robot to film");
-  std::optional<Simulation> simulation;
-  {
-    const ReleasedGil released;
-    simulation.emplace(configuration, shared);
-  }
-  return render_simulation(std::move(*simulation), output, seconds, options);
-}
-
-std::int64_t render_recording(const std::string& path, const std::string& output, std::optional<double> seconds,
-                              nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
-                              const nb::dict& look) {
-  const FilmOptions options = film_options(size, fps, speed, crf, ffmpeg, look);
-  const auto recording = std::make_shared<TrajectoryReader>(path);
-  if (recording->frames() == 0) throw InputError(path, "holds no frames");
-  const double length = recording->time(recording->frames() - 1) - recording->time(0);
-  return render_simulation(playback(recording), output, seconds.value_or(length), options);
-}
-
 // A film of a batch, as Python has it.
 class BatchFilm {
  public:
-  BatchFilm(const std::string& output, const Batch& batch, nb::handle size, double fps, int crf,
-            const std::string& ffmpeg, const nb::dict& look)
+  BatchFilm(const std::string& output, Batch& batch, nb::handle size, double fps, int crf, const std::string& ffmpeg,
+            const nb::dict& look)
       : thread_(drawing()), batch_(batch) {
     const FilmOptions options = film_options(size, fps, 1, crf, ffmpeg, look);
     with_errors([&] {
@@ -306,6 +330,28 @@ class BatchFilm {
   void add_frame() {
     with_errors([&] { batch_.use([&](const Simulation&) { film_->add_frame(); }); });
   }
+  // Steps the batch, and adds the frames on the way at exactly the film's rate. Steps that the batch makes by itself
+  // begin again.
+  void step(std::int64_t steps) {
+    do {
+      const std::int64_t wait = with_errors([&] {
+        return batch_.use([&](const Simulation& simulation) {
+          if (stepped_to_ != simulation.steps()) film_->begin_frames();
+          stepped_to_ = simulation.steps();
+          return film_->next_step() - simulation.steps();
+        });
+      });
+      const std::int64_t count = std::min(steps, wait);
+      batch_.step(count, nb::none());
+      with_errors([&] {
+        batch_.use([&](const Simulation& simulation) {
+          stepped_to_ = simulation.steps();
+          film_->observe();
+        });
+      });
+      steps -= count;
+    } while (steps > 0);
+  }
   void finish() {
     with_errors([&] { batch_.use([&](const Simulation&) { film_->finish(); }); });
   }
@@ -318,7 +364,8 @@ class BatchFilm {
 
  private:
   const std::shared_ptr<DrawingThread> thread_;
-  const Batch& batch_;  // kept by Python
+  Batch& batch_;  // kept by Python
+  std::optional<std::int64_t> stepped_to_;
   std::optional<Film> film_;
 };
 
@@ -337,19 +384,19 @@ void bind_pictures(nb::module_& module) {
         return array_of(picture(what, environment, picture_options(size, look)));
       },
       nb::arg("what"), nb::arg("size"), nb::arg("environment").none(), nb::arg("look"));
-  module.def("_render_robots", &render_robots, nb::arg("robots"), nb::arg("output"), nb::arg("seconds"),
+  module.def("_render", &render, nb::arg("sides"), nb::arg("output"), nb::arg("seconds").none(),
              nb::arg("environment").none(), nb::arg("solver"), nb::arg("dt"), nb::arg("damping"),
              nb::arg("device").none(), nb::arg("threads"), nb::arg("size"), nb::arg("fps"), nb::arg("speed"),
              nb::arg("crf"), nb::arg("ffmpeg"), nb::arg("look"));
-  module.def("_render_recording", &render_recording, nb::arg("path"), nb::arg("output"), nb::arg("seconds").none(),
-             nb::arg("size"), nb::arg("fps"), nb::arg("speed"), nb::arg("crf"), nb::arg("ffmpeg"), nb::arg("look"));
   module.def("_stop_videos", &stop_videos);
   module.def("_end_drawing", &end_drawing);
   nb::class_<BatchFilm>(module, "_Film")
-      .def(nb::init<const std::string&, const Batch&, nb::handle, double, int, const std::string&, const nb::dict&>(),
+      .def(nb::init<const std::string&, Batch&, nb::handle, double, int, const std::string&, const nb::dict&>(),
            nb::arg("output"), nb::arg("batch"), nb::arg("size"), nb::arg("fps"), nb::arg("crf"), nb::arg("ffmpeg"),
            nb::arg("look"), nb::keep_alive<1, 3>())
       .def("add_frame", &BatchFilm::add_frame)
+      .def(
+          "step", [](BatchFilm& self, nb::handle n) { self.step(whole_from("n", n, 0)); }, nb::arg("n"))
       .def("finish", &BatchFilm::finish)
       .def("discard", &BatchFilm::discard)
       .def_prop_ro("frames", &BatchFilm::frames)

@@ -21,7 +21,7 @@ namespace {
 }  // namespace
 
 void bind_pictures(nb::module_& module) {
-  for (const char* name : {"_picture", "_render_robots", "_render_recording", "_Film"}) module.def(name, &refuse);
+  for (const char* name : {"_picture", "_render", "_Film"}) module.def(name, &refuse);
   module.def("_stop_videos", [] {});
   module.def("_end_drawing", [] {});
 }

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "mercury/error.h"
 #include "mercury/quantity.h"
 #include "mercury/spread.h"
 #include "python/src/arguments.h"
@@ -90,6 +92,42 @@ auto median_value(double Evaluation::*member) {
 }
 
 }  // namespace
+
+std::vector<const Result*> results_of(nb::handle what) {
+  std::vector<const Result*> results;
+  if (nb::isinstance<Result>(what)) results.push_back(nb::cast<const Result*>(what));
+  if (!nb::isinstance<nb::list>(what) && !nb::isinstance<nb::tuple>(what)) return results;
+  for (const nb::handle one : nb::borrow<nb::sequence>(what)) {
+    if (!nb::isinstance<Result>(one)) return {};
+    results.push_back(nb::cast<const Result*>(one));
+  }
+  return results;
+}
+
+Repetition repetition_of(const std::vector<const Result*>& results) {
+  const Result& first = *results.front();
+  SharedRobots robots;
+  for (const Result* result : results) {
+    const std::string which = "result " + std::to_string(result->evaluation.index);
+    if (!result->was_stepped()) throw InputError(which + ": its robot was not stepped: " + result->evaluation.failure);
+    if (result->request != first.request || result->evaluation.steps != first.evaluation.steps)
+      throw InputError(which + ": it is of another call of evaluate(), or of a trial of another length, than result " +
+                       std::to_string(first.evaluation.index) + "; take them one by one");
+    robots.push_back(result->evaluation.robot);
+  }
+  Simulation simulation(first.request->configuration, robots);
+  if (first.request->start) {
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      std::vector<Vec3> own = robots[i]->masses;
+      first.request->start(results[i]->trial, *robots[i], own);
+      positions.insert(positions.end(), own.begin(), own.end());
+    }
+    simulation.reset_to(positions);
+  }
+  const auto steps = static_cast<double>(first.request->settling + first.evaluation.steps);
+  return {std::move(simulation), steps * first.request->configuration.dt};
+}
 
 void bind_result(nb::module_& module) {
   nb::class_<Result>(

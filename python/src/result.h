@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mercury/evaluator.h"
+#include "mercury/simulation.h"
 
 namespace mercury::python {
 
@@ -21,6 +22,17 @@ struct Result {
 
   bool was_stepped() const { return evaluation.robot && evaluation.failure.empty(); }
 };
+
+// Nothing if `what` is neither a Result nor a sequence of Results.
+std::vector<const Result*> results_of(nanobind::handle what);
+
+// Robots that are to be tried again as they were: the same start, time and numbers.
+struct Repetition {
+  Simulation simulation;
+  double seconds = 0;
+};
+// Of one call of evaluate(). Throws InputError.
+Repetition repetition_of(const std::vector<const Result*>& results);
 
 void bind_result(nanobind::module_& module);
 

@@ -227,6 +227,33 @@ def test_a_film_has_a_frame_per_call(batch, tmp_path, encoder):
     assert os.listdir(tmp_path) == ["a.mp4"]
 
 
+def test_a_film_that_steps_has_frames_at_exactly_its_rate(robots, tmp_path, encoder):
+    batch = mercurysim.Batch(robots, device="cpu")
+    with mercurysim.Film(tmp_path / "stepped", batch, fps=30, size=SMALL) as film:
+        for n in (0, 7, 26, 1, 1, 65, 34, 33):
+            film.step(n)
+            assert film.frames == batch.steps * 30 // 1000 + 1
+    assert batch.steps == 167 and film.frames == 6
+    mercurysim.render(robots, tmp_path / "whole", 0.2, fps=30, size=SMALL, device="cpu")
+    for frame in sorted(os.listdir(tmp_path / "whole")):
+        assert (tmp_path / "stepped" / frame).read_bytes() == (tmp_path / "whole" / frame).read_bytes()
+    coarse = mercurysim.Batch(robots, device="cpu", dt=0.01)
+    with pytest.raises(mercurysim.InputError, match="fps: 200 is not accepted; give more than 0 and at most 100"):
+        mercurysim.Film(tmp_path / "fast", coarse, fps=200, size=SMALL).step(1)
+
+
+def test_steps_that_a_batch_makes_by_itself_are_not_filmed(batch, tmp_path):
+    with mercurysim.Film(tmp_path / "frames", batch, fps=100, size=SMALL) as film:
+        film.step(20)
+        batch.step(1000)
+        film.step(20)
+        batch.add(mercurysim.random_voxel(1, seed=5))
+        film.step(10)
+        batch.reset()
+        film.step(10)
+    assert film.frames == 3 + 3 + 1 + 2
+
+
 def test_an_exception_discards_the_film(batch, tmp_path, encoder):
     (tmp_path / "a.mp4").write_text("old")
     with pytest.raises(ZeroDivisionError):
@@ -308,6 +335,54 @@ def test_render_plays_a_recording(robots, tmp_path, encoder, mercury):
         with pytest.raises(mercurysim.InputError):
             mercurysim.render(output=tmp_path / "a.mp4", **arguments)
     assert mercurysim.render(str(tmp_path / "0.json"), tmp_path / "file", 0.1, size=SMALL, device="cpu").frames == 3
+
+
+def frames_in(folder):
+    return [(folder / frame).read_bytes() for frame in sorted(os.listdir(folder))]
+
+
+def test_results_are_filmed_as_they_were_tried(robots, tmp_path, encoder):
+    settings = dict(solver="xpbd", dt=2e-3, device="cpu")
+    results = list(mercurysim.evaluate(robots, 0.4, settle=0.1, states=True, **settings))
+    film = mercurysim.render(results, tmp_path / "results", fps=10, size=SMALL)
+    assert film.frames == 4, "0.4 s, settling included"
+    mercurysim.render(robots, tmp_path / "robots", 0.4, fps=10, size=SMALL, **settings)
+    assert frames_in(tmp_path / "results") == frames_in(tmp_path / "robots")
+    # With jitter it is not the robot at rest that begins.
+    (jittered,) = mercurysim.evaluate(robots[:1], 0.2, trials=2, jitter=0.3, device="cpu")
+    mercurysim.render(jittered, tmp_path / "jittered", fps=10, size=SMALL)
+    mercurysim.render(robots[0], tmp_path / "still", 0.2, fps=10, size=SMALL, device="cpu")
+    assert frames_in(tmp_path / "jittered")[0] != frames_in(tmp_path / "still")[0]
+
+
+def test_results_recordings_and_robots_stand_side_by_side(robots, tmp_path, encoder):
+    batch = mercurysim.Batch(robots, device="cpu")
+    with mercurysim.Recorder(batch, tmp_path / "a.h5", fps=30) as recorder:
+        recorder.step(200)
+    (result,) = mercurysim.evaluate(robots[:1], 0.3, device="cpu")
+    recording = mercurysim.Recording(tmp_path / "a.h5")
+    sides = {"recorded": recording, "tried": result, "robot": robots[1], "file": tmp_path / "a.h5"}
+    film = mercurysim.render(sides, tmp_path / "a.mp4", size=(320, 90))
+    assert film.frames == 9, "as long as the longest of recordings and results"
+    assert frames_of(tmp_path / "a.mp4", encoder) == 9
+    # Each column is what it is alone, without the words above it.
+    twice = mercurysim.render({"a": result, "b": result}, tmp_path / "twice", size=(320, 90), fps=10, show="skin")
+    assert twice.frames == 3
+    png = tmp_path / "twice" / "frame-00002.png"
+    decode = [encoder, "-v", "error", "-i", png, "-pix_fmt", "rgb24", "-f", "rawvideo", "-"]
+    pixels = subprocess.run(decode, capture_output=True, check=True).stdout
+    picture = np.frombuffer(pixels, np.uint8).reshape(90, 320, 3)
+    assert (picture[40:, :160] == picture[40:, 160:]).all()
+    for refused, message in [({}, "0 sides"), (dict.fromkeys("abcde", result), "5 sides")]:
+        with pytest.raises(mercurysim.InputError, match=message):
+            mercurysim.render(refused, tmp_path / "b.mp4")
+    with pytest.raises(mercurysim.InputError, match="recordings and results have their own"):
+        mercurysim.render({"a": result, "b": recording}, tmp_path / "b.mp4", environment="land")
+    with pytest.raises(mercurysim.InputError, match="another call of evaluate"):
+        (other,) = mercurysim.evaluate(robots[:1], 0.3, device="cpu")
+        mercurysim.render([result, other], tmp_path / "b.mp4")
+    with pytest.raises(TypeError):
+        mercurysim.render({"a": 7}, tmp_path / "b.mp4")
 
 
 def test_render_does_not_take_a_batch(batch, tmp_path):

@@ -151,4 +151,11 @@ void compute_texels(GLuint program, GLuint texture, GLenum format, int width, in
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
+void dispatch(std::size_t count) {
+  if (count == 0) return;
+  const GLuint groups = GLuint((count + 63) / 64);
+  const GLuint across = std::min(groups, 32768u);
+  glDispatchCompute(across, (groups + across - 1) / across, 1);
+}
+
 }  // namespace mercury::render

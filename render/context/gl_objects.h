@@ -134,4 +134,7 @@ inline Program make_program(std::initializer_list<std::string_view> names, const
 // with all of their multiprocessors but draw with few.
 void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height);
 
+// Runs the current compute program, with a local size of 64, for at least `count` invocations.
+void dispatch(std::size_t count);
+
 }  // namespace mercury::render

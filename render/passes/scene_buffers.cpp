@@ -135,6 +135,16 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   return b;
 }
 
+void MixPass::mix(std::size_t count, float share) {
+  if (!program_) program_ = make_program({"mix_positions.comp"});
+  glUseProgram(program_.get());
+  glUniform1ui(0, GLuint(count));
+  glUniform1f(1, share);
+  // The frame before has been drawn from them.
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  dispatch(count);
+}
+
 void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
   require(scene.positions.size(), 3 * bodies.mass_count(), "positions");
   require(scene.placements.size(), bodies.body_count(), "placements");

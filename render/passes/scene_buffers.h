@@ -76,6 +76,16 @@ Octave octave_of(float distance);
 // Everything except what FitPass fills in.
 FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, int width, int height);
 
+// Fills Bodies::positions with positions between those of two other buffers.
+class MixPass {
+ public:
+  // The buffers are bound as storage: the bodies' positions, and from first_free on the two others. `count` of numbers.
+  void mix(std::size_t count, float share);
+
+ private:
+  Program program_;  // made when it is first needed
+};
+
 class SceneBuffers {
  public:
   // Includes the bodies' positions, if the scene has them. Throws std::invalid_argument for spans of the wrong length.

@@ -27,13 +27,6 @@ struct PatchRecord {
 
 }  // namespace
 
-void dispatch(std::size_t count) {
-  if (count == 0) return;
-  const GLuint groups = GLuint((count + 63) / 64);
-  const GLuint across = std::min(groups, 32768u);
-  glDispatchCompute(across, (groups + across - 1) / across, 1);
-}
-
 SkinPass::SkinPass(const std::string& defines)
     : corners_(make_vertex_array()), face_normals_program_(make_program({"face_normals.comp"})),
       mass_normals_program_(make_program({"mass_normals.comp"})),

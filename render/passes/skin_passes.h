@@ -48,9 +48,6 @@ class SkinPass {
 inline constexpr const char* cut_variant = "#define CUT\n";
 inline constexpr const char* backs_variant = "#define CUT\n#define BACKS\n";
 
-// Runs the current compute program, with a local size of 64, for at least `count` invocations.
-void dispatch(std::size_t count);
-
 // Ghosts: translucent bodies in one color, over everything else.
 class GhostPass {
  public:

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 
+#include "render/context/gl_objects.h"
 #include "tests/render/triangle.h"
 #include "tests/render/wobbling_bodies.h"
 
@@ -41,6 +42,29 @@ TEST_F(RendererTest, PositionsComeThroughTheSceneOrTheBuffer) {
   glNamedBufferSubData(renderer.position_buffer(), 0, GLsizeiptr(4 * positions.size()), positions.data());
   EXPECT_EQ(drawn(renderer, scene).bytes, through_scene.bytes);
   EXPECT_GT(count_differing(at_rest, through_scene, 10), 100);
+}
+
+TEST_F(RendererTest, MixedPositionsAreThoseOfFloatArithmetic) {
+  Renderer renderer = make_renderer();
+  const WobblingGroup group = make_wobbling_group(2, 5, 3, 0.8f);
+  renderer.set_bodies(group.views());
+  const std::vector<float> a = group.positions(2.5), b = group.positions(3.7);
+  constexpr std::size_t offset = 512;  // [bytes]
+  const auto source = [](const std::vector<float>& positions) {
+    std::vector<float> padded(offset / 4, 1e9f);
+    padded.insert(padded.end(), positions.begin(), positions.end());
+    Buffer buffer;
+    buffer.write(padded);
+    return buffer;
+  };
+  const Buffer from = source(a), to = source(b);
+  const float share = 1.0f / 3;
+  renderer.mix_positions({from.get(), offset}, {to.get(), offset}, share);
+  std::vector<float> mixed(a.size()), expected(a.size());
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glGetNamedBufferSubData(renderer.position_buffer(), 0, GLsizeiptr(4 * mixed.size()), mixed.data());
+  for (std::size_t i = 0; i < a.size(); ++i) expected[i] = a[i] + share * (b[i] - a[i]);
+  EXPECT_EQ(mixed, expected);
 }
 
 TEST_F(RendererTest, BoundsAreThoseOfThePositions) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,9 @@ class PretendedDevice final : public PositionBridge {
   };
   std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {
     return std::make_unique<Kept>(simulation);
+  }
+  std::unique_ptr<PositionSnapshot> mix(const PositionSnapshot&, const PositionSnapshot&, float) override {
+    throw std::logic_error("the window does not mix what is on the GPU");
   }
   void show(const PositionSnapshot& snapshot, render::Renderer&, render::Scene& scene) override {
     const std::vector<Vec3>& positions = dynamic_cast<const Kept&>(snapshot).positions;

@@ -418,6 +418,36 @@ TEST_F(Recording, PlaybackInterpolatesBetweenFrames) {
     EXPECT_NEAR(between[i].x, 0.75f * first[i].x + 0.25f * last[i].x, 1e-7f);
 }
 
+// At a moment between two steps, the line between two frames holds as well; at the moment of a frame it is that frame.
+TEST_F(Recording, PlaybackCanBeBetweenSteps) {
+  const double dt = on_cpu().dt;
+  for (const bool at_rate : {false, true}) {
+    Simulation simulation(on_cpu(), std::vector{small_voxel_robot(1)});
+    record(simulation, file(), 100, at_rate ? 1 : 50, {.rate = at_rate ? std::optional(30.0) : std::nullopt});
+    auto reader = std::make_shared<TrajectoryReader>(file());
+    const auto share = std::make_shared<float>();
+    Simulation played = playback(std::make_shared<TrajectoryReader>(file()), share);
+    for (int frame = 0; frame < 3; ++frame) {
+      const FramePlace place = place_after(0, at_rate ? frame / 30.0 / dt : 50.0 * frame);
+      played.step(place.step - played.steps());
+      *share = place.share;
+      const auto recorded = reader->positions(static_cast<std::size_t>(frame));
+      const std::vector<Vec3> expected(recorded.begin(), recorded.end()), shown = all_positions(played);
+      for (std::size_t i = 0; i < shown.size(); ++i) EXPECT_LT(length(shown[i] - expected[i]), 1e-6f) << frame;
+    }
+    played.reset();
+    played.step(10);
+    *share = 0.5f;
+    const auto first = reader->positions(0);
+    const std::vector<Vec3> from(first.begin(), first.end());
+    const auto second = reader->positions(1);
+    const std::vector<Vec3> to(second.begin(), second.end()), shown = all_positions(played);
+    const float way = 10.5f / (at_rate ? static_cast<float>(1 / (30 * dt)) : 50.0f);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      EXPECT_LT(length(shown[i] - (from[i] + way * (to[i] - from[i]))), 1e-6f);
+  }
+}
+
 TEST_F(Recording, PlaybackMarksARobotWhenItExploded) {
   Configuration configuration = on_cpu();
   configuration.dt = 1;

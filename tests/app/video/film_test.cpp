@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -95,6 +96,30 @@ TEST_F(FilmTest, FilmHasAFramePerCall) {
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "25");
   EXPECT_EQ(probe(path("a.mp4"))["r_frame_rate"], "10/1");
   EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
+}
+
+// However the simulation is stepped: the frames are those of a film of the whole simulation.
+TEST_F(FilmTest, FramesOfAStepWiseFilmAreThoseOfAWholeOne) {
+  const auto robots = random_voxel_robots({}, 1, 2);
+  const Configuration cpu{.device = {.kind = DeviceKind::cpu}};
+  film_of(thread_, Simulation(cpu, robots), path("whole/"), {.size = tiny, .frames_per_second = 30}, 0.2);
+  Film film(thread_, simulation_, path("stepwise/"), {.size = tiny, .frames_per_second = 30});
+  film.begin_frames();
+  film.observe();
+  for (const std::int64_t end : {7, 33, 34, 35, 100, 101, 167}) {
+    while (simulation_.steps() < end) {
+      simulation_.step(std::min(film.next_step(), end) - simulation_.steps());
+      film.observe();
+    }
+    EXPECT_EQ(film.frames(), end * 30 / 1000 + 1) << end;
+  }
+  film.finish();
+  ASSERT_EQ(listing("whole").size(), 6u);
+  for (const std::string& frame : listing("whole"))
+    EXPECT_EQ(read("whole/" + frame), read("stepwise/" + frame)) << frame;
+  Simulation coarse({.dt = 0.01, .device = {.kind = DeviceKind::cpu}}, robots);
+  Film fast(thread_, coarse, path("fast/"), {.size = tiny, .frames_per_second = 200});
+  EXPECT_THROW(fast.begin_frames(), InputError);
 }
 
 TEST_F(FilmTest, FramesArePicturesOfTheirMoment) {

@@ -67,6 +67,27 @@ TEST_F(PositionBridgeTest, HostSnapshotsKeepTheirPositions) {
   EXPECT_EQ(picture(*bridge, *early).bytes, before.bytes);
 }
 
+TEST_F(PositionBridgeTest, MixedSnapshotsLieOnTheLineBetweenTheTwo) {
+  ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
+  if (IsSkipped()) return;
+  const auto bridge = make_host_bridge();
+  const auto read = [&](const PositionSnapshot& snapshot) {
+    std::vector<Vec3> positions(simulation_->mass_count());
+    snapshot.read(positions);
+    return positions;
+  };
+  simulation_->step(200);
+  const auto early = bridge->take(*simulation_);
+  simulation_->step(200);
+  const auto late = bridge->take(*simulation_);
+  const auto mixed = bridge->mix(*early, *late, 0.25f);
+  const std::vector<Vec3> first = read(*early), last = read(*late), between = read(*mixed);
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    EXPECT_NEAR(between[i].x, 0.75f * first[i].x + 0.25f * last[i].x, 1e-6f);
+    EXPECT_NEAR(between[i].z, 0.75f * first[i].z + 0.25f * last[i].z, 1e-6f);
+  }
+}
+
 TEST_F(PositionBridgeTest, CpuSimulationsUseTheHostBridgeWithoutANote) {
   ASSERT_NO_FATAL_FAILURE(set_up(DeviceKind::cpu));
   if (IsSkipped()) return;
@@ -91,6 +112,17 @@ TEST_F(PositionBridgeTest, BothBridgesGiveTheSamePictureBitForBit) {
     simulation_->step(50);  // changes neither snapshot
     const render::Image drawn = picture(*device.bridge, *on_device);
     EXPECT_EQ(drawn.bytes, picture(*host.bridge, *on_host).bytes) << moment;
+    const auto later_on_device = device.bridge->take(*simulation_), later_on_host = host.bridge->take(*simulation_);
+    simulation_->step(50);
+    const auto mixed_on_device = device.bridge->mix(*on_device, *later_on_device, 0.3f),
+               mixed_on_host = host.bridge->mix(*on_host, *later_on_host, 0.3f);
+    const render::Image mixed = picture(*device.bridge, *mixed_on_device);
+    EXPECT_EQ(mixed.bytes, picture(*host.bridge, *mixed_on_host).bytes) << moment;
+    EXPECT_NE(mixed.bytes, drawn.bytes) << moment;
+    std::vector<Vec3> read_from_device(simulation_->mass_count()), read_from_host(simulation_->mass_count());
+    mixed_on_device->read(read_from_device);
+    mixed_on_host->read(read_from_host);
+    EXPECT_EQ(read_from_device, read_from_host) << moment;
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/recording/frame_places.h"
+#include "app/base/frame_places.h"
 
 #include <fmt/format.h>
 
@@ -22,6 +22,13 @@ double without_last_bits(double steps) {
 
 }  // namespace
 
+FramePlace place_after(std::int64_t first, double steps) {
+  steps = std::min(steps, last_step_ever - static_cast<double>(first));
+  const double whole = std::floor(steps + rounding);
+  const double share = steps - whole;
+  return {.step = first + static_cast<std::int64_t>(whole), .share = share > rounding ? static_cast<float>(share) : 0};
+}
+
 FramePlaces::FramePlaces(std::int64_t first, std::int64_t every)
     : first_(first), steps_per_frame_(static_cast<double>(every)) {}
 
@@ -29,11 +36,7 @@ FramePlaces::FramePlaces(std::int64_t first, double rate, double dt)
     : first_(first), steps_per_frame_(without_last_bits(1 / (rate * dt))) {}
 
 FramePlace FramePlaces::of(std::int64_t frame) const {
-  const double steps =
-      std::min(static_cast<double>(frame) * steps_per_frame_, last_step_ever - static_cast<double>(first_));
-  const double whole = std::floor(steps + rounding);
-  const double share = steps - whole;
-  return {.step = first_ + static_cast<std::int64_t>(whole), .share = share > rounding ? static_cast<float>(share) : 0};
+  return place_after(first_, static_cast<double>(frame) * steps_per_frame_);
 }
 
 std::int64_t FramePlaces::count(std::int64_t steps) const {
@@ -53,7 +56,7 @@ void require_frame_rate(const char* option, double rate, double dt) {
 }
 
 void interpolate(std::span<Vec3> values, std::span<const Vec3> next, float share) {
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] += share * (next[i] - values[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = interpolated(values[i], next[i], share);
 }
 
 }  // namespace mercury

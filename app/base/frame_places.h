@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the frames of a recording are: every few steps, or a number of times per second, between steps where they do
-// not fit.
+// Where the frames of a recording or a film are: every few steps, or a number of times per second, between steps where
+// they do not fit.
 //
 //     step    0     1     2     3     4     5     6     7          3.33 steps per frame
 //     frame   0                 .  1           .     2
@@ -20,6 +20,9 @@ struct FramePlace {
   float share = 0;  // 0 = at the step, below 1
   bool is_between_steps() const { return share > 0; }
 };
+
+// The moment that many steps, also parts of one, after step `first`.
+FramePlace place_after(std::int64_t first, double steps);
 
 class FramePlaces {
  public:
@@ -43,6 +46,8 @@ class FramePlaces {
 // Throws InputError("--fps: ...") unless a simulation with steps of `dt` [s] has that many frames per second.
 void require_frame_rate(const char* option, double rate, double dt);
 
+// A value at that share of the way from one step to the next.
+inline Vec3 interpolated(Vec3 earlier, Vec3 later, float share) { return earlier + share * (later - earlier); }
 // What a frame between two steps has: `values` of the earlier step become those at `share` of the way to `next`.
 void interpolate(std::span<Vec3> values, std::span<const Vec3> next, float share);
 
