@@ -157,36 +157,38 @@ class Chromium:
 
 
 class Firefox:
-    """The same with Firefox on a virtual display. `problems` are read at the end of each wait."""
+    """The same with Firefox on a virtual display. `problems` are read when they are asked for."""
 
-    def __init__(self, size=(900, 560)):
+    SMALLEST = 500  # width of a window
+
+    def __init__(self, size=(640, 400), scale=1):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
-        preferences = {"marionette.port": port, "browser.shell.checkDefaultBrowser": False,
+        # Port 0: Firefox takes a free one and writes it into a file.
+        preferences = {"marionette.port": 0, "layout.css.devPixelsPerPx": str(scale),
+                       "browser.shell.checkDefaultBrowser": False,
                        "datareporting.policy.dataSubmissionEnabled": False, "webgl.force-enabled": True,
                        "app.update.disabledForTesting": True, "browser.startup.page": 0}
         with open(os.path.join(self.folder.name, "user.js"), "w") as file:
             for name, value in preferences.items():
                 file.write(f"user_pref({json.dumps(name)}, {json.dumps(value)});\n")
         read, write = os.pipe()
-        self.display = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24"],
+        self.display = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x2000x24"],
                                         pass_fds=(write,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as line:  # whole: Xvfb writes it in parts
             number = line.readline().strip()
         environment = dict(os.environ, DISPLAY=":" + number, HOME=self.folder.name)
         command = [firefox(), "--marionette", "-remote-allow-system-access", "--no-remote", "--profile",
-                   self.folder.name, "--width", str(size[0]), "--height", str(size[1])]
+                   self.folder.name, "--width", str(max(size[0], self.SMALLEST)), "--height", str(size[1] + 100)]
         self._socket = None
         messages = open(os.path.join(self.folder.name, "messages"), "w+")
         self.process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=messages)
         end = time.monotonic() + PATIENCE
         while not self._socket:
             try:
-                self._socket = socket.create_connection(("127.0.0.1", port), timeout=PATIENCE)
-            except OSError:
+                with open(os.path.join(self.folder.name, "MarionetteActivePort")) as port:
+                    self._socket = socket.create_connection(("127.0.0.1", int(port.read())), timeout=PATIENCE)
+            except (OSError, ValueError):
                 if time.monotonic() > end or self.process.poll() is not None:
                     messages.seek(0)
                     problem = messages.read()[-500:]
@@ -197,6 +199,9 @@ class Firefox:
         self._answers, self._number = self._socket.makefile("rb"), 0
         self._read()
         self.call("WebDriver:NewSession", capabilities={})
+        self.call("WebDriver:SetTimeouts", script=1000 * PATIENCE, pageLoad=1000 * PATIENCE)
+        self._in_chrome("const { style } = gBrowser.selectedBrowser;"
+                        f"style.maxWidth = '{size[0]}px'; style.maxHeight = '{size[1]}px'")
 
     def __enter__(self):
         return self
@@ -232,13 +237,17 @@ class Firefox:
     def value(self, expression):
         return self.call("WebDriver:ExecuteScript", script=f"return ({expression})", args=[])["value"]
 
+    def _in_chrome(self, script):
+        self.call("Marionette:SetContext", value="chrome")
+        value = self.call("WebDriver:ExecuteScript", script=script, args=[])["value"]
+        self.call("Marionette:SetContext", value="content")
+        return value
+
     @property
     def problems(self):
         """Errors and warnings that the page has caused."""
-        self.call("Marionette:SetContext", value="chrome")
-        script = "return Services.console.getMessageArray().map(m => String(m.message)).filter(m => /file:|WebGL/.test(m))"
-        found = self.call("WebDriver:ExecuteScript", script=script, args=[])["value"]
-        self.call("Marionette:SetContext", value="content")
+        found = self._in_chrome("return Services.console.getMessageArray().map(m => String(m.message))"
+                                ".filter(m => /file:\\/\\/|WebGL/.test(m))")
         return [text for text in found if "chrome://" not in text]
 
     def open(self, path):

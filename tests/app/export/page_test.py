@@ -16,6 +16,7 @@ from pathlib import Path
 import browser
 
 MERCURY = sys.argv[1]
+PHONE = (390, 844)  # pixels of a page
 
 
 def mercury(*arguments):
@@ -56,6 +57,16 @@ class Case(unittest.TestCase):
 
     def export(self, *arguments):
         mercury("export", *arguments, "--device", "cpu")
+
+    def assert_within_reach(self, page):
+        """Of a finger, on a phone."""
+        self.assertEqual(page.value("[innerWidth, innerHeight]"), list(PHONE))
+        self.assertEqual(page.value("document.documentElement.scrollWidth"), PHONE[0])
+        for x, y, width, height in page.value("""[...document.querySelectorAll('#bar > *')].filter((e) => e.offsetWidth)
+            .map((e) => e.getBoundingClientRect()).map((r) => [r.x, r.y, r.width, r.height])"""):
+            self.assertGreaterEqual(min(x, y), 0)
+            self.assertLessEqual(x + width, PHONE[0])
+            self.assertLessEqual(y + height, PHONE[1])
 
 
 class Recording(Case):
@@ -131,14 +142,9 @@ class Group(Case):
     def test_page_of_robots(self):
         mercury("new", "voxel", "--seed", 7, "--voxels", "2x2x2", "--count", 3, "-o", self.folder / "robots")
         self.export(self.folder / "robots", "--environment", "land", "--seconds", 1, "-o", self.folder / "three.html")
-        page = self.open("three.html", size=(390, 844), touch=True, scale=3)
+        page = self.open("three.html", size=PHONE, touch=True, scale=3)
         with self.subTest("all is within reach"):
-            self.assertEqual(page.value("document.documentElement.scrollWidth"), 390)
-            for x, y, width, height in page.value("""[...document.querySelectorAll('#bar > *')].filter((e) => e.offsetWidth)
-                .map((e) => e.getBoundingClientRect()).map((r) => [r.x, r.y, r.width, r.height])"""):
-                self.assertGreaterEqual(min(x, y), 0)
-                self.assertLessEqual(x + width, 390)
-                self.assertLessEqual(y + height, 844)
+            self.assert_within_reach(page)
         self.assertEqual(page.value("player.shown.length"), 3)
         self.assertAlmostEqual(page.value("player.end"), 1)  # 30 frames per second, between steps of 1 ms
         page.press(" ")
@@ -204,13 +210,14 @@ class Run(Case):
 class Firefox(Case):
     def test_page_draws_and_plays(self):
         self.export("sample:paper/eel", "--seconds", 0.5, "-o", self.folder / "eel.html")
-        page = browser.Firefox()
+        page = browser.Firefox(PHONE)
         self.addCleanup(page.close)
         page.open(self.folder / "eel.html")
         self.assertEqual(page.value("document.documentElement.dataset.state"), "ready", page.problems)
         time = page.value("player.time")
         page.wait_for(f"player.drawn > 1 && player.time !== {time}")
         self.assertGreater(page.value(COLORS), 1000)
+        self.assert_within_reach(page)
         self.assertEqual(page.problems, [])
 
 
