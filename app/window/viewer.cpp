@@ -174,7 +174,8 @@ void Viewer::handle_input(const std::vector<InputEvent>& events) {
     open_paths(context_, files);
     log_.write("dropped", {{"files", files.size()}});
   }
-  const bool typing = ImGui::GetIO().WantTextInput;
+  // The text field of a dialog that has closed wants text for one more frame.
+  const bool typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
   for (const KeyPress& press : key_presses_in(events)) {
     const std::optional<Action> command = keys_.command_of(press);
     if (dialogs_.open()) {

@@ -75,11 +75,15 @@ class FilesTest(WindowCase):
 
     def test_a_robot_is_exported_for_other_programs(self):
         window = self.small("--paused")
+        window.click("robot.0")
+        window.frame(lambda frame: frame["selected"] == 1)
         since = window.mark()
         window.click("menu.File")
         window.click("menu.export_pose")
         window.dialog(str(self.folder / "eel.stl"))
         window.wait("saved", since)
+        window.key("Escape")  # in the frame after the dialog, if frames are slow: it is for the scene already
+        window.frame(lambda frame: frame["selected"] == 0)
         faces = len(json.loads((SAMPLES / "eel.json").read_text())["faces"])
         self.assertEqual((self.folder / "eel.stl").stat().st_size, 84 + 50 * faces)
 
