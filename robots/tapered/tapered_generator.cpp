@@ -33,16 +33,16 @@ TaperedGenome genome_in(const Robot& robot) {
   return *std::move(genome);
 }
 
-Robot mutated(const Robot& parent, const MutationRequest& request, const std::string& name) {
+Robot mutated_tapered(const Robot& parent, const MutationRequest& request, const std::string& name) {
   TaperedGenome genome = mutate(genome_in(parent), request.strength, request.seed, is_of_body);
   return grow(mutate(genome, request.muscles, seed_of(request.seed, 0), is_of_muscles), name);
 }
 
-Robot crossed(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
+Robot crossed_tapered(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
   return grow(crossover(genome_in(a), genome_in(b), seed), name);
 }
 
-const ParameterTable<TaperedOptions>& option_table() {
+const ParameterTable<TaperedOptions>& tapered_table() {
   using Options = TaperedOptions;
   static const ParameterTable<Options> rows{
       parameter(&Options::bending, {.name = "bending", .help = "How the bodies bend", .words = bendings}),
@@ -124,7 +124,7 @@ TaperedGenome crossover(const TaperedGenome& a, const TaperedGenome& b, std::uin
   return child;
 }
 
-void validate(const TaperedOptions& options) { check_each(option_table(), options); }
+void validate(const TaperedOptions& options) { check_each(tapered_table(), options); }
 
 TaperedGenome random_tapered_genome(const TaperedOptions& options, std::uint64_t seed, std::uint64_t index) {
   validate(options);
@@ -163,11 +163,11 @@ Generator tapered_generator() {
                     .environment = "water",
                     .example = {.name = "trout", .seed = 1, .values = {{"physics", "real"}, {"modulus", "2e6"}}},
                     .regrow = [](const Robot& robot) { return grow(genome_in(robot), robot.name); },
-                    .mutate = mutated,
-                    .cross = crossed,
+                    .mutate = mutated_tapered,
+                    .cross = crossed_tapered,
                     .cells = tapered_cells,
                     .genes = &tapered_genes()};
-  return with_parameters(std::move(tapered), option_table(), random_tapered_robot);
+  return with_parameters(std::move(tapered), tapered_table(), random_tapered_robot);
 }
 
 }  // namespace mercury

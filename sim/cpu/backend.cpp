@@ -15,6 +15,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "mercury/error.h"
 #include "mercury/stopwatch.h"
 #include "mercury/threads.h"
 #include "mercury/work_counter.h"
@@ -292,6 +293,7 @@ class CpuBackend final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> make_cpu_backend(const Device& device) {
+  if (cpu::kernels().empty()) throw DeviceError("the CPU lacks SSSE3 instructions, which x86 processors have since 2011");
   return cpu::make_backend(device, cpu::kernels().front());
 }
 

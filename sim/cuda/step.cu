@@ -139,14 +139,14 @@ __global__ void __maxnreg__(72)
   if (active) part.stepper.store_state();
 }
 
-// step_model_of() has all others on the chip.
+// step_model_of() gives all others what is on the chip whole.
 template <Solver solver, class EnvironmentModel, int record_words>
 auto kernel_for(const LaunchConfiguration& launch) {
-  if constexpr (solver == Solver::xpbd)
-    if (launch.on_chip && !launch.valence_on_chip)
-      return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
-  if constexpr (std::is_same_v<EnvironmentModel, GeneralModel>)
+  if constexpr (std::is_same_v<EnvironmentModel, GeneralModel>) {
     if (!launch.on_chip) return step_kernel<solver, EnvironmentModel, OffChip, record_words>;
+    if constexpr (solver == Solver::xpbd)
+      if (!launch.valence_on_chip) return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
+  }
   return step_kernel<solver, EnvironmentModel, OnChip, record_words>;
 }
 

@@ -24,12 +24,13 @@ struct StepArguments {
   Thoughts thoughts;
 };
 
-// The model whose kernel a launch uses. Robots in device memory wait for it most of the time, so they have one kernel
-// for all environments.
+// The model whose kernel a launch uses. Robots in device memory wait for it most of the time, and few are too large by
+// their valences alone, so both have one kernel for all environments.
 inline AnyEnvironmentModel step_model_of(const Configuration& configuration, bool real_bodies,
                                          const LaunchConfiguration& launch) {
   const Environment& environment = configuration.environment;
-  return launch.on_chip ? solver_model_of(environment, real_bodies) : GeneralModel(environment);
+  if (launch.on_chip && launch.valence_on_chip) return solver_model_of(environment, real_bodies);
+  return GeneralModel(environment);
 }
 
 // Robots that the current device steps at the same time.

@@ -8,11 +8,12 @@ what they add is run.
 
 Generators, importers, quantities, panels and commands are linked with the libraries of the build into a program. Parameters
 and environments change headers that everything includes: the simulation is compiled from scratch without optimization, for
-the slowest kernel alone, and of the rest the sources that read the tables are checked.
+one kernel alone, and of the rest the sources that read the tables are checked.
 """
 
 import itertools
 import json
+import platform
 import re
 import shlex
 import shutil
@@ -22,6 +23,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+KERNEL = {"x86_64": "ssse3", "aarch64": "neon"}.get(platform.machine(), "portable")
 EXAMPLE = re.compile(r"^`(\S+)`(?: \(new\))?:\n\n```(diff|cpp)\n(.*?)^```$", re.M | re.S)
 
 # Starts the program, or lists the panels of its window.
@@ -45,7 +47,7 @@ SIMULATION = """
 #include "mercury/simulation.h"
 #include "sim/cpu/kernels/kernel.h"
 namespace mercury::cpu {
-std::span<const Kernel> kernels() { return {&portable_kernel, 1}; }  // the others are compiled as this one is
+std::span<const Kernel> kernels() { return {&KERNEL_kernel, 1}; }  // the others are compiled as this one is
 }
 using namespace mercury;
 bool failed = false;
@@ -226,8 +228,8 @@ def test_what_changes_headers(copy, found):
              for path in sorted(copy.folder.glob(f"sim/{pattern}.cpp"))]
     names += ["sim/cuda/chip_bytes.cpp", "sim/cuda/rest_lengths.cpp", "sim/cuda/missing.cpp"]
     (copy.folder / "simulation.cpp").write_text("".join(f'#include "{name}"\n' for name in names))
-    (copy.folder / "expectations.cpp").write_text(SIMULATION)
-    objects = copy.compile(["simulation.cpp", "sim/cpu/kernels/kernel_portable.cpp", "expectations.cpp"], compiler)
+    (copy.folder / "expectations.cpp").write_text(SIMULATION.replace("KERNEL", KERNEL))
+    objects = copy.compile(["simulation.cpp", f"sim/cpu/kernels/kernel_{KERNEL}.cpp", "expectations.cpp"], compiler)
     run([*compiler, *objects, "-o", copy.folder / "simulation", "-ltbb", "-lhwy"], copy.folder)
     print(run([copy.folder / "simulation"], copy.folder), end="")
     (copy.folder / "table.cpp").write_text(TABLE)

@@ -159,12 +159,6 @@ TEST_P(CpuKernel, FindsTheExplosionsOfThePlainLoop) {
   }
 }
 
-// So each machine has a kernel.
-TEST(CpuKernels, EndWithThePortableOne) {
-  ASSERT_FALSE(cpu::kernels().empty());
-  EXPECT_EQ(cpu::kernels().back().name, "portable");
-}
-
 // Robots with the same topology but different materials, lengths and states.
 class CpuKernelInLockstep : public CpuKernel {
  protected:

@@ -80,9 +80,8 @@ class BodyStepper {
   }
   template <bool viscous, class Finish>
   bool add_springs(const float* factors, float squared_diagonal, const Finish& finish) {
-    if constexpr (!few_cases)
-      if (squared_diagonal <= body_.measures.squared_stretch_limit())
-        return HWY_NAMESPACE::add_springs<false, gathered_springs, viscous>(body_, factors, finish);
+    if (squared_diagonal <= body_.measures.squared_stretch_limit())
+      return HWY_NAMESPACE::add_springs<false, gathered_springs, viscous>(body_, factors, finish);
     return HWY_NAMESPACE::add_springs<true, gathered_springs, viscous>(body_, factors, finish);
   }
 
@@ -149,9 +148,8 @@ std::int64_t advance_body(Body& body, const EnvironmentModel& model, const StepS
 inline std::int64_t advance(Body& body, const StepSetting& setting, Factors factors, StepRange steps) {
   return with_model(setting, [&](const auto& model) {
     using EnvironmentModel = std::decay_t<decltype(model)>;
-    if constexpr (!few_cases)
-      if (!body.springs.has_gathered_rows())
-        return advance_body<EnvironmentModel, false>(body, model, setting, factors, steps);
+    if (!body.springs.has_gathered_rows())
+      return advance_body<EnvironmentModel, false>(body, model, setting, factors, steps);
     return advance_body<EnvironmentModel, true>(body, model, setting, factors, steps);
   });
 }

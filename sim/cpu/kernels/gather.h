@@ -58,22 +58,9 @@ HWY_INLINE Lanes upper_pairs(Lanes a, Lanes b) {
 
 // Transposes the 4 by 4 numbers in each group of four lanes.
 HWY_INLINE Lanes4 transposed(Lanes4 r) {
-#if HWY_TARGET == HWY_EMU128
-  // Element by element, which is faster than emulating the exchanges.
-  Lanes4 t;
-  for (std::size_t i = 0; i < 4; ++i) {
-    Lanes& column = i == 0 ? t.x : i == 1 ? t.y : i == 2 ? t.z : t.w;
-    column.v.raw[0] = r.x.v.raw[i];
-    column.v.raw[1] = r.y.v.raw[i];
-    column.v.raw[2] = r.z.v.raw[i];
-    column.v.raw[3] = r.w.v.raw[i];
-  }
-  return t;
-#else
   const Lanes a = hn::InterleaveLower(floats, r.x.v, r.y.v), b = hn::InterleaveUpper(floats, r.x.v, r.y.v);
   const Lanes c = hn::InterleaveLower(floats, r.z.v, r.w.v), d = hn::InterleaveUpper(floats, r.z.v, r.w.v);
   return {lower_pairs(a, c), upper_pairs(a, c), lower_pairs(b, d), upper_pairs(b, d)};
-#endif
 }
 
 // A tile of gathered masses, not transposed yet. Where several of these go into one sum, adding comes first: it costs

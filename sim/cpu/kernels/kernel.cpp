@@ -14,11 +14,12 @@ std::vector<Kernel> usable_kernels() {
   const std::int64_t supported = hwy::SupportedTargets();
   if ((supported & HWY_AVX3) != 0) usable.push_back(avx512_kernel);
   if ((supported & HWY_AVX2) != 0) usable.push_back(avx2_kernel);
-  if ((supported & HWY_SSE4) != 0) usable.push_back(sse4_kernel);
+  if ((supported & HWY_SSSE3) != 0) usable.push_back(ssse3_kernel);
 #elif HWY_ARCH_ARM_A64
   usable.push_back(neon_kernel);
-#endif
+#else
   usable.push_back(portable_kernel);
+#endif
   return usable;
 }
 

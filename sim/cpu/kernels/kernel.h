@@ -36,9 +36,9 @@ struct Kernel {
 };
 
 // One per source file kernel_*.cpp.
-extern const Kernel portable_kernel, sse4_kernel, avx2_kernel, avx512_kernel, neon_kernel;
+extern const Kernel portable_kernel, ssse3_kernel, avx2_kernel, avx512_kernel, neon_kernel;
 
-// The kernels that this machine can run, fastest first. The last one is portable.
+// The kernels that this machine can run, fastest first; none on an x86 processor without SSSE3.
 std::span<const Kernel> kernels();
 
 }  // namespace mercury::cpu

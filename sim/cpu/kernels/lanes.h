@@ -25,11 +25,6 @@ inline constexpr hn::RebindToUnsigned<decltype(floats)> words;
 inline constexpr hn::RepartitionToWide<decltype(words)> long_words;
 inline constexpr std::size_t lane_count = hn::MaxLanes(floats);
 
-// The portable kernel is slow anyhow and takes longest to compile, so it is compiled for fewer cases, with the same
-// bits: it checks the length of every spring, takes each body as one with gathered rows, and has one model for all
-// oceans.
-inline constexpr bool few_cases = HWY_TARGET == HWY_EMU128;
-
 struct Mask {
   hn::Mask<decltype(floats)> m;
 };
@@ -77,19 +72,8 @@ HWY_INLINE Lanes negated_where(Mask condition, Lanes a) {
 #endif
 }
 // Where one of the two is NaN, the result is either of them.
-#if HWY_TARGET == HWY_EMU128
-HWY_INLINE Lanes smaller(Lanes a, Lanes b) {
-  for (std::size_t i = 0; i < lane_count; ++i) a.v.raw[i] = b.v.raw[i] < a.v.raw[i] ? b.v.raw[i] : a.v.raw[i];
-  return a;
-}
-HWY_INLINE Lanes larger(Lanes a, Lanes b) {
-  for (std::size_t i = 0; i < lane_count; ++i) a.v.raw[i] = b.v.raw[i] > a.v.raw[i] ? b.v.raw[i] : a.v.raw[i];
-  return a;
-}
-#else
 HWY_INLINE Lanes smaller(Lanes a, Lanes b) { return hn::Min(a.v, b.v); }
 HWY_INLINE Lanes larger(Lanes a, Lanes b) { return hn::Max(a.v, b.v); }
-#endif
 HWY_INLINE Mask all_of(Mask a, Mask b, Mask c) { return {hn::And(hn::And(a.m, b.m), c.m)}; }
 HWY_INLINE Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
 HWY_INLINE bool every(Mask a) { return hn::AllTrue(floats, a.m); }
@@ -112,15 +96,11 @@ HWY_INLINE std::int32_t largest(Integers a) { return hn::GetLane(hn::MaxOfLanes(
 // Halves go to the even integer. Undefined for values that no integer can hold: NearestInt saturates them, for five
 // more instructions on x86.
 HWY_INLINE Integers round_to_int(Lanes a) {
-#if HWY_TARGET == HWY_EMU128
-  Integers rounded;
-  for (std::size_t i = 0; i < lane_count; ++i) rounded.v.raw[i] = mercury::round_to_int(a.v.raw[i]);
-  return rounded;
-#elif HWY_TARGET == HWY_AVX3
+#if HWY_TARGET == HWY_AVX3
   return {hn::Vec<decltype(integers)>{_mm512_cvtps_epi32(a.v.raw)}};
 #elif HWY_TARGET == HWY_AVX2
   return {hn::Vec<decltype(integers)>{_mm256_cvtps_epi32(a.v.raw)}};
-#elif HWY_TARGET == HWY_SSE4
+#elif HWY_TARGET == HWY_SSSE3
   return {hn::Vec<decltype(integers)>{_mm_cvtps_epi32(a.v.raw)}};
 #else
   return {hn::NearestInt(a.v)};

@@ -223,8 +223,7 @@ class LockstepStepper {
   }
   template <bool viscous, class Finish>
   bool add_springs(const float* factors, bool compact, const Finish& finish) {
-    if constexpr (!few_cases)
-      if (compact) return add_springs<false, viscous>(factors, finish);
+    if (compact) return add_springs<false, viscous>(factors, finish);
     return add_springs<true, viscous>(factors, finish);
   }
 

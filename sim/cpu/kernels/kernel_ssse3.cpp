@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <hwy/detect_targets.h>
 #undef HWY_TARGET
-#define HWY_TARGET HWY_SSE4
+#define HWY_TARGET HWY_SSSE3
 
 #include "sim/cpu/kernels/kernel_target.h"
 
@@ -9,7 +9,7 @@
 
 namespace mercury::cpu {
 
-const Kernel sse4_kernel{"SSE4", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance,
-                         HWY_NAMESPACE::advance_group};
+const Kernel ssse3_kernel{"SSSE3", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance,
+                          HWY_NAMESPACE::advance_group};
 
 }  // namespace mercury::cpu
