@@ -293,7 +293,8 @@ class CpuBackend final : public Backend {
 }  // namespace
 
 std::unique_ptr<Backend> make_cpu_backend(const Device& device) {
-  if (cpu::kernels().empty()) throw DeviceError("the CPU lacks SSSE3 instructions, which x86 processors have since 2011");
+  if (cpu::kernels().empty())
+    throw DeviceError("the CPU lacks SSSE3 instructions, which x86 processors have since 2011");
   return cpu::make_backend(device, cpu::kernels().front());
 }
 
