@@ -261,10 +261,20 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
       }
       if (opened->robots.empty()) return;
       parts.edit("open " + robot_count_text(opened->robots.size()));
+      if (parts.document.robots.empty() &&
+          std::ranges::any_of(opened->robots, [](const OpenedRobot& robot) { return seeks_target(robot.robot); }))
+        parts.let_travel();
       for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
       parts.apply_document();
     };
   });
+}
+
+// Cells have no place for a target.
+void LiveScene::Parts::let_travel() {
+  if (view.layout != Layout::cells) return;
+  set_layout(view, Layout::grid);
+  physics.set_view(view);
 }
 
 void LiveScene::Parts::open_scene(const SceneFile& scene, std::span<const Robot* const> robots) {

@@ -183,6 +183,7 @@ struct LiveScene::Parts {
   // Reports robots that break a rule and leaves them out.
   void remove_invalid(std::vector<Robot>& robots);
   std::vector<RobotId> append_valid(std::vector<Robot> robots, bool unsaved);
+  void let_travel();
   // Clears the scene and sets what else the file says. `environments`: those that its robots are made for.
   void open_scene(const SceneFile& scene, std::span<const Robot* const> robots);
   void replay(const std::shared_ptr<const Repro>& repro, const std::filesystem::path& file);

@@ -39,6 +39,10 @@ nlohmann::json second_of(const Snapshot& snapshot) {
           {"environment", name_of(configuration.environment)}};
 }
 
+std::array<float, 3> target_of(const Environment& environment) {
+  return {environment.target.x, environment.target.y, environment.target.z};
+}
+
 // GPU time of each part of a view [ms].
 nlohmann::json passes_of(const render::Renderer& renderer) {
   nlohmann::json passes = nlohmann::json::object();
@@ -107,6 +111,7 @@ void FrameReport::write(PanelContext& context, const ShownView& shown, const Fra
                       {"color", scene.view().color->key},
                       {"scale", {scene.drawn().scene().scale.low, scene.drawn().scene().scale.high}},
                       {"cut", scene.view().cut ? scene.view().cut->percent : -1},
+                      {"target", target_of(scene.configuration().environment)},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
                       {"on_device", scene.drawn().positions_on_device()},

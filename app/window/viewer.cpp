@@ -92,6 +92,7 @@ class Viewer {
   MouseController mouse_{scene_, camera_, log_, toasts_};
   LegendView legend_;
   CutHandle cut_handle_;
+  TargetHandle target_handle_;
   Screenshot screenshot_;
 
   ViewportArea area_{{0, 0}, {16, 9}};        // of the robots, or of the first side
@@ -286,6 +287,7 @@ void Viewer::draw_handles() {
   bool changed = legend_.draw(scene_.drawn().scene().legend, place, view, log_);
   context_.legend = legend_.box();
   changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
+  target_handle_.draw(scene_, area_, shown_camera_, log_);
   if (changed) scene_.set_view(view);
 }
 

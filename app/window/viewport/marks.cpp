@@ -46,19 +46,47 @@ std::span<const float> floats(std::span<const Vec3> points) {
   return {points.empty() ? nullptr : &points.front().x, 3 * points.size()};
 }
 
-// The index in the snapshot of the first selected robot, or of the first one that is visible.
-std::optional<std::size_t> robot_with_handle(LiveScene& scene) {
+// The index in the snapshot of the first selected robot, or of the first one that is visible, of those that `may`.
+template <class May>
+std::optional<std::size_t> robot_with_handle(LiveScene& scene, const May& may) {
   const Snapshot& snapshot = scene.snapshot();
   const auto shown = [&](RobotId id) {
     const auto index = snapshot.robots->index_of(id);
     const bool seen = index && *index < scene.drawn().offsets().size() && !snapshot.telemetry[*index].exploded;
-    return seen && !scene.is_hidden(id) ? index : std::nullopt;
+    return seen && !scene.is_hidden(id) && may(*snapshot.robots->robots[*index].robot) ? index : std::nullopt;
   };
   for (const RobotId id : scene.selection())
     if (const auto index = shown(id)) return index;
   for (const DocumentRobot& robot : scene.document().robots)
     if (const auto index = shown(robot.body.id)) return index;
   return std::nullopt;
+}
+
+// An invisible button of that radius at a place of the view. Returns whether there is room for it.
+bool handle_button(const char* id, ImVec2 at, float radius, const ViewportArea& area) {
+  const float text = ImGui::GetFontSize();
+  if (!(at.x > area.low.x + text && at.x < area.high.x - text && at.y > area.low.y + text && at.y < area.high.y - text))
+    return false;
+  ImGui::SetNextWindowPos({at.x - 1.5f * radius, at.y - 1.5f * radius});
+  ImGui::SetNextWindowSize({3 * radius, 3 * radius});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  ImGui::Begin(id, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
+  ImGui::InvisibleButton("handle", {3 * radius, 3 * radius});
+  return true;
+}
+void end_handle_button() {
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+void draw_handle(ImVec2 at, float radius, ImU32 color) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.AddCircleFilled(at, radius + 0.1f * ImGui::GetFontSize(), palette().on_view);
+  list.AddCircleFilled(at, radius, color);
+  list.AddCircle(at, radius, IM_COL32(0, 0, 0, 160));
 }
 
 // Where the mouse is on the line from `low` to `high`, in percent.
@@ -234,7 +262,8 @@ bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const 
 
 bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, ViewSettings& view,
                      EventLog& log) const {
-  const std::optional<std::size_t> robot = view.cut ? robot_with_handle(scene) : std::nullopt;
+  const std::optional<std::size_t> robot =
+      view.cut ? robot_with_handle(scene, [](const Robot&) { return true; }) : std::nullopt;
   if (!robot) return false;
   const auto frame = render::cut_frame(view.cut->axis, floats(scene.snapshot().robots->robots[*robot].robot->masses),
                                        floats(scene.drawn().positions_of(*robot)));
@@ -246,18 +275,7 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
   };
   const ImVec2 low = at(frame->low), high = at(frame->high), handle = at(frame->place_of(*view.cut));
   const float text = ImGui::GetFontSize(), radius = 0.55f * text;
-  if (!(handle.x > area.low.x + text && handle.x < area.high.x - text && handle.y > area.low.y + text &&
-        handle.y < area.high.y - text))
-    return false;
-  ImGui::SetNextWindowPos({handle.x - 1.5f * radius, handle.y - 1.5f * radius});
-  ImGui::SetNextWindowSize({3 * radius, 3 * radius});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  ImGui::Begin("##cut", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
-  ImGui::InvisibleButton("handle", {3 * radius, 3 * radius});
+  if (!handle_button("##cut", handle, radius, area)) return false;
   log.item("cut.handle");
   const bool active = ImGui::IsItemActive(), marked = active || ImGui::IsItemHovered();
   if (!active) tooltip("drag: where each robot is cut");
@@ -267,18 +285,53 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
   list.AddLine(low, high, palette().on_view, 0.32f * text);
   list.AddLine(low, high, color, 0.1f * text);
   for (const ImVec2 end : {low, high}) list.AddCircleFilled(end, 0.16f * text, color);
-  list.AddCircleFilled(handle, radius + 0.1f * text, palette().on_view);
-  list.AddCircleFilled(handle, radius, color);
-  list.AddCircle(handle, radius, IM_COL32(0, 0, 0, 160));
+  draw_handle(handle, radius, color);
   list.PopClipRect();
-  ImGui::End();
-  ImGui::PopStyleVar(2);
+  end_handle_button();
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   if (!active || (moved.x == 0 && moved.y == 0)) return false;
   // A place in meters becomes a share of this robot, and of all others.
   view.cut->shift = 0;
   view.cut->percent = std::clamp(percent_at(ImGui::GetIO().MousePos, low, high, view.cut->percent), 0.0f, 100.0f);
   return true;
+}
+
+void TargetHandle::draw(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log) const {
+  if (scene.view().layout == Layout::cells) return;
+  const std::optional<std::size_t> robot = robot_with_handle(scene, seeks_target);
+  if (!robot) return;
+  const render::Vector3 offset = scene.drawn().offsets()[*robot];
+  const render::Vector3 target = offset + render::Vector3(scene.configuration().environment.target);
+  const std::optional<ImVec2> at = seen_at(area, camera, target);
+  const float text = ImGui::GetFontSize(), radius = 0.5f * text;
+  if (!at || !handle_button("##target", *at, radius, area)) return;
+  log.item("target.handle");
+  const bool active = ImGui::IsItemActive(), ended = ImGui::IsItemDeactivated();
+  if (!active) tooltip("drag: the target moves, level with itself; with Shift up and down");
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect(area.low, area.high);
+  draw_handle(*at, radius, active || ImGui::IsItemHovered() ? palette().accent : palette().warning);
+  list.PopClipRect();
+  end_handle_button();
+  if (ended) scene.end_edit();
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!active || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
+  const render::Ray ray = camera.ray(io.MousePos.x - area.low.x, io.MousePos.y - area.low.y,
+                                     static_cast<int>(area.width()), static_cast<int>(area.height()));
+  // The plane in which it moves: level, or upright and facing the camera.
+  const render::Vector3 back = camera.eye - target;
+  const render::Vector3 normal = io.KeyShift ? render::Vector3(back.x, back.y, 0) : render::Vector3(0, 0, 1);
+  const float along = normal.dot(target - ray.origin) / normal.dot(ray.direction);
+  // Beyond some distance, a ray that is nearly level with the plane meets it too far away.
+  if (!(along > 0) || along > 4 * back.norm()) return;
+  const render::Vector3 wanted = ray.origin + along * ray.direction - offset;
+  Configuration configuration = scene.configuration();
+  Vec3& moved = configuration.environment.target;
+  if (io.KeyShift)
+    moved.z = wanted.z;
+  else
+    moved = {wanted.x, wanted.y, moved.z};
+  scene.set_configuration(configuration);
 }
 
 void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks, EventLog& log,

@@ -40,6 +40,15 @@ class CutHandle {
             EventLog& log) const;
 };
 
+// A handle in the view that moves the target that brains seek.
+class TargetHandle {
+ public:
+  // Draws the handle on the target of the first selected robot that seeks it, or of the first one that is visible; none
+  // in cells, which have no place for it. The mouse moves it level with itself, with Shift up and down, and robots
+  // follow at once. Call it as CutHandle::draw().
+  void draw(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log) const;
+};
+
 // Marks the culprit spring of each robot that exploded. Drawn over the view, so that nothing hides it.
 struct ExplosionMarks {
   std::optional<RobotId> chosen;                 // shown with details; the others only with their names

@@ -11,6 +11,10 @@ from window_case import SAMPLES, WindowCase, main, numpy
 from window_driver import SIZE
 
 
+def near(place, item):
+    return (place[0] - item["x"]) ** 2 + (place[1] - item["y"]) ** 2 < 50 ** 2
+
+
 LEFT = ["Robots", "Browser", "Ranking", "Evolution", "Compare"]
 RIGHT = ["View", "Tune", "Measure", "Video", "Messages", "Stats"]
 
@@ -153,6 +157,37 @@ class PanelsTest(WindowCase):
         for x, y in moved["where"]:
             x, y = round(x), round(y)
             self.assertGreater(changed[max(0, y - 60):y + 60, max(0, x - 60):x + 60].sum(), 20, "each robot is cut elsewhere now")
+        self.finish(window)
+
+    def test_a_robot_swims_to_the_target_that_the_mouse_moves(self):
+        window = self.open(str(SAMPLES.parent / "hunter.json"), "--paused", "--target", "1,1,0")
+        before = window.frame(lambda frame: frame["target"] == [1, 1, 0])
+        self.assertEqual(before["layout"], "grid", "cells have no place for a target")
+
+        def drag(right, up):
+            x, y = map(round, window.place("target.handle"))
+            window.do("mousemove", x, y)
+            window.frame()
+            window.do("mousedown", 1)
+            window.frame()
+            for step in range(1, 5):
+                window.do("mousemove", x + right * step, y - up * step)
+                window.frame()
+            window.do("mouseup", 1)
+            return window.frame()["target"]
+
+        level = drag(-15, 8)
+        self.assertEqual(level[2], 0)
+        self.assertGreater(abs(level[0] - 1) + abs(level[1] - 1), 0.3)
+        window.do("keydown", "shift")
+        raised = drag(0, 6)
+        window.do("keyup", "shift")
+        self.assertEqual(raised[:2], level[:2])
+        self.assertGreater(raised[2], 0.05)
+        window.key("ctrl+z")  # each drag is one edit
+        window.frame(lambda frame: frame["target"] == level)
+        window.key("space")
+        window.frame(lambda frame: near(frame["where"][0], window.items["target.handle"]))
         self.finish(window)
 
     def test_a_message_has_a_bar_in_the_color_of_its_tone(self):
