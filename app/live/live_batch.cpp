@@ -152,6 +152,14 @@ void LiveBatch::take_positions(SnapshotPositions& positions) {
   simulation_.read_positions(positions.set_on_host(masses));
 }
 
+std::optional<BrainActivity> LiveBatch::brain_of(RobotId robot) const {
+  const auto index = robots()->index_of(robot);
+  if (!index || !robots()->robots[*index].robot->brain) return std::nullopt;
+  BrainState state = simulation_.brain_state(*index);
+  state.senses.resize(brain_layout(*robots()->robots[*index].robot).senses.size());  // without older samples
+  return BrainActivity{robot, std::move(state.senses), std::move(state.neurons)};
+}
+
 std::shared_ptr<Snapshot> LiveBatch::snapshot(bool with_velocities) {
   std::shared_ptr<Snapshot> next = pool_.take();
   next->robots = robots();
@@ -168,6 +176,7 @@ std::shared_ptr<Snapshot> LiveBatch::snapshot(bool with_velocities) {
   next->perturbations.clear();
   for (const LivePerturbation& perturbation : perturbations_)
     if (!population_.perturbations_of({&perturbation, 1}).empty()) next->perturbations.push_back(perturbation);
+  next->brain.reset();
   next->second.reset();
   next->ghosts.reset();
   next->timeline = {};

@@ -65,6 +65,8 @@ class LiveBatch {
   void set_bridge(std::shared_ptr<PositionBridge> bridge) { bridge_ = std::move(bridge); }  // null = to the host
   // All but who plays and how fast.
   std::shared_ptr<Snapshot> snapshot(bool with_velocities);
+  // Of a robot that has a brain; else nothing.
+  std::optional<BrainActivity> brain_of(RobotId robot) const;
 
  private:
   void observe_details();

@@ -30,11 +30,17 @@ LiveScene::LiveScene(const LiveSceneOptions& options) : parts_(std::make_unique<
 
 LiveScene::~LiveScene() = default;
 
+void LiveScene::watch_brain(RobotId robot) {
+  parts_->brain_frames = 30;
+  if (robot != parts_->watched_brain) parts_->physics.watch_brain(parts_->watched_brain = robot);
+}
+
 void LiveScene::frame(float aspect) {
   Parts& parts = *parts_;
   if (std::isfinite(aspect) && aspect > 0) parts.aspect = aspect;
   parts.background.finish_done();
   if (parts.described > 0 && --parts.described == 0) parts.physics.watch_velocities(false);
+  if (parts.brain_frames > 0 && --parts.brain_frames == 0) parts.physics.watch_brain(parts.watched_brain = 0);
   parts.snapshot = parts.physics.newest();
   parts.goes_on = parts.goes_on && parts.snapshot->timeline.viewing;
   if (parts.snapshot->stops != parts.stops) {

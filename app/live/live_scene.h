@@ -259,6 +259,9 @@ class LiveScene {
   // express.
   CommandText command(const std::string& subcommand = "view") const;
 
+  // Until some frames without a call, snapshots have the activity of this robot's brain.
+  void watch_brain(RobotId robot);
+
   // Measures.
   Series series(RobotId robot) const;
   Series second_series(RobotId robot) const;  // empty if there is no second side

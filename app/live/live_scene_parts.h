@@ -145,6 +145,8 @@ struct LiveScene::Parts {
   TimelineMarks marks;
   bool goes_on = false;  // the moment shown becomes the present; physics has not done so yet
   std::uint64_t last_surroundings = 0;
+  RobotId watched_brain = 0;
+  int brain_frames = 0;       // until snapshots stop reading it
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 
   Background background;  // last: its tasks end before the members that they use

@@ -36,14 +36,15 @@ struct PendingCommands {
   std::optional<std::optional<SideDifference>> difference;
   std::optional<std::vector<LiveRobot>> ghosts;
   std::optional<std::size_t> timeline_budget;
+  std::optional<RobotId> brain;
   std::int64_t steps = 0, steps_back = 0;
   bool drop_steps = false, reset = false, go_on = false, quit = false;
   std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
 
   bool any() const {
     return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || seek || seek_first ||
-           loop || difference || ghosts || timeline_budget || steps > 0 || steps_back > 0 || reset || go_on || quit ||
-           ticket > 0;
+           loop || difference || ghosts || timeline_budget || brain || steps > 0 || steps_back > 0 || reset || go_on ||
+           quit || ticket > 0;
   }
   // Forgets the moments that were asked for.
   void drop_timeline() {
@@ -157,6 +158,7 @@ struct PhysicsThread::Parts {
   RecordingPlayer recording{batch, stepping};
   ReproPlayer repro{batch};
   std::set<std::string> reported_notes;
+  RobotId watched_brain = 0;
   bool stop_at_explosion = false;
   bool dirty = true;   // something changed after the last snapshot
   std::thread thread;  // last: it starts when all other members exist
@@ -292,6 +294,9 @@ const Measurements& PhysicsThread::second_measurements() const { return parts_->
 const Measurements& PhysicsThread::ghost_measurements() const { return parts_->comparison.ghost_measurements(); }
 
 void PhysicsThread::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
+void PhysicsThread::watch_brain(RobotId robot) {
+  parts_->exchange.request([&](PendingCommands& pending) { pending.brain = robot; });
+}
 
 std::shared_ptr<const Snapshot> PhysicsThread::newest() { return parts_->exchange.newest(); }
 std::vector<Explosion> PhysicsThread::take_explosions() { return parts_->explosions.take(); }
@@ -350,6 +355,7 @@ void PhysicsThread::Parts::carry_out(PendingCommands& taken) {
   }
   if (taken.view) batch.watch(*taken.view);
   if (taken.view) comparison.watch(*taken.view);
+  if (taken.brain) watched_brain = *taken.brain;
   if (taken.difference) comparison.set_second(*taken.difference);
   if (taken.ghosts) comparison.set_ghosts(std::move(*taken.ghosts));
   if (taken.scene && taken.scene->recording)
@@ -571,6 +577,7 @@ void PhysicsThread::Parts::publish_snapshot() {
   const bool with_velocities = !stepping.playing() || velocities_wanted || exchange.is_awaited();
   std::shared_ptr<Snapshot> next = batch.snapshot(with_velocities);
   next->timeline = timeline.state();
+  if (!recording.is_open() && watched_brain != 0) next->brain = batch.brain_of(watched_brain);
   if (recording.is_open()) {
     next->timeline.viewing = next->timeline.recording = true;
     next->timeline.begin = recording.begin();

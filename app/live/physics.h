@@ -108,6 +108,9 @@ class PhysicsThread {
   // have them, too.
   void watch_velocities(bool watch);
 
+  // Snapshots have the activity of this robot's brain, unless a recording is played; 0 = of none.
+  void watch_brain(RobotId robot);
+
   // Returns the newest snapshot, never null, and requests the next one.
   std::shared_ptr<const Snapshot> newest();
   // Returns the explosions since the last call, and the robots that came back exploded.

@@ -103,6 +103,12 @@ struct TimelineState {
   std::size_t bytes = 0, budget = 0, keyframes = 0;  // of memory: used, at most
 };
 
+// What a brain felt and did when it thought last, in the order of BrainLayout.
+struct BrainActivity {
+  RobotId robot = 0;
+  std::vector<float> senses, neurons;
+};
+
 struct Snapshot {
   std::shared_ptr<const LiveRobots> robots;
   Configuration configuration;
@@ -115,6 +121,7 @@ struct Snapshot {
   SnapshotPositions positions;       // [m], of all masses; robot i starts at robots->mass_offsets[i]; in its own frame
   std::vector<Vec3> velocities;      // [m/s], as many; empty while robots play, unless requested
   std::vector<Telemetry> telemetry;  // per robot
+  std::optional<BrainActivity> brain;  // of the robot that is watched (PhysicsThread::watch_brain())
   SceneDetails details;
   const ColorQuantity* color = &material_color();  // the quantity in details.values
   std::vector<LivePerturbation> perturbations;

@@ -6,7 +6,7 @@ namespace mercury::window {
 // Each is in NAME_panel.cpp.
 using MakePanel = std::unique_ptr<Panel>(PanelContext& context);
 MakePanel make_robots_panel, make_browser_panel, make_ranking_panel, make_evolution_panel, make_compare_panel,
-    make_view_panel, make_tune_panel, make_measure_panel, make_video_panel, make_messages_panel, make_stats_panel;
+    make_view_panel, make_tune_panel, make_measure_panel, make_brain_panel, make_video_panel, make_messages_panel, make_stats_panel;
 
 namespace {
 
@@ -19,6 +19,7 @@ constexpr PanelEntry table[] = {
     {"View", "colors, arrows, camera, appearance", Side::right, make_view_panel},
     {"Tune", "solver, environment, materials", Side::right, make_tune_panel},
     {"Measure", "plots over time", Side::right, make_measure_panel},
+    {"Brain", "senses, neurons and muscles of a robot that thinks", Side::right, make_brain_panel},
     {"Video", "videos and screenshots", Side::right, make_video_panel},
     {"Messages", "everything that the window has reported", Side::right, make_messages_panel},
     {"Stats", "speed of the physics and of drawing", Side::right, make_stats_panel},

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
+#include "mercury/samples.h"
 #include "tests/app/live/live_scene_setup.h"
 
 namespace mercury {
@@ -174,6 +176,31 @@ TEST(LiveScene, TunedMaterialsActAsInTheSimulation) {
   scene.reset_materials(ids);
   EXPECT_FALSE(scene.entries()[0].tuned);
   EXPECT_TRUE(std::ranges::equal(scene.materials(ids[0]), default_materials()));
+}
+
+TEST(LiveScene, WatchedBrainIsThatOfTheSimulation) {
+  const Robot hunter = load_robot(sample_or_path("sample:hunter"));
+  LiveSceneOptions options = on_cpu();
+  options.configuration.environment.target = {-2, 3, 0};
+  LiveScene scene(options);
+  make_robots(scene, 1);
+  scene.add({hunter});
+  scene.step(150);
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().brain.has_value());
+  scene.watch_brain(ids_of(scene)[1]);
+  scene.wait_until_done();
+  ASSERT_TRUE(scene.snapshot().brain.has_value());
+  Simulation simulation(scene.configuration(), {&hunter, 1});
+  simulation.step(150);
+  const BrainState expected = simulation.brain_state(0);
+  EXPECT_EQ(scene.snapshot().brain->robot, ids_of(scene)[1]);
+  EXPECT_EQ(scene.snapshot().brain->neurons, expected.neurons);
+  EXPECT_TRUE(std::ranges::equal(scene.snapshot().brain->senses,
+                                 std::span(expected.senses).first(brain_layout(hunter).senses.size())));
+  scene.watch_brain(ids_of(scene)[0]);  // it has none
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().brain.has_value());
 }
 
 TEST(LiveScene, SelectionKeepsItsOrderAndForgetsRemovedRobots) {

@@ -16,7 +16,7 @@ def near(place, item):
 
 
 LEFT = ["Robots", "Browser", "Ranking", "Evolution", "Compare"]
-RIGHT = ["View", "Tune", "Measure", "Video", "Messages", "Stats"]
+RIGHT = ["View", "Tune", "Measure", "Brain", "Video", "Messages", "Stats"]
 
 
 class PanelsTest(WindowCase):
@@ -188,6 +188,28 @@ class PanelsTest(WindowCase):
         window.frame(lambda frame: frame["target"] == level)
         window.key("space")
         window.frame(lambda frame: near(frame["where"][0], window.items["target.handle"]))
+        self.finish(window)
+
+    def test_a_brain_is_watched(self):
+        window = self.small("--paused")
+        window.click("tab.Brain")
+        since = window.mark()
+        window.click("brain.sample")  # neither of the two robots has one
+        window.wait("robots", since, lambda event: event["names"] == ["eel", "fish", "hunter"])
+        x, y = window.place("brain.graph")
+        window.place("brain.plot")
+        window.key("space")
+        window.frame(lambda frame: frame["time"] > 0.2)
+        before = window.screenshot()
+        window.frame(lambda frame: frame["time"] > 0.4)
+        after = window.screenshot()
+        changed = numpy.abs(after - before).max(axis=2) > 0.05
+        self.assertGreater(changed[y - 80:y + 80, x - 100:x + 100].sum(), 50, "the graph shows what neurons do")
+        since = window.mark()
+        window.do("mousemove", x - 42, y)  # the neuron that turns, in the second of four columns
+        window.frame()
+        window.do("click", 1)
+        window.wait("brain", since, lambda event: event["node"] == "turn 0" and event["plotted"] == 4)
         self.finish(window)
 
     def test_a_message_has_a_bar_in_the_color_of_its_tone(self):

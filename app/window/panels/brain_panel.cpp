@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a robot's brain feels and does: its senses, neurons and muscles as a graph with live values, and plots of them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/window/panels/commands.h"
+#include "app/window/panels/panel.h"
+#include "app/window/toolkit/plot.h"
+#include "app/window/toolkit/theme.h"
+#include "app/window/toolkit/widgets.h"
+#include "mercury/brain.h"
+#include "mercury/samples.h"
+#include "mercury/shared_array.h"
+
+namespace mercury::window {
+
+class BrainPanel : public Panel {
+ public:
+  void draw(PanelContext& context) override;
+
+ private:
+  // A sense, a neuron or a muscle, by its number in all of them.
+  struct Node {
+    std::string name;
+    ImVec2 at{0, 0};     // in the graph [0, 1]
+    std::size_t column;  // of the graph
+  };
+  struct Edge {
+    std::size_t from, to;
+    float weight;
+  };
+  // The graph of one brain.
+  struct Graph {
+    std::vector<Node> nodes;  // senses, then neurons, then driven actuators
+    std::vector<Edge> edges;
+    std::size_t senses = 0, neurons = 0, weights = 0;
+    float largest = 0;  // |weight|
+    std::vector<std::uint32_t> outputs;
+  };
+  static Graph graph_of(const Robot& robot);
+  float value_of(const BrainActivity& now, std::size_t node) const;
+  void follow(const Snapshot& snapshot, RobotId robot);
+  void draw_graph(const BrainActivity& now, EventLog& log);
+  void draw_plots(PanelContext& context);
+
+  std::shared_ptr<const Robot> body_;  // whose graph it is
+  Graph graph_;
+  std::set<std::size_t> plotted_;  // nodes
+  std::deque<std::pair<double, std::vector<float>>> history_;
+  PlotView view_;
+};
+
+namespace {
+
+constexpr std::size_t max_history = 2000;  // samples
+constexpr std::size_t max_edges = 800;     // in the graph; of larger brains, those of the node under the mouse
+constexpr std::size_t max_plotted = 10;    // the number of category colors
+
+// The first selected robot that has a brain, or the first of all.
+std::optional<RobotId> thinking_robot(const LiveScene& scene) {
+  const auto thinks = [&](RobotId id) {
+    const DocumentRobot* robot = scene.document().find(id);
+    return robot && robot->body.robot->brain;
+  };
+  for (const RobotId id : scene.selection())
+    if (thinks(id)) return id;
+  for (const DocumentRobot& robot : scene.document().robots)
+    if (robot.body.robot->brain) return robot.body.id;
+  return std::nullopt;
+}
+
+// A column's nodes from top to bottom.
+float height_of(std::size_t index, std::size_t count) {
+  return (static_cast<float>(index) + 0.5f) / static_cast<float>(count);
+}
+
+}  // namespace
+
+BrainPanel::Graph BrainPanel::graph_of(const Robot& robot) {
+  const BrainLayout layout = brain_layout(robot);
+  const std::vector<Actuator> actuators = actuators_of(robot);
+  const Brain& brain = *robot.brain;
+  const std::size_t copies = brain.per_actuator ? actuators.size() : 1;
+  Graph graph{.senses = layout.senses.size(),
+              .neurons = layout.neurons.size(),
+              .weights = layout.weights,
+              .outputs = layout.outputs};
+  const std::size_t columns = brain.layers.size() + 2;
+  const auto add = [&](const std::string& name, std::size_t column, std::size_t index, std::size_t count) {
+    const float x = static_cast<float>(column) / static_cast<float>(columns - 1);
+    graph.nodes.push_back({name, {x, height_of(index, count)}, column});
+  };
+  for (std::size_t i = 0; i < layout.senses.size(); ++i) add(layout.senses[i], 0, i, layout.senses.size());
+  // Where a layer's neurons begin: all copies of a layer come before the next layer.
+  std::vector<std::size_t> first;
+  for (std::size_t l = 0, neuron = 0; l < brain.layers.size(); ++l) {
+    first.push_back(neuron);
+    const std::size_t count = brain.layers[l].neurons * copies;
+    for (std::size_t i = 0; i < count; ++i) add(layout.neurons[neuron++], l + 1, i, count);
+  }
+  for (std::size_t i = 0; i < layout.driven.size(); ++i)
+    add(actuators[layout.driven[i]].name, columns - 1, i, layout.driven.size());
+
+  const std::size_t own_senses = layout.senses.size() / copies;
+  const auto connect = [&](std::size_t l, std::size_t copy, const NeuronInput& input) {
+    std::size_t from = copy * own_senses, width = own_senses;
+    for (std::size_t k = 0; k < brain.layers.size(); ++k)
+      if (brain.layers[k].name == input.from) {
+        width = brain.layers[k].neurons;
+        from = graph.senses + first[k] + copy * width;
+      }
+    const std::size_t to = graph.senses + first[l] + copy * brain.layers[l].neurons;
+    for (const NeuronEdge& edge : input.edges) graph.edges.push_back({from + edge.from, to + edge.to, edge.weight});
+    for (std::size_t i = 0; i < input.weights.size(); ++i)
+      graph.edges.push_back({from + i % width, to + i / width, input.weights[i]});
+  };
+  for (std::size_t l = 0; l < brain.layers.size(); ++l)
+    for (std::size_t copy = 0; copy < copies; ++copy)
+      for (const NeuronInput& input : brain.layers[l].inputs) connect(l, copy, input);
+  std::erase_if(graph.edges, [](const Edge& edge) { return edge.weight == 0; });
+  for (const Edge& edge : graph.edges) graph.largest = std::max(graph.largest, std::abs(edge.weight));
+  if (graph.largest == 0) graph.largest = 1;
+  for (std::size_t i = 0; i < layout.outputs.size(); ++i)
+    graph.edges.push_back({graph.senses + layout.outputs[i], graph.senses + graph.neurons + i, graph.largest});
+  return graph;
+}
+
+float BrainPanel::value_of(const BrainActivity& now, std::size_t node) const {
+  if (node < graph_.senses) return now.senses[node];
+  if (node < graph_.senses + graph_.neurons) return now.neurons[node - graph_.senses];
+  return std::clamp(now.neurons[graph_.outputs[node - graph_.senses - graph_.neurons]], -1.0f, 1.0f);
+}
+
+// Keeps the last values, from the moment the robot was chosen or time went back.
+void BrainPanel::follow(const Snapshot& snapshot, RobotId robot) {
+  const std::shared_ptr<const Robot>& body = snapshot.robots->robots[*snapshot.robots->index_of(robot)].robot;
+  if (body != body_) {
+    body_ = body;
+    graph_ = graph_of(*body);
+    history_.clear();
+    plotted_.clear();
+    for (std::size_t i = 0; i < std::min<std::size_t>(graph_.outputs.size(), 3); ++i)
+      plotted_.insert(graph_.senses + graph_.neurons + i);
+  }
+  while (!history_.empty() && history_.back().first > snapshot.time) history_.pop_back();
+  if (!history_.empty() && history_.back().first == snapshot.time) return;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < graph_.nodes.size(); ++i) values.push_back(value_of(*snapshot.brain, i));
+  history_.emplace_back(snapshot.time, std::move(values));
+  if (history_.size() > max_history) history_.pop_front();
+}
+
+void BrainPanel::draw(PanelContext& context) {
+  const std::optional<RobotId> robot = thinking_robot(context.scene);
+  if (!robot) {
+    note("No robot of the scene has a brain. sample:hunter has one: it seeks the target.");
+    static const bool has_sample = std::ranges::count(sample_names(), "sample:hunter") > 0;
+    if (has_sample && ImGui::Button("Open a hunter")) context.scene.open({sample_or_path("sample:hunter")});
+    context.log.item("brain.sample");
+    return;
+  }
+  context.scene.watch_brain(*robot);
+  const Snapshot& snapshot = context.scene.snapshot();
+  heading(name_of_robot(context.scene, *robot).c_str());
+  if (!snapshot.brain || snapshot.brain->robot != *robot || !snapshot.robots->index_of(*robot)) {
+    note(snapshot.timeline.recording ? "A recording has no activity of brains." : "...");
+    return;
+  }
+  follow(snapshot, *robot);
+  note(fmt::format("thinks every {:.3g} ms: {} senses, {} neurons, {} weights",
+                   1000 * static_cast<double>(body_->brain->period), graph_.senses, graph_.neurons, graph_.weights)
+           .c_str());
+  draw_graph(*snapshot.brain, context.log);
+  draw_plots(context);
+}
+
+void BrainPanel::draw_graph(const BrainActivity& now, EventLog& log) {
+  const float text = ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
+  std::vector<std::size_t> counts(graph_.nodes.empty() ? 1 : graph_.nodes.back().column + 1);
+  for (const Node& node : graph_.nodes) ++counts[node.column];
+  const auto most = static_cast<float>(std::ranges::max(counts));
+  const float height = std::clamp(1.3f * text * most, 10 * text, 24 * text);
+  const float radius = std::clamp(0.4f * height / most, 0.12f * text, 0.42f * text), margin = 0.6f * text;
+  const ImVec2 low = ImGui::GetCursorScreenPos();
+  const auto place = [&](const Node& node) {
+    return ImVec2(low.x + margin + node.at.x * (width - 2 * margin), low.y + node.at.y * height);
+  };
+  ImGui::InvisibleButton("graph", {width, height});
+  log.item("brain.graph");
+  const bool over = ImGui::IsItemHovered(), clicked = ImGui::IsItemClicked();
+  std::optional<std::size_t> near;
+  float nearest = 1.5f * text * 1.5f * text;
+  for (std::size_t i = 0; over && i < graph_.nodes.size(); ++i) {
+    const ImVec2 at = place(graph_.nodes[i]), mouse = ImGui::GetIO().MousePos;
+    const float squared = (at.x - mouse.x) * (at.x - mouse.x) + (at.y - mouse.y) * (at.y - mouse.y);
+    if (squared < nearest) nearest = squared, near = i;
+  }
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  // Lines carry what flows: weight times the value at its beginning.
+  for (const Edge& edge : graph_.edges) {
+    const bool marked = near && (edge.from == *near || edge.to == *near);
+    if (!marked && (near || graph_.edges.size() > max_edges)) continue;
+    // By the square root, so that small weights beside a large one are seen.
+    const float share = std::copysign(std::sqrt(std::abs(edge.weight / graph_.largest)), edge.weight);
+    const float flow = share * std::tanh(value_of(now, edge.from));
+    const float opacity = std::clamp(0.15f + 0.8f * std::abs(flow), 0.0f, 1.0f);
+    list.AddLine(place(graph_.nodes[edge.from]), place(graph_.nodes[edge.to]),
+                 packed(render::color_at(render::Colormap::diverging, flow, -1, 1), opacity),
+                 (0.05f + 0.1f * std::abs(share)) * text);
+  }
+  for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
+    const ImVec2 at = place(graph_.nodes[i]);
+    const float value = value_of(now, i);
+    list.AddCircleFilled(at, radius, packed(render::color_at(render::Colormap::diverging, std::tanh(value), -1, 1)));
+    if (plotted_.contains(i)) list.AddCircle(at, radius + 0.12f * text, palette().accent, 0, 0.12f * text);
+  }
+  if (near) {
+    const Node& node = graph_.nodes[*near];
+    ImGui::SetTooltip("%s: %.3g\nclick: plot it", node.name.c_str(), static_cast<double>(value_of(now, *near)));
+    if (clicked && !plotted_.erase(*near) && plotted_.size() < max_plotted) plotted_.insert(*near);
+    if (clicked) log.write("brain", {{"node", node.name}, {"plotted", plotted_.size()}});
+  }
+  note("senses on the left, layers, muscles on the right; blue is negative, red positive");
+}
+
+void BrainPanel::draw_plots(PanelContext& context) {
+  if (plotted_.empty()) return;
+  std::vector<double> times;
+  for (const auto& [time, values] : history_) times.push_back(time);
+  std::deque<std::vector<double>> columns;
+  std::vector<PlotLine> lines;
+  for (const std::size_t node : plotted_) {
+    columns.emplace_back();
+    for (const auto& [time, values] : history_) columns.back().push_back(static_cast<double>(values[node]));
+    lines.push_back(
+        {graph_.nodes[node].name, render::category_color(static_cast<int>(lines.size())), times, columns.back()});
+  }
+  view_.begin_frame();
+  view_.mark = context.scene.drawn().scene().time;
+  plot("brain", {.title = "activity", .height = 9 * ImGui::GetFontSize()}, lines, &view_);
+  context.log.item("brain.plot");
+  plot_legend(lines);
+}
+
+std::unique_ptr<Panel> make_brain_panel(PanelContext&) { return std::make_unique<BrainPanel>(); }
+
+}  // namespace mercury::window
