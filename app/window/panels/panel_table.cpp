@@ -6,7 +6,8 @@ namespace mercury::window {
 // Each is in NAME_panel.cpp.
 using MakePanel = std::unique_ptr<Panel>(PanelContext& context);
 MakePanel make_robots_panel, make_browser_panel, make_ranking_panel, make_evolution_panel, make_compare_panel,
-    make_view_panel, make_tune_panel, make_measure_panel, make_brain_panel, make_video_panel, make_messages_panel, make_stats_panel;
+    make_view_panel, make_tune_panel, make_measure_panel, make_brain_panel, make_video_panel, make_messages_panel,
+    make_stats_panel;
 
 namespace {
 

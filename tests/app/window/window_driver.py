@@ -118,11 +118,6 @@ class Window:
     def do(self, *commands):
         subprocess.run(["xdotool", *map(str, commands)], env=self.environment, check=True, stdout=subprocess.DEVNULL)
 
-    def script(self, lines):
-        """Runs many xdotool commands in one process."""
-        subprocess.run(["xdotool", "-"], input="\n".join(lines) + "\n", text=True, env=self.environment, check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
     def place(self, item):
         """Where an item is, once it has stood there for a whole frame: a menu's first frame is hidden and takes no click."""
         self.until(f"item {item}", lambda: item in self.items and self.frames >= self.items[item]["frames"] + 2)
@@ -137,6 +132,29 @@ class Window:
         self.do("click", 1)
         # Press and release take one frame each; their effect shows in the next one.
         self.frame()
+        self.frame()
+
+    def drag(self, *places, held=(), at_release=()):
+        """Drags the left button along places, with keys held; each action waits until the window has drawn what it did."""
+        self.hold(*places, held=held)
+        for key in at_release:
+            self.act("keydown", key)
+        self.act("mouseup", 1)
+        for key in (*at_release, *held):
+            self.act("keyup", key)
+
+    def hold(self, *places, held=()):
+        """The beginning of a drag: the button stays down."""
+        self.act("mousemove", *map(round, places[0]))
+        for key in held:
+            self.act("keydown", key)
+        self.act("mousedown", 1)
+        for place in places[1:]:
+            self.act("mousemove", *map(round, place))
+
+    def act(self, *command):
+        self.do(*command)
+        self.frame()  # begun before the command, perhaps
         self.frame()
 
     def choose_next(self, combo):

@@ -316,7 +316,7 @@ class PanelsTest(WindowCase):
         window.wait("panel", 0, lambda event: event["name"] == "Tune")
         x, y = window.place("view")
         edge = int(x + window.items["view"]["width"] / 2)
-        window.script([f"mousemove {edge} {y}", "sleep 0.2", "mousedown 1", "sleep 0.2", f"mousemove {edge - 60} {y}", "sleep 0.2", "mouseup 1"])
+        window.drag((edge, y), (edge - 60, y))
         width = window.until("a wider column", lambda: window.items["panel.Tune"]["width"] if
                              abs(edge - 60 - window.items["view"]["x"] - window.items["view"]["width"] / 2) < 3 else 0)
         window.key("3", "b", "t")

@@ -56,8 +56,7 @@ class PlaybackTest(WindowCase):
         window = self.small("--paused")
         before = window.frame()
         x, y = window.place("view")
-        window.script([f"mousemove {x} {y + 150}", "sleep 0.2", "mousedown 1", "sleep 0.1",
-                       *(f"mousemove {x + 8 * i} {y + 150}\nsleep 0.03" for i in range(12)), "mouseup 1"])
+        window.drag(*((x + 8 * i, y + 150) for i in range(12)))
         turned = window.frame(lambda frame: abs(frame["azimuth"] - before["azimuth"]) > 0.1)
         window.do("click", 4)
         window.frame(lambda frame: frame["distance"] < 0.95 * turned["distance"])
@@ -68,12 +67,13 @@ class PlaybackTest(WindowCase):
         window.frame(lambda frame: len(frame["where"]) == 2)
         window.key("minus", "minus", "minus")
         x, y = map(round, window.frame()["where"][0])
-        window.script([f"mousemove {x} {y}", "sleep 0.3", "keydown ctrl", "sleep 0.1", "mousedown 1"])
+        window.hold((x, y), held=["Control_L"])
         pulled = window.wait("pull")
-        window.script([f"mousemove {x + 6 * i} {y - 6 * i}\nsleep 0.02" for i in range(1, 20)])
+        for i in range(2, 20, 2):
+            window.act("mousemove", x + 6 * i, y - 6 * i)
         time = window.frame()["time"]
         window.frame(lambda frame: frame["time"] > time + 0.15)
-        window.script(["mouseup 1", "keyup ctrl"])
+        window.do("mouseup", 1, "keyup", "Control_L")
         released = window.wait("pulled")
         self.assertGreater(released["force"], 1)
         moved = numpy.linalg.norm(numpy.subtract(released["at"], pulled["at"]))

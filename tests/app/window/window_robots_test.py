@@ -78,8 +78,7 @@ class RobotsTest(WindowCase):
         high = [max(p[i] for p in left) + 15 for i in (0, 1)]
         inside = sum(low[0] <= x <= high[0] and low[1] <= y <= high[1] for x, y in places)
         since = window.mark()
-        window.script([f"mousemove {low[0]:.0f} {low[1]:.0f}", "keydown Shift_L", "mousedown 1", "sleep 0.2",
-                       f"mousemove {high[0]:.0f} {high[1]:.0f}", "sleep 0.2", "mouseup 1", "keyup Shift_L"])
+        window.drag(low, high, held=["Shift_L"])
         self.assertEqual(window.wait("box", since)["selected"], inside)
         window.key("ctrl+i")
         window.frame(lambda frame: frame["selected"] == 6 - inside)
@@ -186,8 +185,7 @@ class RobotsTest(WindowCase):
         window = self.small("--paused")
         x, y = map(round, self.still(window)[0])
         since = window.mark()
-        window.script([f"mousemove {x} {y}", "keydown Control_L", "mousedown 1", "sleep 0.3", f"mousemove {x + 80} {y}", "sleep 0.3",
-                       "keydown Shift_L", "mouseup 1", "sleep 0.1", "keyup Shift_L", "keyup Control_L"])
+        window.drag((x, y), (x + 80, y), held=["Control_L"], at_release=["Shift_L"])
         self.assertTrue(window.wait("pulled", since)["stays"])
         window.frame(lambda frame: frame["attached"] == 1)
         window.key("w")

@@ -169,7 +169,7 @@ class ToolsTest(WindowCase):
         x, y = window.place("view")
         window.do("mousemove", x, y - 150, "click", 4)
         window.until("zoom known", lambda: "gesture.zoom" not in window.items)
-        window.script([f"mousemove {x} {y - 150}", "mousedown 1", "sleep 0.1", f"mousemove {x + 60} {y - 150}", "sleep 0.1", "mouseup 1"])
+        window.drag((x, y - 150), (x + 60, y - 150))
         window.until("turn known", lambda: "gesture.turn" not in window.items)
         self.assertIn("gesture.pull a mass", window.items)
         self.finish(window)
