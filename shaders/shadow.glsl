@@ -8,9 +8,9 @@ layout(binding = 2) uniform sampler2D shadow_depths;
 #define SHADOW_TAPS 8
 #endif
 
-// The i-th of n points spread over the unit disc (golden-angle spiral), rotated by `turn`.
-vec2 disc_point(int i, int n, float turn) {
-  float angle = 2.39996323 * float(i) + turn;
+// The i-th of n points spread over the unit disc (golden-angle spiral). Constant once loops are unrolled.
+vec2 disc_point(int i, int n) {
+  float angle = 2.39996323 * float(i);
   return sqrt((float(i) + 0.5) / float(n)) * vec2(cos(angle), sin(angle));
 }
 
@@ -22,12 +22,17 @@ float key_visibility(vec3 point, vec3 normal, float noise) {
   if (any(lessThan(on_map, vec3(0.0))) || any(greaterThan(on_map.xy, vec2(1.0)))) return 1.0;
   float receiver = min(on_map.z, 1.0) * frame.shadow_size.y;
   float beyond = max(0.0, on_map.z - 1.0) * frame.shadow_size.y;
+#if SHADOW_BLOCKERS > 0
   float turn = 6.2831853 * noise;
+#else
+  const float turn = 0.4;
+#endif
+  mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
   float search = frame.to_key.w * (0.35 * receiver + beyond) / frame.shadow_size.x;
 #if SHADOW_BLOCKERS > 0
   float blockers = 0.0, sum = 0.0;
   for (int i = 0; i < SHADOW_BLOCKERS; ++i) {
-    float d = textureLod(shadow_depths, on_map.xy + search * disc_point(i, SHADOW_BLOCKERS, turn), 0.0).r;
+    float d = textureLod(shadow_depths, on_map.xy + search * turned * disc_point(i, SHADOW_BLOCKERS), 0.0).r;
     if (d < min(on_map.z, 0.9999)) {
       blockers += 1.0;
       sum += d;
@@ -37,13 +42,12 @@ float key_visibility(vec3 point, vec3 normal, float noise) {
   float gap = receiver + beyond - sum / blockers * frame.shadow_size.y;
 #else
   float gap = 0.0;  // without a search for blockers, all edges are equally soft
-  turn = 0.4;
 #endif
   float radius = max(frame.to_key.w * gap / frame.shadow_size.x, 1.6 * texel / frame.shadow_size.x);
   // Without this, far samples would find a slanted receiver itself as a blocker.
   float reference = min(on_map.z, 0.9999) - 0.3 * radius * frame.shadow_size.x * slant / frame.shadow_size.y;
   float lit = 0.0;
   for (int i = 0; i < SHADOW_TAPS; ++i)
-    lit += textureLod(shadow_map, vec3(on_map.xy + radius * disc_point(i, SHADOW_TAPS, turn), reference), 0.0);
+    lit += textureLod(shadow_map, vec3(on_map.xy + radius * turned * disc_point(i, SHADOW_TAPS), reference), 0.0);
   return lit / float(SHADOW_TAPS);
 }

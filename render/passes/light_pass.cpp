@@ -9,7 +9,6 @@ namespace mercury::render {
 namespace {
 
 constexpr int sand_side = 512;
-constexpr int caustics_cells = 110;
 
 // 65,536 steps over the depth that the map covers are finer than its texels.
 constexpr GLenum shadow_format = GL_DEPTH_COMPONENT16;
@@ -75,7 +74,7 @@ LightPass::LightPass(const QualitySettings& settings)
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   shadow_ = comparing_view(shadow_depths_.get());
   shadow_framebuffer_ = make_framebuffer({}, shadow_depths_.get());
-  caustics_indices_.write(grid_indices(caustics_cells));
+  caustics_indices_.write(grid_indices(settings.caustics_cells));
   glVertexArrayElementBuffer(caustics_grid_.get(), caustics_indices_.get());
   caustics_framebuffer_ = make_framebuffer({caustics_.get()});
 }
@@ -92,10 +91,11 @@ void LightPass::draw_caustics() const {
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
   glUseProgram(caustics_program_.get());
-  glUniform1i(0, caustics_cells);
+  glUniform1i(0, settings_.caustics_cells);
   glUniform1f(1, float(settings_.caustics_side));
   glBindVertexArray(caustics_grid_.get());
-  glDrawElements(GL_TRIANGLES, 6 * caustics_cells * caustics_cells, GL_UNSIGNED_INT, nullptr);
+  const int cells = settings_.caustics_cells;
+  glDrawElements(GL_TRIANGLES, 6 * cells * cells, GL_UNSIGNED_INT, nullptr);
   glDisable(GL_BLEND);
   // The finest level is ragged where few rays cross, so sampling starts at the next one.
   glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 0);

@@ -36,6 +36,7 @@ QualitySettings settings_of(Quality quality) {
   if (quality == Quality::medium) {
     s.shadow_side = 2048;
     s.ground_side = 1024;
+    s.caustics_cells = 110;
     s.shadow_blockers = 8;
     s.shadow_taps = 12;
     s.skin_blockers = 5;
@@ -47,6 +48,7 @@ QualitySettings settings_of(Quality quality) {
     s.shadow_side = 4096;
     s.ground_side = 2048;
     s.caustics_side = 512;
+    s.caustics_cells = 110;
     s.shadow_blockers = 16;
     s.shadow_taps = 24;
     s.skin_blockers = 12;

@@ -13,6 +13,7 @@ struct QualitySettings {
   int shadow_side = 1024;                    // texels
   int ground_side = 512;                     // texels of the floor's light map
   int caustics_side = 320;                   // texels of a tile
+  int caustics_cells = 64;                   // of the grid of light rays that is drawn into it, per side
   int shadow_blockers = 5, shadow_taps = 8;  // of shadows on the floor
   int occlusion_taps = 7;
   int particles = 500;
