@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares Mercury with theory and experiments, and writes docs/validation.md with its plots.
 
-    PYTHONPATH=build/python python3 bench/validation                 all cases, about a minute on two cores
+    PYTHONPATH=build/python python3 bench/validation                 all cases, about two minutes on two cores
     PYTHONPATH=build/python python3 bench/validation cantilever rod  these again; the others as recorded
     PYTHONPATH=build/python python3 bench/validation --page          the page and its plots from what is recorded
 

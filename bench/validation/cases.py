@@ -6,4 +6,5 @@ import water  # noqa: F401  isort: skip
 import ground  # noqa: F401  isort: skip
 import reference  # noqa: F401  isort: skip
 import experiments  # noqa: F401  isort: skip
+import fish  # noqa: F401  isort: skip
 import programs  # noqa: F401  isort: skip
