@@ -15,7 +15,7 @@ LIBRARY = ROOT / "robots" / "library"
 sys.path[:0] = [str(LIBRARY / "animals"), str(ROOT / "bench")]
 
 from animals import ANIMALS  # noqa: E402
-from measure_animals import gait  # noqa: E402
+from measure_animals import environment_of, gait  # noqa: E402
 
 FILES = {file.stem: file for file in sorted(LIBRARY.glob("*.json"))}
 
@@ -87,6 +87,24 @@ def test_the_bell_closes_faster_than_it_opens():
     widths = np.array(widths[-200:])  # two seconds, three pulses
     assert np.mean(np.diff(widths) < 0) < 0.45
     assert np.ptp(widths) > 0.1 * widths.max()
+
+
+def test_the_dog_steps_with_each_of_its_four_legs():
+    """Each foot is off the ground at times and on it at others, and the body gets 0.25 of its length far per second."""
+    robot = mercurysim.load(FILES["dog"])
+    batch = mercurysim.Batch([robot], environment_of(robot), damping=0, device="cpu")
+    x, y, z = robot.masses.T
+    ground = z < z.min() + 1e-4
+    feet = [ground & (side * y > 0) & (end * x > 0) for side in (-1, 1) for end in (-1, 1)]
+    assert sum(feet).tolist() == ground.tolist() and min(map(sum, feet)) == 9
+    batch.step(1000)
+    begin, heights = batch.centers.numpy()[0, 0], []
+    for _ in range(400):
+        batch.step(10)
+        heights.append([float(batch.positions.numpy()[foot, 2].min()) for foot in feet])
+    lifted = np.array(heights) > 0.004
+    assert (lifted.mean(axis=0) > 0.05).all() and (lifted.mean(axis=0) < 0.8).all()
+    assert batch.centers.numpy()[0, 0] - begin > 4 * 0.25 * np.ptp(x)
 
 
 def test_the_hunter_reaches_targets_in_every_direction():

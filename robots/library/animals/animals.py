@@ -8,7 +8,7 @@ from typing import Any
 
 from drifters import pulsing_bell
 from rays import waving_wings
-from walkers import walker
+from walkers import four_legged, walker
 
 
 def jellyfish() -> dict[str, Any]:
@@ -67,4 +67,21 @@ def ant() -> dict[str, Any]:
     )
 
 
-ANIMALS: dict[str, Callable[[], dict[str, Any]]] = {"ant": ant, "jellyfish": jellyfish, "ray": ray}
+def dog() -> dict[str, Any]:
+    """It trots: a hind leg steps together with the foreleg of the other side."""
+    return four_legged(
+        "dog",
+        cell=(0.1, 0.1, 0.1),
+        trunk=(8, 2),
+        down=3,
+        gait=(0, 0.5, 0.5, 0),
+        swing=0.26,
+        lift=0.12,
+        frequency=1.35,
+        modulus=1.3e6,
+        relaxation_time=0.0026,
+        softest=0.44,
+    )
+
+
+ANIMALS: dict[str, Callable[[], dict[str, Any]]] = {"ant": ant, "dog": dog, "jellyfish": jellyfish, "ray": ray}

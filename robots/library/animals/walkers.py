@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from mesh import Mesh, Muscle, digits, document
+
+Point = tuple[int, int, int]  # of a lattice
 
 
 def walker(
@@ -25,15 +28,13 @@ def walker(
     taper: float = 0.7,  # of the feet
     nose: float = 0.6,  # of both ends of the body
 ) -> dict[str, Any]:
+    """Legs of one cell beside the body."""
     nx, ny, nz = trunk
     wide, down = leg
     solid = np.zeros((nx, ny + 2, nz + down), bool)
     solid[:, 1:-1, down:] = True
-    phase = np.full(solid.shape[:2], np.nan)
-    for first, left, turn in legs:
-        y = ny + 1 if left else 0
-        solid[first : first + wide, y, : down + 1] = True
-        phase[first : first + wide, y] = turn
+    for first, left, _ in legs:
+        solid[first : first + wide, ny + 1 if left else 0, : down + 1] = True
     grid = np.stack(np.meshgrid(*[np.arange(n + 1.0) for n in solid.shape], indexing="ij"), axis=-1)
     middle = np.array([nx / 2, ny / 2 + 1, down])
     points = (grid - middle) * cell
@@ -54,7 +55,20 @@ def walker(
                     points[i, j, l, 0] = center + (points[i, j, l, 0] - center) * shrink
     mesh = Mesh.lattice(points, solid)
     index = np.stack(np.unravel_index(mesh.used, grid.shape[:3]), axis=1)
+    muscles = leg_muscles(mesh, index, foot_of, wide, down, swing, lift, frequency)
+    return document(name, "land", mesh, muscles, modulus=modulus, relaxation_time=relaxation_time)
 
+
+def leg_muscles(
+    mesh: Mesh,
+    index: Any,  # of the mesh's points in the lattice
+    foot_of: dict[Point, tuple[float, int]],  # when a point's leg steps [turns], and cells from its leg's back
+    wide: int,
+    down: int,
+    swing: float,
+    lift: float,
+    frequency: float,
+) -> Callable[[int, int], tuple[Muscle, ...]]:
     def muscles(a: int, b: int) -> tuple[Muscle, ...]:
         (ia, ja, la), (ib, jb, lb) = (tuple(int(v) for v in index[p]) for p in (a, b))
         if la == lb or (ia, ja, la) not in foot_of or (ib, jb, lb) not in foot_of or max(la, lb) > down:
@@ -74,4 +88,76 @@ def walker(
         angle = round((math.atan2(y, x) / (2 * math.pi) - turn) % 1 * 48) / 48
         return ((round(amplitude / 0.02) * 0.02, 2 * math.pi * frequency, 2 * math.pi * (angle % 1)),)
 
-    return document(name, "land", mesh, muscles, modulus=modulus, relaxation_time=relaxation_time)
+    return muscles
+
+
+def four_legged(
+    name: str,
+    *,
+    cell: tuple[float, float, float],  # of the lattice [m]
+    trunk: tuple[int, int],  # cells between tail and neck: along and up
+    down: int,  # cells of a leg
+    gait: tuple[float, float, float, float],  # when legs step: hind left, hind right, fore left, fore right [turns]
+    swing: float,  # contraction of muscles at the front and the back of a leg
+    lift: float,  # of all of a leg
+    frequency: float,  # [Hz]
+    modulus: float,
+    relaxation_time: float,
+    taper: float = 1.0,  # of the feet
+    waist: float = 0.85,  # of the body between the legs
+    head: int = 2,  # cells along
+    tail: int = 3,
+    softest: float = 0.35,  # `softest` of document(), over E / (rho h^2)
+) -> dict[str, Any]:
+    """A back on four legs of 2 x 2 cells, with a tail and a head above it. Five cells across."""
+    nx, nz = trunk
+    first_leg, last_leg = tail, tail + nx - 2
+    shape = (tail + nx + head, 5, down + nz + 1)
+    solid = np.zeros(shape, bool)
+    solid[tail : tail + nx, :, down : down + nz] = True
+    for i in (first_leg, last_leg):
+        for j in (0, 3):
+            solid[i : i + 2, j : j + 2, :down] = True
+    solid[tail + nx - 1 :, 1:4, down + nz] = True  # neck and head
+    solid[tail + nx :, 1:4, down + nz - 1] = True
+    solid[:tail, 1:4, down + nz - 1] = True
+    grid = np.stack(np.meshgrid(*[np.arange(n + 1.0) for n in shape], indexing="ij"), axis=-1)
+    i, j, l = np.moveaxis(grid, -1, 0)
+    x = (i - tail - nx / 2) * cell[0]
+    y = (j - 2.5) * cell[1]
+    z = l * cell[2]
+    # The back is round, its middle is slimmer than shoulders and hips.
+    middle = np.cos(np.clip((i - tail - nx / 2) / nx, -0.5, 0.5) * math.pi) ** 2
+    y *= np.where(l >= down, 1 - (1 - waist) * middle, 1)
+    top = (l == down + nz) & (np.abs(j - 2.5) == 2.5)
+    y *= np.where(top, 0.8, 1)
+    z -= np.where(top, 0.25 * cell[2], 0)
+    belly = (l == down) & (i > first_leg + 2) & (i < last_leg)
+    z += np.where(belly, (1 - waist) * middle * cell[2], 0)
+    # The tail gets thinner and sinks, the snout is smaller than the neck.
+    back = np.clip((tail - i) / tail, 0, 1)
+    root = (down + nz - 0.5) * cell[2]
+    z = np.where(back > 0, root + (z - root) * (1 - 0.4 * back) - 0.8 * cell[2] * back, z)
+    y *= 1 - 0.4 * back
+    snout = np.clip((i - tail - nx) / head, 0, 1)
+    face = (down + nz) * cell[2]
+    z = np.where(snout > 0, face + (z - face) * (1 - 0.35 * snout**2), z)
+    y *= 1 - 0.35 * snout**2
+    points = np.stack([x, y, z], axis=-1)
+    foot_of: dict[Point, tuple[float, int]] = {}
+    for turn, (first, side) in zip(gait, [(first_leg, 3), (first_leg, 0), (last_leg, 3), (last_leg, 0)]):
+        for a in range(first, first + 3):
+            for b in range(side, side + 3):
+                for c in range(down + 1):
+                    share = 1 - (1 - taper) * (1 - c / down)
+                    center = np.array([(first + 1 - tail - nx / 2) * cell[0], (side - 1.5) * cell[1]])
+                    foot_of[a, b, c] = (turn, a - first)
+                    if c < down:
+                        points[a, b, c, :2] = center + (points[a, b, c, :2] - center) * share
+    mesh = Mesh.lattice(points, solid)
+    index = np.stack(np.unravel_index(mesh.used, grid.shape[:3]), axis=1)
+    muscles = leg_muscles(mesh, index, foot_of, 2, down, swing, lift, frequency)
+    return document(
+        name, "land", mesh, muscles, modulus=modulus, relaxation_time=relaxation_time,
+        softest=softest * modulus / (1070 * cell[0] ** 2),
+    )  # fmt: skip
