@@ -241,7 +241,7 @@ void GroupScene::color(double time, SceneDetails details) {
   if (!scene_.caption.empty() && !details_.arrow_key.empty()) scene_.caption += "\n";
   scene_.caption += details_.arrow_key;
   const std::string note = motion_.layout() == Layout::cells && settings_.shown.path
-                               ? fmt::format("robots stay in their cells; marks on trails every {:g} m", mark_distance_)
+                               ? fmt::format("a mark every {:g} m of a trail", mark_distance_)
                                : order_;
   if (!scene_.caption.empty() && !note.empty()) scene_.caption += "\n";
   scene_.caption += note;

@@ -83,6 +83,7 @@ void FrameReport::write(PanelContext& context, const ShownView& shown, const Fra
   const TimelineState& timeline = scene.snapshot().timeline;
   log.write("frame", {{"number", frames_},
                       {"where", places(scene, shown)},
+                      {"eye", {shown.camera.eye.x, shown.camera.eye.y, shown.camera.eye.z}},
                       {"distance", context.camera.orbit().distance},
                       {"azimuth", context.camera.orbit().azimuth},
                       {"elevation", context.camera.orbit().elevation},

@@ -335,6 +335,8 @@ bool Viewer::leaves_gpu_to_steps() const {
 void Viewer::draw_picture(double dt) {
   update_renderer();
   DrawnScene& live = scene_.drawn();
+  camera_.floor =
+      live.scene().surroundings == render::Surroundings::none ? std::nullopt : std::optional(live.scene().floor);
   const render::Camera camera = camera_.at(live.camera_boxes(), area_.aspect(), dt);
   // A glide ends with moves too small to see, which must not keep the view coarse.
   const float least = 2e-4f * (camera.eye - camera.target).norm();

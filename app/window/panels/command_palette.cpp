@@ -36,26 +36,99 @@ constexpr Switch switches[] = {
     {"legend", [](ViewSettings& view) -> bool& { return view.shown.legend; }},
     {"clock", [](ViewSettings& view) -> bool& { return view.shown.clock; }},
     {"scale bar", [](ViewSettings& view) -> bool& { return view.shown.scale_bar; }},
+    {"drag arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.drag; }},
+    {"lift arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.lift; }},
     {"velocity arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.velocity; }},
     {"gravity arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.gravity; }},
+    {"contact arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.contact; }},
+    {"logarithmic color scale", [](ViewSettings& view) -> bool& { return view.log_scale; }},
 };
+
+// A value of a list of the view.
+struct Choice {
+  const char* name;
+  const char* words;  // that find it as well
+  void (*choose)(ViewSettings& view);
+  bool (*chosen)(const ViewSettings& view);
+};
+template <Layout layout>
+constexpr Choice layout_choice(const char* name, const char* words) {
+  return {name, words, [](ViewSettings& view) { set_layout(view, layout); },
+          [](const ViewSettings& view) { return view.layout == layout; }};
+}
+template <render::Theme theme>
+constexpr Choice theme_choice(const char* name) {
+  return {name, "appearance background", [](ViewSettings& view) { view.theme = theme; },
+          [](const ViewSettings& view) { return view.theme == theme; }};
+}
+template <int axis>
+constexpr Choice cut_choice(const char* name) {
+  return {name, "section inside open",
+          [](ViewSettings& view) {
+            if (!view.cut) view.cut = render::Cut{.below = true};
+            view.cut->axis = axis;
+          },
+          [](const ViewSettings& view) { return view.cut && view.cut->axis == axis; }};
+}
+constexpr Choice choices[] = {
+    layout_choice<Layout::cells>("layout cells: robots stay", "arrange"),
+    layout_choice<Layout::grid>("layout grid: robots travel", "arrange"),
+    layout_choice<Layout::race>("layout race: one lane each", "arrange track"),
+    theme_choice<render::Theme::dark>("theme dark"),
+    theme_choice<render::Theme::light>("theme light"),
+    cut_choice<0>("cut the robots open across x"),
+    cut_choice<1>("cut the robots open across y"),
+    cut_choice<2>("cut the robots open across z"),
+    {"no cut", "section close", [](ViewSettings& view) { view.cut.reset(); },
+     [](const ViewSettings& view) { return !view.cut; }},
+};
+
+void change_view(PanelContext& context, const std::function<void(ViewSettings&)>& change) {
+  ViewSettings view = context.scene.view();
+  change(view);
+  context.scene.set_view(view);
+}
 
 void add_switches(PanelContext& context, std::vector<PaletteEntry>& entries) {
   ViewSettings view = context.scene.view();
   for (const Switch& one : switches)
     entries.push_back({fmt::format("show {}", one.name), "View", one.of(view) ? "on" : "off", [&context, &one] {
-                         ViewSettings now = context.scene.view();
-                         one.of(now) = !one.of(now);
-                         context.scene.set_view(now);
+                         change_view(context, [&](ViewSettings& now) { one.of(now) = !one.of(now); });
                        }});
+  for (const Choice& choice : choices)
+    entries.push_back({choice.name, "View", choice.chosen(view) ? "on" : "",
+                       [&context, &choice] { change_view(context, choice.choose); }, choice.words});
   for (const ColorQuantity& quantity : color_quantities())
     if (quantity.exists_in(context.scene.configuration().environment))
-      entries.push_back({fmt::format("color by {}", quantity.name), "View", view.color == &quantity ? "on" : "",
-                         [&context, &quantity] {
-                           ViewSettings now = context.scene.view();
-                           color_by(now, quantity);
-                           context.scene.set_view(now);
-                         }});
+      entries.push_back(
+          {fmt::format("color by {}", quantity.name), "View", view.color == &quantity ? "on" : "",
+           [&context, &quantity] { change_view(context, [&](ViewSettings& now) { color_by(now, quantity); }); }});
+  for (int i = 0; i < render::colormap_count; ++i) {
+    const auto map = static_cast<render::Colormap>(i);
+    entries.push_back({fmt::format("color map {}", render::name_of(map)), "View", view.colormap == map ? "on" : "",
+                       [&context, map] { change_view(context, [&](ViewSettings& now) { now.colormap = map; }); },
+                       "colormap palette"});
+  }
+  for (const render::Quality quality :
+       {render::Quality::automatic, render::Quality::low, render::Quality::medium, render::Quality::high})
+    entries.push_back({fmt::format("quality {}", render::name_of(quality)), "View",
+                       context.preferences.quality == quality ? "on" : "",
+                       [&context, quality] { context.preferences.quality = quality; }, "drawing graphics"});
+}
+
+void add_camera(PanelContext& context, std::vector<PaletteEntry>& entries) {
+  OrbitController& camera = context.camera;
+  const auto add_mode = [&](CameraMode mode, const char* name, const char* words) {
+    entries.push_back(
+        {name, "Camera", camera.mode() == mode ? "on" : "", [&camera, mode] { camera.set_mode(mode); }, words});
+  };
+  add_mode(CameraMode::still, "camera free: the mouse moves it", "still orbit");
+  add_mode(CameraMode::group, "camera group: keeps all robots in view", "fit");
+  add_mode(CameraMode::follow, "camera follow: the selected robot, or the group", "track");
+  add_mode(CameraMode::turntable, "camera circle: around the group", "turntable spin rotate");
+  add_mode(CameraMode::top, "camera top: looks straight down", "above");
+  entries.push_back({"zoom in", "Camera", "", [&camera] { camera.zoom(0.7f); }, "closer nearer magnify"});
+  entries.push_back({"zoom out", "Camera", "", [&camera] { camera.zoom(1 / 0.7f); }, "farther smaller"});
 }
 
 // Asks for a number and sets it. Every configuration that validate() refuses is reported.
@@ -87,6 +160,43 @@ void add_number(PanelContext& context, std::vector<PaletteEntry>& entries, const
                      }});
 }
 
+// A number of the view, within limits.
+void add_view_number(PanelContext& context, std::vector<PaletteEntry>& entries, const std::string& name, double now,
+                     const std::string& unit, std::pair<double, double> limits, std::function<void(double)> set) {
+  entries.push_back({name, "View", fmt::format("{:.4g}{}{}", now, unit.empty() ? "" : " ", unit),
+                     [&context, name, now, unit, limits, set = std::move(set)] {
+                       ask_number(context, name, now, unit, [&context, name, limits, set](double value) {
+                         if (value >= limits.first && value <= limits.second) return set(value);
+                         context.toasts.show(Tone::warning, fmt::format("{}: {:g} is not accepted; give {:g} to {:g}",
+                                                                        name, value, limits.first, limits.second));
+                       });
+                     }});
+}
+
+void add_view_numbers(PanelContext& context, std::vector<PaletteEntry>& entries) {
+  const ViewSettings& view = context.scene.view();
+  add_view_number(
+      context, entries, "columns of the grid (0 = automatic)", view.grid ? static_cast<double>(view.grid->columns) : 0,
+      "", {0, 1000}, [&context](double value) {
+        const auto columns = static_cast<int>(value), robots = static_cast<int>(context.scene.entries().size());
+        change_view(context, [&](ViewSettings& now) {
+          now.grid =
+              columns > 0 ? std::optional(Grid{columns, std::max(1, (robots + columns - 1) / columns)}) : std::nullopt;
+        });
+      });
+  constexpr double degrees = 57.29578;
+  add_view_number(context, entries, "field of view", degrees * static_cast<double>(context.camera.field_of_view),
+                  "degrees", {5, 90},
+                  [&context](double value) { context.camera.field_of_view = static_cast<float>(value / degrees); });
+  add_view_number(context, entries, "length of arrows", static_cast<double>(view.shown.arrows.length), "", {0.01, 100},
+                  [&context](double value) {
+                    change_view(context,
+                                [&](ViewSettings& now) { now.shown.arrows.length = static_cast<float>(value); });
+                  });
+  add_view_number(context, entries, "speed", context.scene.speed(), "times real time", {1e-3, 1e3},
+                  [&context](double value) { context.scene.set_speed(value); });
+}
+
 void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
   const Configuration& configuration = context.scene.configuration();
   add_number(context, entries, "time step", 1000 * configuration.dt, "ms",
@@ -102,10 +212,33 @@ void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
                          context.scene.set_configuration(changed);
                          context.scene.end_edit();
                        }});
+  for (const std::string_view name : environment_names())
+    entries.push_back({fmt::format("environment {}", name), "Tune",
+                       name_of(configuration.environment) == name ? "on" : "",
+                       [&context, name] {
+                         Configuration changed = context.scene.configuration();
+                         changed.environment = environment_named(name);
+                         context.scene.end_edit();
+                         context.scene.set_configuration(changed);
+                         context.scene.end_edit();
+                       },
+                       "world"});
   for_each_parameter(configuration.environment, [&]<class Value>(const auto& parameter, const Value& value) {
+    std::string label(parameter.name);
+    std::ranges::replace(label, '_', ' ');
+    if constexpr (std::is_same_v<Value, bool>) {
+      entries.push_back({label, "Tune", value ? "on" : "off", [&context, name = std::string(parameter.name)] {
+                           Configuration changed = context.scene.configuration();
+                           for_each_parameter(changed.environment, [&]<class Other>(const auto& other, Other& target) {
+                             if constexpr (std::is_same_v<Other, bool>)
+                               if (other.name == name) target = !target;
+                           });
+                           context.scene.end_edit();
+                           context.scene.set_configuration(changed);
+                           context.scene.end_edit();
+                         }});
+    }
     if constexpr (std::is_same_v<Value, float>) {
-      std::string label(parameter.name);
-      std::ranges::replace(label, '_', ' ');
       add_number(context, entries, label, static_cast<double>(value), std::string(parameter.unit),
                  [name = std::string(parameter.name)](Configuration& changed, double number) {
                    for_each_parameter(changed.environment, [&]<class Other>(const auto& other, Other& target) {
@@ -128,13 +261,18 @@ void CommandPalette::open(std::function<std::vector<PaletteEntry>()> list) {
   search();
 }
 
+// First what has the words of the query in its name, then what has them at all, then what has their letters.
 void CommandPalette::search() {
+  constexpr int word = 100'000;  // more than letters can score
   std::vector<std::pair<int, std::size_t>> scores;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    const auto score = fuzzy_match(query_, entries_[i].name);
-    const auto in_group = fuzzy_match(query_, entries_[i].group + " " + entries_[i].name);
-    // A letter found in the name counts more than one in the name of the group.
-    if (score || in_group) scores.emplace_back(-std::max(score.value_or(-100'000), in_group.value_or(-100'000) - 8), i);
+    const PaletteEntry& entry = entries_[i];
+    const std::string whole = fmt::format("{} {} {}", entry.group, entry.name, entry.words);
+    const auto score = fuzzy_match(query_, entry.name), in_whole = fuzzy_match(query_, whole);
+    if (!in_whole) continue;
+    const int words = words_match(query_, entry.name) ? 2 : words_match(query_, whole) ? 1 : 0;
+    // A letter found in the name counts more than one elsewhere.
+    scores.emplace_back(-(words * word + std::max(score.value_or(-word), *in_whole - 8)), i);
   }
   std::ranges::stable_sort(scores, {}, &std::pair<int, std::size_t>::first);
   found_.clear();
@@ -227,9 +365,11 @@ std::optional<std::size_t> CommandPalette::draw_entries(PanelContext& context) {
 std::vector<PaletteEntry> settings_for_palette(PanelContext& context, const std::function<void(const char*)>& show) {
   std::vector<PaletteEntry> entries;
   for (const PanelEntry& panel : panel_table())
-    entries.push_back({fmt::format("panel {}: {}", panel.title, panel.tooltip), "Panels", "",
-                       [show, title = panel.title] { show(title); }});
+    entries.push_back({fmt::format("panel {}", panel.title), "Panels", "", [show, title = panel.title] { show(title); },
+                       panel.tooltip});
   add_switches(context, entries);
+  add_camera(context, entries);
+  add_view_numbers(context, entries);
   add_parameters(context, entries);
   for (const RobotEntry& robot : context.scene.entries())
     entries.push_back({robot.name, "Robots", fmt::format("{} springs", robot.springs), [&context, id = robot.id] {

@@ -17,6 +17,7 @@ struct PaletteEntry {
   std::string group;   // "Robots", shown at the right
   std::string detail;  // its key, or its current value; may be empty
   std::function<void()> act;
+  std::string words = {};  // others that find it: "turntable spin"
 };
 
 class CommandPalette {
@@ -40,8 +41,8 @@ class CommandPalette {
   int mark_ = 0, moved_ = 0;        // in found_; keys since the last frame
 };
 
-// What can be set by a number or a choice: parameters of solver, environment and camera, switches of the view,
-// colors, the robots of the scene, panels.
+// What can be set by a number or a choice: parameters of solver, environment and camera, switches and lists of the
+// view, colors, the robots of the scene, panels.
 std::vector<PaletteEntry> settings_for_palette(PanelContext& context, const std::function<void(const char*)>& show);
 
 }  // namespace mercury::window

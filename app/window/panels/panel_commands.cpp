@@ -234,14 +234,71 @@ void Panels::change_camera(Action action) {
   camera.follow(current ? context_.scene.snapshot().robots->index_of(*current) : std::nullopt);
 }
 
+namespace {
+
+// Other words for what a command does.
+std::string_view other_words(Action action) {
+  switch (action) {
+    case Action::play_pause:
+      return "start stop run continue";
+    case Action::reset:
+      return "restart again";
+    case Action::frame:
+      return "zoom fit center all";
+    case Action::top_view:
+      return "above";
+    case Action::new_random:
+      return "generate create";
+    case Action::remove:
+      return "delete erase";
+    case Action::duplicate:
+      return "copy clone";
+    case Action::undo:
+      return "back revert";
+    case Action::redo:
+      return "again forward";
+    case Action::open:
+      return "load file";
+    case Action::save:
+    case Action::save_scene:
+      return "write file";
+    case Action::labels:
+      return "text captions";
+    case Action::theme:
+      return "appearance";
+    case Action::compare:
+      return "split side";
+    case Action::left_panels:
+    case Action::right_panels:
+      return "columns";
+    case Action::larger_text:
+    case Action::smaller_text:
+      return "font size";
+    case Action::screenshot:
+      return "picture image photo";
+    case Action::record:
+      return "video film movie";
+    case Action::messages:
+      return "log";
+    case Action::help:
+      return "keys shortcuts mouse";
+    case Action::quit:
+      return "exit close";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
 // Commands that only menus have, and those with keys.
 std::vector<PaletteEntry> Panels::palette_entries() {
   std::vector<PaletteEntry> entries;
   for (const KeyBinding& binding : key_bindings()) {
     const Action action = binding.action;
     if (quantity_of(action) || action == Action::deselect || action == Action::palette) continue;
-    entries.push_back(
-        {binding.meaning, binding.group, context_.keys.keys_of(action), [this, action] { execute(action); }});
+    entries.push_back({binding.meaning, binding.group, context_.keys.keys_of(action),
+                       [this, action] { execute(action); }, fmt::format("{} {}", binding.name, other_words(action))});
   }
   entries.push_back({"open a run of an evolution", "File", "", [this] { choose_run(context_); }});
   entries.push_back({"export the pose for other programs", "File", "", [this] { export_pose(context_); }});

@@ -69,33 +69,69 @@ void PanelColumn::draw(PanelContext& context, float top, float bottom, float siz
   draw_edge(top, bottom, size, width);
 }
 
-void PanelColumn::draw_tabs(PanelContext& context, std::string& open) {
-  const float spacing = 0.25f * ImGui::GetFontSize(), end = ImGui::GetWindowContentRegionMax().x;
-  bool first = true;
+namespace {
+
+float tab_width(const char* text) { return ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x; }
+
+}  // namespace
+
+// The tabs that have room in one row, the open one among them.
+std::vector<const PanelEntry*> PanelColumn::tabs_in_row(const std::string& open, float room, float spacing) const {
+  const auto width = [&](const PanelEntry& entry) { return tab_width(entry.title) + spacing; };
+  float used = 0;
+  for (const Tab& tab : tabs_) used += width(*tab.entry);
+  float left = room + spacing - (used > room + spacing ? tab_width(more_tabs) + spacing : 0);
+  for (const Tab& tab : tabs_)
+    if (tab.entry->title == open) left -= width(*tab.entry);
+  std::vector<const PanelEntry*> row;
   for (const Tab& tab : tabs_) {
-    const PanelEntry& entry = *tab.entry;
-    const float width = ImGui::CalcTextSize(entry.title).x + 2 * ImGui::GetStyle().FramePadding.x;
-    if (!first) {
-      ImGui::SameLine(0, spacing);
-      if (ImGui::GetCursorPosX() + width > end) ImGui::NewLine();
-    }
-    first = false;
-    const bool on = open == entry.title;
+    const bool is_open = tab.entry->title == open;
+    if (!is_open && width(*tab.entry) > left) left = 0;  // so that those after it wait, too
+    if (!is_open && left <= 0) continue;
+    if (!is_open) left -= width(*tab.entry);
+    row.push_back(tab.entry);
+  }
+  return row;
+}
+
+void PanelColumn::draw_tabs(PanelContext& context, std::string& open) {
+  const float spacing = 0.25f * ImGui::GetFontSize();
+  const auto choose = [&](const PanelEntry& entry) {
+    if (open == entry.title) return;
+    open = entry.title;
+    context.log.write("panel", {{"name", open}});
+  };
+  const std::vector<const PanelEntry*> row = tabs_in_row(open, ImGui::GetContentRegionAvail().x, spacing);
+  for (const PanelEntry* entry : row) {
+    if (entry != row.front()) ImGui::SameLine(0, spacing);
+    const bool on = open == entry->title;
     ImGui::PushStyleColor(ImGuiCol_Button, on ? ImGui::GetColorU32(ImGuiCol_Header) : IM_COL32_BLACK_TRANS);
-    if (ImGui::Button(entry.title) && !on) {
-      open = entry.title;
-      context.log.write("panel", {{"name", open}});
-    }
+    const bool clicked = ImGui::Button(entry->title);
     ImGui::PopStyleColor();
     // The tooltip appears below the tabs, so that it covers none.
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     if (!on && ImGui::IsItemHovered()) {
       ImGui::SetNextWindowPos({right_ ? high.x : low.x, high.y + 0.6f * ImGui::GetFontSize()}, ImGuiCond_Always,
                               {right_ ? 1.0f : 0.0f, 0});
-      tooltip(entry.tooltip);
+      tooltip(entry->tooltip);
     }
-    context.log.item(std::string("tab.") + entry.title);
+    context.log.item(std::string("tab.") + entry->title);
+    if (clicked) choose(*entry);
   }
+  if (row.size() == tabs_.size()) return;
+  ImGui::SameLine(0, spacing);
+  ImGui::PushStyleColor(ImGuiCol_Button, IM_COL32_BLACK_TRANS);
+  if (ImGui::Button(more_tabs)) ImGui::OpenPopup("more");
+  ImGui::PopStyleColor();
+  context.log.item(right_ ? "tabs.right" : "tabs.left");
+  tooltip("more panels");
+  if (!ImGui::BeginPopup("more")) return;
+  for (const Tab& tab : tabs_) {
+    if (std::ranges::find(row, tab.entry) != row.end()) continue;
+    if (ImGui::MenuItem(tab.entry->title, tab.entry->tooltip)) choose(*tab.entry);
+    context.log.item(std::string("tab.") + tab.entry->title);
+  }
+  ImGui::EndPopup();
 }
 
 // The user drags the inner edge to change the width.
@@ -115,7 +151,7 @@ void PanelColumn::draw_edge(float top, float bottom, float size, float& width) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     ImGui::GetWindowDrawList()->AddRectFilled({edge - 1, top}, {edge + 1, bottom}, palette().accent);
   }
-  if (ImGui::IsItemActive()) {
+  if (item_dragged()) {
     const float x = ImGui::GetIO().MousePos.x;
     width = std::clamp((right_ ? screen - x : x) / ImGui::GetFontSize(), 14.0f, 60.0f);
   }

@@ -26,7 +26,8 @@
 
 namespace mercury::window {
 
-// A column of panels at one side of the window: tabs at the top, one panel open below, an edge that can be dragged.
+// A column of panels at one side of the window: a row of tabs at the top, with a menu of those that have no room, one
+// panel open below, an edge that can be dragged.
 class PanelColumn {
  public:
   // Makes the panels of panel_table() that belong to this side.
@@ -47,6 +48,7 @@ class PanelColumn {
   bool busy() const;
 
  private:
+  std::vector<const PanelEntry*> tabs_in_row(const std::string& open, float room, float spacing) const;
   void draw_tabs(PanelContext& context, std::string& open);
   void draw_edge(float top, float bottom, float size, float& width);
 
@@ -54,6 +56,8 @@ class PanelColumn {
     const PanelEntry* entry;
     std::unique_ptr<Panel> panel;
   };
+
+  static constexpr const char* more_tabs = "...";
 
   const char* id_;
   bool right_;

@@ -65,10 +65,15 @@ std::string factor_text(double factor) {
   return factor >= 100 ? fmt::format("{:.0f}", factor) : fmt::format("{:.3g}", factor);
 }
 
+// Says how fast time passes where it is not as chosen.
 void draw_achieved_speed(const LiveScene& scene, bool unlimited) {
+  constexpr double near = 0.03;
   const double achieved = scene.snapshot().achieved_speed;
   const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
-  const std::string shown = scene.playing() ? "achieved \xc3\x97 " + factor_text(achieved) : "paused";
+  if (scene.playing() && !unlimited && std::abs(achieved - scene.speed()) <= near * scene.speed()) return;
+  const std::string shown = !scene.playing() ? "paused"
+                            : unlimited      ? "\xc3\x97 " + factor_text(achieved)
+                                             : "reaches \xc3\x97 " + factor_text(achieved);
   // A narrow window has no room for all of it.
   if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(shown.c_str()).x) return;
   ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
@@ -180,7 +185,7 @@ std::string memory_text(const TimelineState& timeline) {
 void drag(PanelContext& context, const Track& track) {
   const double time = track.time(ImGui::GetIO().MousePos.x);
   if (ImGui::IsItemActivated()) begin_scrub(context);
-  if (ImGui::IsItemActive()) scrub_to(context, time);
+  if (item_dragged()) scrub_to(context, time);
   if (ImGui::IsItemDeactivated()) end_scrub(context);
   if (ImGui::IsItemHovered()) context.cursor.next = time;
   if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%s", moment_text(time).c_str());

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <string_view>
 #include <vector>
 
@@ -293,6 +294,24 @@ std::optional<int> fuzzy_match(std::string_view query, std::string_view text) {
   const int score = *std::ranges::max_element(best);
   if (score == none) return std::nullopt;
   return 8 * score - static_cast<int>(text.size());
+}
+
+bool item_dragged() { return ImGui::IsItemActive() || ImGui::IsItemDeactivated(); }
+
+bool words_match(std::string_view query, std::string_view text) {
+  const auto begins_at = [&](std::string_view word, std::size_t place) {
+    const std::string_view there = text.substr(place, word.size());
+    return begins_word(text, place) &&
+           std::ranges::equal(word, there, [](char a, char b) { return lower(a) == lower(b); });
+  };
+  for (const auto part : std::views::split(query, ' ')) {
+    const std::string_view word(part.begin(), part.end());
+    if (word.empty()) continue;
+    bool found = false;
+    for (std::size_t i = 0; i < text.size() && !found; ++i) found = begins_at(word, i);
+    if (!found) return false;
+  }
+  return true;
 }
 
 }  // namespace mercury::window

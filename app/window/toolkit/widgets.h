@@ -63,6 +63,10 @@ bool text_field(const char* id, std::string& text, const char* placeholder = "")
 // wrapped text has more than 16,383 letters.
 std::string brief(const std::string& text, std::size_t letters);
 
+// Whether the last item is dragged: held, or let go in this frame, whose motion still counts. A slow frame may hold all
+// of a drag's end.
+bool item_dragged();
+
 // Shortens a text to a width, with an ellipsis at its end or, for paths, in its middle.
 std::string shortened(const std::string& text, float width, bool middle = false);
 
@@ -70,5 +74,7 @@ std::string shortened(const std::string& text, float width, bool middle = false)
 // appear in order, in any case; blanks of the query are ignored. Letters that follow each other or begin a word count
 // more, and a text that has little beside the query comes first. An empty query fits everything equally.
 std::optional<int> fuzzy_match(std::string_view query, std::string_view text);
+// Whether each word of the query begins a word of the text, in any case and order. An empty query fits everything.
+bool words_match(std::string_view query, std::string_view text);
 
 }  // namespace mercury::window

@@ -277,7 +277,7 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
   const float text = ImGui::GetFontSize(), radius = 0.55f * text;
   if (!handle_button("##cut", handle, radius, area)) return false;
   log.item("cut.handle");
-  const bool active = ImGui::IsItemActive(), marked = active || ImGui::IsItemHovered();
+  const bool active = ImGui::IsItemActive(), dragged = item_dragged(), marked = active || ImGui::IsItemHovered();
   if (!active) tooltip("drag: where each robot is cut");
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
@@ -289,7 +289,7 @@ bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::C
   list.PopClipRect();
   end_handle_button();
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
-  if (!active || (moved.x == 0 && moved.y == 0)) return false;
+  if (!dragged || (moved.x == 0 && moved.y == 0)) return false;
   // A place in meters becomes a share of this robot, and of all others.
   view.cut->shift = 0;
   view.cut->percent = std::clamp(percent_at(ImGui::GetIO().MousePos, low, high, view.cut->percent), 0.0f, 100.0f);
@@ -313,9 +313,15 @@ void TargetHandle::draw(LiveScene& scene, const ViewportArea& area, const render
   draw_handle(*at, radius, active || ImGui::IsItemHovered() ? palette().accent : palette().warning);
   list.PopClipRect();
   end_handle_button();
-  if (ended) scene.end_edit();
   const ImGuiIO& io = ImGui::GetIO();
-  if (!active || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
+  if ((active || ended) && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0))
+    move_to_mouse(scene, area, camera, target, offset);
+  if (ended) scene.end_edit();
+}
+
+void TargetHandle::move_to_mouse(LiveScene& scene, const ViewportArea& area, const render::Camera& camera,
+                                 const render::Vector3& target, const render::Vector3& offset) {
+  const ImGuiIO& io = ImGui::GetIO();
   const render::Ray ray = camera.ray(io.MousePos.x - area.low.x, io.MousePos.y - area.low.y,
                                      static_cast<int>(area.width()), static_cast<int>(area.height()));
   // The plane in which it moves: level, or upright and facing the camera.

@@ -47,6 +47,11 @@ class TargetHandle {
   // in cells, which have no place for it. The mouse moves it level with itself, with Shift up and down, and robots
   // follow at once. Call it as CutHandle::draw().
   void draw(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log) const;
+
+ private:
+  // `target`: where it is drawn, by `offset` from where it is.
+  static void move_to_mouse(LiveScene& scene, const ViewportArea& area, const render::Camera& camera,
+                            const render::Vector3& target, const render::Vector3& offset);
 };
 
 // Marks the culprit spring of each robot that exploded. Drawn over the view, so that nothing hides it.

@@ -138,6 +138,15 @@ void OrbitController::glide_to(const render::Orbit& wanted, double dt, double la
   orbit_.distance += share * (wanted.distance - orbit_.distance);
 }
 
+// Raises the target, then the angle.
+void OrbitController::stay_above_floor() {
+  if (!floor) return;
+  constexpr float clearance = 0.02f;  // of the eye, per distance
+  orbit_.target.z = std::max(orbit_.target.z, *floor);
+  const float sine = clearance + (*floor - orbit_.target.z) / orbit_.distance;
+  orbit_.elevation = std::max(orbit_.elevation, std::asin(std::max(sine, -1.0f)));
+}
+
 render::Camera OrbitController::at(std::span<const render::Bounds> robots, float aspect, double dt) {
   constexpr double lag = 0.5;
   orbit_.field_of_view = field_of_view;
@@ -178,6 +187,7 @@ render::Camera OrbitController::at(std::span<const render::Bounds> robots, float
     }
     glide_to(aim_, glide_ > 0 ? dt : 1e9, glide_time / 5);
   }
+  stay_above_floor();
   return orbit_.camera();
 }
 

@@ -57,11 +57,14 @@ class OrbitController {
 
   float turn_period = 20;      // of mode turntable [s]
   float field_of_view = 0.6f;  // [rad]
+  // Height of the floor, above which the camera stays [m]; none = it goes everywhere.
+  std::optional<float> floor;
   // True during a glide.
   bool gliding() const { return glide_ > 0; }
 
  private:
   void glide_to(const render::Orbit& wanted, double dt, double lag);
+  void stay_above_floor();
   void release();
 
   CameraMode mode_ = CameraMode::still;

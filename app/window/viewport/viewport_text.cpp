@@ -203,7 +203,7 @@ bool LegendView::drag_end(bool high, const render::Legend& legend, const Bar& ba
   ImGui::SetCursorScreenPos({bar.left - 0.3f * text, y - 0.55f * text});
   ImGui::InvisibleButton(high ? "high" : "low", {bar.right - bar.left + 0.6f * text, 1.1f * text});
   log.item(high ? "legend.high" : "legend.low");
-  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
+  const bool active = ImGui::IsItemActive(), dragged = item_dragged(), hovered = ImGui::IsItemHovered();
   if (hovered || active) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
   if (!active) tooltip("drag to choose the value at this end; double click: fit the values again");
   ImGui::GetWindowDrawList()->AddRectFilled({bar.left - 0.25f * text, y - 0.1f * text},
@@ -215,7 +215,8 @@ bool LegendView::drag_end(bool high, const render::Legend& legend, const Bar& ba
     return true;
   }
   if (ImGui::IsItemActivated()) held_ = *legend.scale;
-  if (!active || !held_ || !ImGui::IsMouseDragging(0, 3)) return false;
+  const ImVec2 way = ImGui::GetMouseDragDelta(0, 3);  // also in the frame that lets go
+  if (!dragged || !held_ || (way.x == 0 && way.y == 0)) return false;
   const float position = (bar.bottom - ImGui::GetIO().MousePos.y) / (bar.bottom - bar.top);
   const bool both = view.color->is_signed && held_->low == -held_->high;  // zero stays in the middle
   const float nearest = both ? 0.5f : high ? 0.0f : 1.0f;
@@ -265,7 +266,7 @@ bool LegendView::draw_scale(const render::Legend& legend, const Bar& bar, ViewSe
 
 bool LegendView::draw(const std::optional<render::Legend>& legend, const ViewportArea& area, ViewSettings& view,
                       EventLog& log) {
-  if (!ImGui::IsMouseDown(0) || !legend || !legend->scale) held_.reset();
+  if (!(ImGui::IsMouseDown(0) || ImGui::IsMouseReleased(0)) || !legend || !legend->scale) held_.reset();
   box_ = {};
   if (!legend) return false;
   const float text = ImGui::GetFontSize(), step = 1.35f * text;

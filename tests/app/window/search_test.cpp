@@ -39,6 +39,16 @@ TEST(FuzzyMatch, BeginningsAndRunsOfLettersComeFirst) {
   EXPECT_EQ(best_of("dra", {"damping ratio", "drag arrows", "add radius"}), "drag arrows");
 }
 
+TEST(WordsMatch, EachWordBeginsAWordInAnyOrder) {
+  EXPECT_TRUE(words_match("race", "layout race: one lane each"));
+  EXPECT_TRUE(words_match("ra LAY", "layout race: one lane each"));
+  EXPECT_TRUE(words_match("", "anything"));
+  EXPECT_TRUE(words_match("  one ", "layout race: one lane each"));
+  EXPECT_FALSE(words_match("ace", "layout race: one lane each"));
+  EXPECT_FALSE(words_match("race two", "layout race: one lane each"));
+  EXPECT_FALSE(words_match("open", ""));
+}
+
 TEST(FuzzyMatch, LongAndStrangeTextsEnd) {
   EXPECT_FALSE(fuzzy_match(std::string(5000, 'b'), std::string(5000, 'a')));
   EXPECT_TRUE(fuzzy_match("\xc3\xa9", "caf\xc3\xa9"));

@@ -38,7 +38,7 @@ class CompareTest(WindowCase):
         frame = window.frame(lambda frame: frame["time"] == 0)
         self.assertEqual(frame["second"]["time"], 0)
         # The right side in another environment: its picture is another one.
-        window.click("tab.Compare")
+        window.open("Compare")
         window.click("compare.environment")
         window.frame(lambda frame: frame["second"] and frame["second"]["environment"] == "land")
         picture = window.screenshot()
@@ -93,7 +93,7 @@ class CompareTest(WindowCase):
         window = self.small("--compare", "damping=1")
         window.frame(lambda frame: frame["time"] > 1 and frame["second"])
         paused = self.pause(window)
-        window.click("tab.Measure")
+        window.open("Measure")
         x, y = window.place("plot.distance")
         window.do("mousemove", x, y)
         moment = window.frame(lambda frame: frame["cursor"] is not None)["cursor"]
@@ -121,7 +121,7 @@ class CompareTest(WindowCase):
         window = self.small("--compare", "damping=1")
         window.frame(lambda frame: frame["time"] > 1 and frame["second"])
         self.pause(window)
-        window.click("tab.Measure")
+        window.open("Measure")
         window.do("mousemove", *window.place("plot.speed"))
         window.frame()
         # Each click shows 0.8 of the time before, so that the lines become a million times as long as the plot.

@@ -123,6 +123,18 @@ class Window:
         self.until(f"item {item}", lambda: item in self.items and self.frames >= self.items[item]["frames"] + 2)
         return round(self.items[item]["x"]), round(self.items[item]["y"])
 
+    def open(self, panel):
+        """Opens a panel by its tab, or by the menu of the tabs that have no room."""
+        self.frame()
+        for menu in ("tabs.left", "tabs.right"):
+            if f"tab.{panel}" not in self.items and menu in self.items:
+                self.click(menu)
+                self.frame()
+                if f"tab.{panel}" not in self.items:
+                    self.key("Escape")
+                    self.frame()
+        self.click(f"tab.{panel}")
+
     def click(self, item):
         # An item that has just opened may still move.
         place = None

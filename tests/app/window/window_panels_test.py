@@ -24,7 +24,7 @@ class PanelsTest(WindowCase):
         window = self.small()
         for panel in LEFT[1:] + RIGHT[1:] + [LEFT[0], RIGHT[0]]:
             since = window.mark()
-            window.click(f"tab.{panel}")
+            window.open(panel)
             window.wait("panel", since, lambda event: event["name"] == panel)
             window.place(f"panel.{panel}")
         window.key("F1")
@@ -64,7 +64,7 @@ class PanelsTest(WindowCase):
 
     def test_fixing_a_color_scale_keeps_its_range(self):
         window = self.small()
-        window.click("tab.View")
+        window.open("View")
         since = window.mark()
         window.click("color.strain")
         window.frame(lambda frame: frame["color"] == "strain" and frame["time"] > 0.5, since)
@@ -78,7 +78,7 @@ class PanelsTest(WindowCase):
 
     def test_the_ends_of_a_legend_are_dragged(self):
         window = self.small()
-        window.click("tab.View")
+        window.open("View")
         since = window.mark()
         window.click("color.strain")
         window.frame(lambda frame: frame["color"] == "strain" and frame["time"] > 0.5, since)
@@ -192,7 +192,7 @@ class PanelsTest(WindowCase):
 
     def test_a_brain_is_watched(self):
         window = self.small("--paused")
-        window.click("tab.Brain")
+        window.open("Brain")
         since = window.mark()
         window.click("brain.sample")  # neither of the two robots has one
         window.wait("robots", since, lambda event: event["names"] == ["eel", "fish", "hunter"])
@@ -234,7 +234,7 @@ class PanelsTest(WindowCase):
         window.frame(lambda frame: frame["time"] > 1)
         window.key("space")
         window.frame(lambda frame: not frame["playing"])
-        window.click("tab.Ranking")
+        window.open("Ranking")
         for _ in range(2):
             since = window.mark()
             window.click("ranking.by.robot")
@@ -242,7 +242,7 @@ class PanelsTest(WindowCase):
             self.assertEqual(event["by"], "robot")
             self.assertEqual(event["names"], sorted(["fish", "eel", "ray"], reverse=not event["ascending"]))
         window.click("ranking.by.distance")
-        window.click("tab.Measure")
+        window.open("Measure")
         for button, file in (("measure.csv", "swim.csv"), ("ranking.csv", "rank.csv")):
             since = window.mark()
             window.click(button)
@@ -270,7 +270,7 @@ class PanelsTest(WindowCase):
         window = self.open(str(SAMPLES / "eel.json"), "--random", "voxel:2", "--seed", "3", "--paused")
         names = window.wait("robots", 0, lambda event: event["count"] == 3)["names"]
         window.key("3", "d", "b", "t")
-        window.click("tab.Tune")
+        window.open("Tune")
         window.click("tune.damping")
         window.click("tune.solver")
         window.choose_next("tune.solver")
@@ -282,7 +282,7 @@ class PanelsTest(WindowCase):
         self.finish(window)
         again = self.window_in(self.folder, "--fresh", "--paused", *(word for word in words[2:] if not word.startswith("--device")))
         self.assertEqual(again.wait("robots", 0, lambda event: event["count"] == 3)["names"], names)
-        again.click("tab.Tune")
+        again.open("Tune")
         again.key("t")  # the turntable has moved on; everything else is the same
         again.frame(lambda frame: frame["camera"] == "still")
 
@@ -312,7 +312,7 @@ class PanelsTest(WindowCase):
 
     def test_settings_are_kept_for_the_next_start(self):
         window = self.small("--paused")
-        window.click("tab.Tune")
+        window.open("Tune")
         window.wait("panel", 0, lambda event: event["name"] == "Tune")
         x, y = window.place("view")
         edge = int(x + window.items["view"]["width"] / 2)

@@ -8,6 +8,8 @@
 
 #include "app/window/dialogs/folder_listing.h"
 #include "app/window/toolkit/window.h"
+#include "app/window/viewport/orbit_controller.h"
+#include "mercury/random.h"
 #include "tests/app/program.h"
 
 namespace mercury::window {
@@ -170,6 +172,25 @@ TEST(KeyPresses, AreCharactersForKeysThatTypeAndKeysOtherwise) {
   EXPECT_EQ(presses[1].character, 0u);
   EXPECT_TRUE(presses[2].control);
   EXPECT_EQ(presses[2].character, U's');
+}
+
+TEST(OrbitController, StaysAboveTheFloor) {
+  OrbitController camera;
+  camera.floor = -0.5f;
+  Random random(1);
+  const auto some = [&] { return static_cast<float>(random.uniform(-1, 1)); };
+  bool looked_up = false;
+  for (int i = 0; i < 1000; ++i) {
+    if (random.chance(0.5)) camera.turn(some(), some());
+    if (random.chance(0.3)) camera.pan(0.2f * some(), 0.2f * some());
+    if (random.chance(0.3)) camera.zoom(1 + 0.3f * some());
+    if (random.chance(0.05))
+      camera.go_to({.mode = CameraMode::still, .elevation = -1.4f, .target = render::Vector3{0, 0, -3}}, std::nullopt);
+    const render::Camera now = camera.at({}, 1.5f, 0.1);
+    EXPECT_GT(now.eye.z, *camera.floor) << i;
+    looked_up |= now.target.z > now.eye.z;
+  }
+  EXPECT_TRUE(looked_up) << "below a robot that is high above the floor, the camera may go";
 }
 
 }  // namespace

@@ -62,6 +62,17 @@ class PlaybackTest(WindowCase):
         window.frame(lambda frame: frame["distance"] < 0.95 * turned["distance"])
         self.finish(window)
 
+    def test_the_camera_stays_above_the_ground(self):
+        window = self.small("--paused", "--environment", "land")
+        before = window.frame()
+        x, y = window.place("view")
+        for _ in range(3):
+            window.drag((x, y + 150), (x, y), (x, y - 150))
+        lowest = window.frame()
+        self.assertLess(lowest["elevation"], before["elevation"] - 0.3)
+        self.assertGreater(lowest["eye"][2], 0)
+        self.finish(window)
+
     def test_a_dragged_mass_moves(self):
         window = self.small()
         window.frame(lambda frame: len(frame["where"]) == 2)

@@ -40,7 +40,7 @@ class RobotsTest(WindowCase):
         # A number: the palette asks for it.
         self.assertEqual(self.palette(window, "damping"), "damping")
         window.dialog("0.5")
-        window.click("tab.Tune")
+        window.open("Tune")
         since = window.mark()
         window.click("tune.copy")
         self.assertIn("--damping=0.5", window.wait("copied", since)["text"])
@@ -51,6 +51,18 @@ class RobotsTest(WindowCase):
         window.key("Escape")
         window.until("palette closed", lambda: "panel.Palette" not in window.items)
         self.assertEqual(window.frame()["theme"], "light")
+        self.finish(window)
+
+    def test_the_palette_prefers_words_and_has_every_list(self):
+        window = self.small("--paused")
+        for text, name in (("race", "layout race: one lane each"), ("layout cells", "layout cells: robots stay"),
+                           ("turntable", "circle the group"), ("video", "panel Video"),
+                           ("columns", "columns of the grid"), ("zoom out", "zoom out"), ("delete", "remove the selected robots"),
+                           ("quality medium", "quality medium"), ("magma", "color map magma"), ("land", "environment land")):
+            self.assertEqual(self.palette(window, text)[:len(name)], name)
+            if name.startswith("columns"):
+                window.dialog("2")
+        window.frame(lambda frame: frame["layout"] == "cells")
         self.finish(window)
 
     def test_a_right_click_opens_a_menu_and_a_robot_is_renamed(self):
@@ -102,7 +114,7 @@ class RobotsTest(WindowCase):
         window.frame(lambda frame: frame["selected"] == 2)
         window.click("breed")
         self.assertEqual(self.names(window, 11)[-1], "voxel-2-1-x")
-        window.click("tab.Ranking")
+        window.open("Ranking")
         window.click("ranking.keep")
         window.place("dialog.text")
         window.key("ctrl+a")
@@ -116,7 +128,7 @@ class RobotsTest(WindowCase):
         window = self.small("--paused")
         window.key("space")
         window.frame(lambda frame: frame["time"] > 0.5)
-        window.click("tab.Tune")
+        window.open("Tune")
         window.click("tune.environment")
         window.click("tune.environment.xpbd")
         window.place("tune.hint")
@@ -163,7 +175,7 @@ class RobotsTest(WindowCase):
         window.frame(lambda frame: frame["time"] > 1)
         window.key("space")
         window.frame(lambda frame: not frame["playing"])
-        window.click("tab.Measure")
+        window.open("Measure")
         window.click("measure.large")
         window.place("panel.Plots")
         x, y = window.place("plot.speed")

@@ -74,6 +74,21 @@ class TimelineTest(WindowCase):
         window.frame(lambda frame: frame["time"] > head + 0.1 and not frame["timeline"]["viewing"], since)
         self.finish(window)
 
+    def test_a_drag_that_ends_in_motion_shows_where_it_ended(self):
+        window = self.small()
+        self.paused_at(window, 0.6)
+        window.place("timeline")
+        item = window.items["timeline"]
+        for begin, end in ((0.95, 0.5), (0.1, 0.7)):
+            x = [round(item["x"] + (begin + i / 20 * (end - begin) - 0.5) * item["width"]) for i in range(21)]
+            since = window.mark()
+            window.do("mousemove", x[0], item["y"], "mousedown", 1, *(word for at in x for word in ("mousemove", at, item["y"])),
+                      "mouseup", 1, "mousemove", x[0], item["y"])
+            window.frame(lambda frame: self.is_at(frame, end), since)
+            presses = window.frame()["input"]
+            self.assertTrue(self.is_at(window.frame(lambda frame: frame["input"] >= presses), end))
+        self.finish(window)
+
     def test_bookmarks_and_a_loop(self):
         window = self.small()
         self.paused_at(window, 0.4)

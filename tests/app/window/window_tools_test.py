@@ -36,7 +36,7 @@ class ToolsTest(WindowCase):
         folder.mkdir(parents=True)
         robots = [shutil.copy(SAMPLES / "eel.json", folder / f"eel{i}.json") for i in range(20)]
         window = self.open(*map(str, robots), "--paused")
-        window.click("tab.Tune")
+        window.open("Tune")
         since = window.mark()
         window.click("tune.copy")
         command = window.wait("copied", since)["text"]
@@ -83,7 +83,7 @@ class ToolsTest(WindowCase):
     def test_the_ranking_holds_still_under_the_mouse(self):
         window = self.open(*(str(SAMPLES / f"{name}.json") for name in ("fish", "eel", "paddler", "wriggler")))
         window.frame(lambda frame: frame["time"] > 0.5)
-        window.click("tab.Ranking")
+        window.open("Ranking")
         window.click("ranking.by.mean speed")  # changes all the time
         window.do("mousemove", *window.place("ranking.0"))
         window.frame()
@@ -111,7 +111,7 @@ class ToolsTest(WindowCase):
 
     def test_the_text_size_buttons_stay_under_the_mouse(self):
         window = self.small("--paused")
-        window.click("tab.View")
+        window.open("View")
         x, y = window.place("view")
         panel = window.items["panel.View"]
         window.do("mousemove", panel["x"], panel["y"])
@@ -137,7 +137,7 @@ class ToolsTest(WindowCase):
         if shutil.which("ffmpeg") is None:
             self.skipTest("this machine has no ffmpeg")
         window = self.small("--paused")
-        window.click("tab.Video")
+        window.open("Video")
         since = window.mark()
         window.click("video.record")
         file = window.wait("recording", since)["file"]
