@@ -138,6 +138,7 @@ def mercury_way(file: Path, *options: Any) -> tuple[Way, float, float]:
         return way, (robot["upper_quartile"] - robot["lower_quartile"]) / edge, dt / time
 
 
+# A robot has a direction there if its runs differ by at most half of its way.
 def row(name: str, there: list[Way], here: Way, spread: float, dt: float) -> str:
     way = middle(there)
     apart = max(map(length, there)) - min(map(length, there))
@@ -145,6 +146,8 @@ def row(name: str, there: list[Way], here: Way, spread: float, dt: float) -> str
     share = length(here) / length(way)
     turn = math.degrees(math.acos(max(-1, min(1, along))))
     verdict = "holds" if turn < 45 and abs(share - 1) <= 0.3 else "**fails**"
+    if apart > length(way) / 2:
+        verdict = "no direction"
     return (f"| {name} | {length(way):.3f} | {apart:.3f} | {length(here):.3f} | {spread:.3f} | {1e6 * dt:.0f} | "
             f"{100 * share:.0f} % | {turn:.0f}\N{DEGREE SIGN} | {verdict} |")  # fmt: skip
 

@@ -144,7 +144,8 @@ std::optional<ImportedSettings> common_settings(const std::vector<ImportedFile>&
   common.settle.reset();
   for (const ImportedSettings& settings : all) {
     if (settings.environment != common.environment || settings.gravity != common.gravity ||
-        settings.friction != common.friction || settings.self_collision != common.self_collision)
+        settings.friction != common.friction || settings.static_friction != common.static_friction ||
+        settings.self_collision != common.self_collision)
       return std::nullopt;
     const double share = 1 / static_cast<double>(all.size());
     common.dt = std::min(common.dt, settings.dt);

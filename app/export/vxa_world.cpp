@@ -44,8 +44,10 @@ VxaWorld vxa_world(const Environment& environment, double damping, std::optional
                               .damping = damping,
                               .seconds = seconds},
                  .lost = lost_of(environment)};
-  if (const auto* plane = std::get_if<Plane>(&environment.ground))
+  if (const auto* plane = std::get_if<Plane>(&environment.ground)) {
     world.settings.friction = as_written(plane->friction);
+    world.settings.static_friction = as_written(plane->static_friction);
+  }
   const auto coefficient = [](float own, float density) { return as_written(own) * as_written(density) / 1000; };
   if (const auto* water = std::get_if<ResistiveDrag>(&environment.water))
     world.settings.drag_coefficient = coefficient(water->normal_coefficient, water->density);

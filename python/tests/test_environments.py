@@ -50,8 +50,9 @@ def test_an_environment_is_a_value(kind):
 
 def test_repr_shows_every_parameter():
     assert repr(Land()) == (
-        "Land(friction=0.8, self_collision=True, contact_stiffness=100.0, relative_stiffness=0.0, contact_distance=0.5, "
-        "gravity=(0.0, 0.0, -9.81), stiffness_scale=200.0, target=(0.0, 0.0, 0.0), light=(0.0, 0.0, 1.0))"
+        "Land(friction=0.8, static_friction=0.0, self_collision=True, contact_stiffness=100.0, relative_stiffness=0.0, "
+        "contact_distance=0.5, gravity=(0.0, 0.0, -9.81), stiffness_scale=200.0, target=(0.0, 0.0, 0.0), "
+        "light=(0.0, 0.0, 1.0))"
     )
 
 

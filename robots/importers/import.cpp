@@ -153,6 +153,7 @@ std::string to_toml(const ImportedSettings& settings, const ImportReport& report
                       settings.environment, settings.gravity, settings.stiffness_scale);
   if (settings.environment == "land") {
     text += fmt::format("friction = {:.9g}\n", settings.friction);
+    if (settings.static_friction > 0) text += fmt::format("static-friction = {:.9g}\n", settings.static_friction);
     if (settings.self_collision)
       text += fmt::format("contact-stiffness = {:.9g}\n", settings.contact_stiffness);
     else

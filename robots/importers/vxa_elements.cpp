@@ -105,7 +105,6 @@ constexpr auto known = std::to_array<KnownElement>({
     {"Fail_Stress", no_failure},
     {"Fail_Strain", no_failure},
     {"Poissons_Ratio", "the lattice of springs has a Poisson ratio of its own, about 0.35"},
-    {"uStatic", "static friction is that of motion"},
     {"Fixed", not_fixed},
     {"Sticky", no_bodies},
     {"Cilia", no_cilia},

@@ -91,6 +91,8 @@ class VxaImport {
     if (settings.environment == "land") {
       settings.stiffness_scale = land_stiffness_scale;
       settings.friction = mean([&](std::size_t cell) { return material_of_cell(cell).friction; });
+      const double at_rest = mean([&](std::size_t cell) { return material_of_cell(cell).static_friction; });
+      settings.static_friction = at_rest > settings.friction ? at_rest : 0;
       settings.contact_stiffness = scaling_->calibration.contact_stiffness / settings.stiffness_scale;
     }
     settings.damping = scaling_->damping(

@@ -191,6 +191,8 @@ class VxaReader {
       material.phase = number_in(mechanical, "MaterialTempPhase").value_or(0);
       material.friction = number_in(mechanical, "uDynamic").value_or(0);
       if (material.friction < 0) refuse(mechanical.child("uDynamic"), "give 0 or more");
+      material.static_friction = number_in(mechanical, "uStatic").value_or(0);
+      if (material.static_friction < 0) refuse(mechanical.child("uStatic"), "give 0 or more");
       material.held = number_in(mechanical, "Fixed").value_or(0) != 0;
       if (material.name.empty()) material.name = fmt::format("material {}", model_.materials.size() + 1);
       model_.materials.push_back(std::move(material));
@@ -366,7 +368,7 @@ class VxaReader {
     for (std::size_t i = 0; i < model_.materials.size(); ++i) {
       const pugi::xml_node mechanical = model_.materials[i].element.child("Mechanical");
       if (!used[i + 1]) {
-        for (const char* child : {"Elastic_Mod", "Density", "CTE", "MaterialTempPhase", "uDynamic"})
+        for (const char* child : {"Elastic_Mod", "Density", "CTE", "MaterialTempPhase", "uStatic", "uDynamic"})
           mark(mechanical, child, ignored, "no voxel has this material");
         continue;
       }
@@ -378,6 +380,7 @@ class VxaReader {
       mark(mechanical, "CTE", mapped,
            model_.temperature_varies ? "amplitude of muscles, times the amplitude of the temperature"
                                      : "nothing moves: the temperature does not vary");
+      mark(mechanical, "uStatic", approximated, "static friction, the mean over the voxels");
       mark(mechanical, "uDynamic", approximated, "friction, the mean over the voxels");
       mark(mechanical, "Fixed", mapped,
            model_.materials[i].held ? "the masses of these voxels are fixed" : "no voxel is held");

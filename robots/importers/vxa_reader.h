@@ -20,6 +20,7 @@ struct VxaMaterial {
   double expansion = 0;        // CTE [1/degree]
   double phase = 0;            // MaterialTempPhase [rad]
   double friction = 0;         // uDynamic [1]
+  double static_friction = 0;  // uStatic [1]
   bool held = false;           // Fixed of voxcraft-sim
 };
 

@@ -77,6 +77,7 @@ struct World {
   bool self_collision = true;
   double gravity = 0;                        // along z [m/s2]
   double friction = 0.8;                     // of all materials
+  double static_friction = 0;                // 0 = that of motion
   std::optional<double> normal_coefficient;  // C_N of the water, times its density over 1000 kg/m3; none = usual_drag
   double stiffness_scale = 1;
   double damping = 0;  // [1/s]
@@ -190,8 +191,9 @@ class VxaWriter {
       text_ += fmt::format(
           "<Mechanical>\n<MatModel>0</MatModel>\n<Elastic_Mod>{:.17g}</Elastic_Mod>\n"
           "<Density>{}</Density>\n<Poissons_Ratio>0.35</Poissons_Ratio>\n<CTE>{:.17g}</CTE>\n"
-          "<uStatic>1</uStatic>\n<uDynamic>{}</uDynamic>\n</Mechanical>\n</Material>\n",
-          modulus(substance), density, substance.amplitude / temperature, world_.friction);
+          "<uStatic>{}</uStatic>\n<uDynamic>{}</uDynamic>\n</Mechanical>\n</Material>\n",
+          modulus(substance), density, substance.amplitude / temperature,
+          std::max(world_.friction, world_.static_friction), world_.friction);
     }
     text_ += "</Palette>\n";
   }
@@ -267,7 +269,10 @@ World world_of(const ImportedSettings& settings) {
               .damping = settings.damping,
               .seconds = settings.seconds,
               .settle = settings.settle};
-  if (world.has_floor) world.friction = settings.friction;
+  if (world.has_floor) {
+    world.friction = settings.friction;
+    world.static_friction = settings.static_friction;
+  }
   if (world.in_fluid) world.normal_coefficient = settings.drag_coefficient;
   return world;
 }

@@ -21,6 +21,7 @@
 // Vector is a Vec3, or a Vec3 of vectors with a robot or mass per lane (sim/cpu/kernels/lanes.h).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -244,15 +245,17 @@ struct OceanSimpleModel {
 //           .| depth    The mass is put back to z = 0. Friction shortens its tangential displacement by at most
 //            o x'       friction * depth, because a deeper contact means a larger normal force.
 //
+// A displacement of at most static_friction * depth is undone whole: the mass was at rest and stays there, or it moves
+// so slowly that it comes to rest.
+//
 // `x` is the position at the end of the step and `displacement` the way the mass moved in it. Corrects both. Returns
 // whether the mass touched the ground.
 template <class Vector>
-MERCURY_HOST_DEVICE auto touch_plane(Vector& x, Vector& displacement, float friction) {
+MERCURY_HOST_DEVICE auto touch_plane(Vector& x, Vector& displacement, float friction, float static_friction) {
   const auto depth = -x.z;
   const auto touched = depth > 0.0f;
   const auto moved = square_root(multiply_add(displacement.y, displacement.y, displacement.x * displacement.x));
-  const auto held = friction * depth;
-  const auto undone = select(moved > held, held / moved, 1.0f);
+  const auto undone = select(moved > static_friction * depth, friction * depth / moved, 1.0f);
   x = select(touched, Vector{fnma(undone, displacement.x, x.x), fnma(undone, displacement.y, x.y), 0.0f}, x);
   displacement = select(touched,
                         Vector{fnma(undone, displacement.x, displacement.x),
@@ -261,15 +264,18 @@ MERCURY_HOST_DEVICE auto touch_plane(Vector& x, Vector& displacement, float fric
   return touched;
 }
 
+inline float static_friction_of(const Plane& ground) { return std::max(ground.friction, ground.static_friction); }
+
 // Ground and contacts without water.
 struct LandModel {
   static constexpr bool has_faces = false, has_contacts = true, has_ground = true, still_water = false;
   static constexpr bool real_bodies = false, has_flow = false;
   MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
   Vec3 gravity;
-  float friction = 0;
+  float friction = 0, static_friction = 0;
 
-  LandModel(const Plane& ground, Vec3 gravity_) : gravity(gravity_), friction(ground.friction) {}
+  LandModel(const Plane& ground, Vec3 gravity_)
+      : gravity(gravity_), friction(ground.friction), static_friction(static_friction_of(ground)) {}
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
@@ -278,14 +284,14 @@ struct LandModel {
   MERCURY_HOST_DEVICE bool acts_on_ground() const { return true; }
   template <class Vector>
   MERCURY_HOST_DEVICE auto touch_ground(Vector& x, Vector& displacement) const {
-    return touch_plane(x, displacement, friction);
+    return touch_plane(x, displacement, friction, static_friction);
   }
 };
 
 // Any combination, and any bodies. Parts that are not there are skipped or have coefficients of zero.
 struct GeneralModel : OceanModel {
   static constexpr bool has_contacts = true, has_ground = true, real_bodies = true;
-  float drag = 0, friction = 0, normal = 0;
+  float drag = 0, friction = 0, static_friction = 0, normal = 0;
   bool face_drag = false, ground = false, is_resistive = false;
 
   explicit GeneralModel(const Environment& environment)
@@ -295,7 +301,10 @@ struct GeneralModel : OceanModel {
     flow = flow_of(environment);
     if (const auto* water = std::get_if<PointDrag>(&environment.water)) drag = water->point_drag;
     if (const auto* water = std::get_if<ResistiveDrag>(&environment.water)) normal = water->normal_coefficient;
-    if (const auto* plane = std::get_if<Plane>(&environment.ground)) friction = plane->friction;
+    if (const auto* plane = std::get_if<Plane>(&environment.ground)) {
+      friction = plane->friction;
+      static_friction = static_friction_of(*plane);
+    }
   }
 
   template <class Vector, class Real>
@@ -329,7 +338,7 @@ struct GeneralModel : OceanModel {
   MERCURY_HOST_DEVICE bool acts_on_ground() const { return ground; }
   template <class Vector>
   MERCURY_HOST_DEVICE auto touch_ground(Vector& x, Vector& displacement) const {
-    return touch_plane(x, displacement, friction);
+    return touch_plane(x, displacement, friction, static_friction);
   }
 
  private:

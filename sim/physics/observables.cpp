@@ -82,8 +82,8 @@ std::vector<FloorForce> floor_forces(const Robot& robot, const Configuration& co
     const float mass = mass_of(robot, i);
     const Vec3 hold = -(springs[i] + mass * (configuration.environment.gravity + inverse_dt * velocities[i]));
     if (!(hold.z > 0)) continue;
-    const float along = std::hypot(hold.x, hold.y), most = plane->friction * hold.z;
-    const float share = along > most ? most / along : 1;
+    const float along = std::hypot(hold.x, hold.y);
+    const float share = along > static_friction_of(*plane) * hold.z ? plane->friction * hold.z / along : 1;
     forces.push_back({static_cast<std::uint32_t>(i), {share * hold.x, share * hold.y, hold.z}});
   }
   return forces;

@@ -81,6 +81,47 @@ TEST_P(OnLand, APointOnASlopeHoldsBelowTheFrictionAngleAndSlidesAboveAsCoulombSa
     }
 }
 
+// Between the two angles a point at rest stays, and one that moves is slowed by the friction of motion alone.
+TEST_P(OnLand, StaticFrictionHoldsWhatIsAtRestAndDoesNotSlowWhatMoves) {
+  const Robot point = bodies::point();
+  const double friction = 0.3, static_friction = 0.6;
+  for (const Solver solver : {Solver::force, Solver::xpbd}) {
+    const auto on_slope = [&](double tangent) {
+      Configuration configuration = on_land(slope(tangent, static_cast<float>(friction)), solver, 0);
+      std::get<Plane>(configuration.environment.ground).static_friction = static_cast<float>(static_friction);
+      return configuration;
+    };
+    Simulation holds(on_slope(0.99 * static_friction), {&point, 1});
+    holds.step(2000);
+    EXPECT_EQ(holds.positions(0)[0], Vec3{}) << name_of(solver);
+    const auto acceleration = [&](double tangent) {
+      return 9.81 * (std::sin(std::atan(tangent)) - friction * std::cos(std::atan(tangent)));
+    };
+    Simulation slides(on_slope(1.01 * static_friction), {&point, 1});
+    slides.step(2000);
+    double expected = 2 * acceleration(1.01 * static_friction);
+    EXPECT_NEAR(slides.state(0).velocities[0].x, expected, 0.01 * expected) << name_of(solver);
+    Simulation moves(on_slope(0.45), {&point, 1});
+    moves.set_state(0, std::vector<Vec3>(1), std::vector<Vec3>{{0.5f, 0, 0}});
+    moves.step(1000);
+    expected = 0.5 + acceleration(0.45);
+    EXPECT_NEAR(moves.state(0).velocities[0].x, expected, 0.01 * expected) << name_of(solver);
+  }
+}
+
+// A lower coefficient for masses at rest than for those that move has no meaning, and changes nothing.
+TEST_P(OnLand, StaticFrictionBelowThatOfMotionDoesNotCount) {
+  const Robot block = bodies::voxels({.x = 4, .y = 3, .z = 1}, tissue_like);
+  const auto end = [&](float static_friction) {
+    Configuration configuration = on_land(slope(0.6, 0.5f), Solver::force, 1);
+    std::get<Plane>(configuration.environment.ground).static_friction = static_friction;
+    Simulation simulation(configuration, {&block, 1});
+    simulation.step(500);
+    return simulation.state(0).positions;
+  };
+  EXPECT_EQ(end(0.4f), end(0));
+}
+
 TEST_P(OnLand, ABlockOnASlopeHoldsBelowTheFrictionAngleAndSlidesAbove) {
   const float friction = 0.5f;
   const Robot block = bodies::voxels({.x = 4, .y = 3, .z = 1}, tissue_like);

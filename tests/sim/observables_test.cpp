@@ -154,6 +154,11 @@ TEST(Observables, TheFloorHoldsARestingMassAgainstItsWeightAndFrictionIsLimited)
   const auto slid = floor_forces(robot, land, {}, at_floor, sliding);
   EXPECT_NEAR(slid.at(0).force.x, -0.5 * 9.81, 1e-4);
   EXPECT_TRUE(floor_forces(robot, land, {}, above, still).empty());
+  Configuration sticky = land;
+  std::get<Plane>(sticky.environment.ground).static_friction = 0.8f;
+  sticky.environment.gravity.x = 0.7f * 9.81f;
+  EXPECT_NEAR(floor_forces(robot, sticky, {}, at_floor, still).at(0).force.x, -0.7 * 9.81, 1e-4);
+  EXPECT_NEAR(floor_forces(robot, sticky, {}, at_floor, sliding).at(0).force.x, -0.5 * 9.81, 1e-4);
   EXPECT_TRUE(floor_forces(robot, {}, {}, at_floor, still).empty());
 }
 

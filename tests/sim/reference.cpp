@@ -209,7 +209,8 @@ void Reference::add_repulsion(const Contacts& contacts, Field& force) const {
     }
 }
 
-// The floor z = 0: out of it, and the step's tangential move shortened by at most friction times the depth.
+// The floor z = 0: out of it, and the step's tangential move shortened by at most friction times the depth; to nothing
+// where it is at most the static friction times that.
 void Reference::resolve_contact(Field& next) const {
   const auto* plane = std::get_if<Plane>(&configuration_.environment.ground);
   if (!plane) return;
@@ -219,7 +220,10 @@ void Reference::resolve_contact(Field& next) const {
     Vector slide = next[i] - x_[i];
     slide.z() = 0;
     const double kept = std::max(0.0, slide.norm() - double{plane->friction} * depth);
-    if (slide.norm() > 0) slide *= kept / slide.norm();
+    if (slide.norm() <= double{plane->static_friction} * depth)
+      slide.setZero();
+    else
+      slide *= kept / slide.norm();
     next[i] = {x_[i].x() + slide.x(), x_[i].y() + slide.y(), 0};
   }
 }

@@ -29,6 +29,7 @@ struct ImportedSettings {
   double gravity = 0;                     // along z, negative = down [m/s2]
   double stiffness_scale = 1;             // of the environment, for which the robots' stiffnesses are made
   double friction = 0;                    // of the floor; land only
+  double static_friction = 0;             // of masses at rest on it, if above `friction`, else 0; land only
   bool self_collision = true;             // land only
   double contact_stiffness = 100;         // land only, times the stiffness scale [N/m]
   double drag_coefficient = 0;            // C_N of resistive water; resistive only

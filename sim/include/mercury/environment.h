@@ -100,11 +100,14 @@ struct NoGround {
 // Solid ground at z = 0.
 struct Plane {
   static constexpr std::string_view name = "ground";
-  float friction = 0.8f;  // Coulomb coefficient [1]
+  float friction = 0.8f;      // Coulomb coefficient [1]
+  float static_friction = 0;  // of masses at rest [1]; counts where it is above `friction`
   friend bool operator==(const Plane&, const Plane&) = default;
 
   static constexpr std::tuple parameters{
-      Parameter("friction", &Plane::friction, "", Accepts::at_least_zero, {0, 2}, "Coulomb friction of the floor, mu")};
+      Parameter("friction", &Plane::friction, "", Accepts::at_least_zero, {0, 2}, "Coulomb friction of the floor, mu"),
+      Parameter("static_friction", &Plane::static_friction, "", Accepts::at_least_zero, {0, 2},
+                "Friction of the floor for masses at rest, where it is above that of motion")};
 };
 
 // Masses of one robot that no spring joins repel each other.

@@ -81,6 +81,7 @@ const std::vector<Parameter> parameters{
      "give three finite numbers of m/s2"},
     {"gravity", "ocean", "2", "2", {0.0, 0.0, -2.0}, {"down", "a,b,c"}, number},
     {"friction", "land", "0.3", "0.3", 0.3, {"-1", "nan"}, at_least_zero},
+    {"static-friction", "land", "0.9", "0.9", 0.9, {"-1", "nan"}, at_least_zero},
     {"contact-stiffness", "land", "50", "50", 50.0, {"-1", "nan"}, at_least_zero + " N/m"},
     {"stiffness-scale", "land", "100", "100", 100.0, {"-1", "nan"}, at_least_zero},
     {"stiffness-scale", "ocean-simple", "3", "3", 3.0, {"1e99"}, number},

@@ -138,11 +138,13 @@ void expect_same_world(const Robot& robot, ImportedSettings world) {
   const ImportedSettings back = import_text(vxa_document(robot, world), "vxa", "test").settings;
   EXPECT_NEAR(back.gravity, world.gravity, 1e-12);
   EXPECT_NEAR(back.friction, world.friction, 1e-12);
+  EXPECT_NEAR(back.static_friction, world.static_friction, 1e-12);
   EXPECT_NEAR(back.damping, world.damping, 1e-12);
   EXPECT_NEAR(back.drag_coefficient, world.drag_coefficient, 1e-12);
   for (ImportedSettings* settings : {&world}) {
     settings->gravity = back.gravity;
     settings->friction = back.friction;
+    settings->static_friction = back.static_friction;
     settings->damping = back.damping;
     settings->drag_coefficient = back.drag_coefficient;
     settings->dt = back.dt;
@@ -158,6 +160,7 @@ TEST(VxaRoundTrip, KeepsTheWorld) {
                             .gravity = -3.7,
                             .stiffness_scale = 200,
                             .friction = 0.35,
+                            .static_friction = 0.7,
                             .self_collision = false,
                             .damping = 0.25,
                             .seconds = 7.5,

@@ -232,6 +232,19 @@ TEST(Vxa, ABaseWithoutVoxelsGivesNoRobotAndSaysWhy) {
   }
 }
 
+// CVXS_Voxel::CalcFloorEffect: a voxel at rest stays below uStatic N, one that moves is slowed by uDynamic N.
+TEST(Vxa, FrictionAtRestIsThatOfTheFileAndNeverBelowThatOfMotion) {
+  VxaParts parts;
+  const Import import = import_of(parts);
+  EXPECT_DOUBLE_EQ(import.settings.friction, 0.5);
+  EXPECT_DOUBLE_EQ(import.settings.static_friction, 1);
+  EXPECT_NE(to_toml(import.settings, import.report).find("\nstatic-friction = 1\n"), std::string::npos);
+  std::string text = parts.text();
+  for (std::size_t at = 0; (at = text.find("<uStatic>1<", at)) != std::string::npos;)
+    text.replace(at, 11, "<uStatic>0.2<");
+  EXPECT_DOUBLE_EQ(import_text(text, "vxa", "test").settings.static_friction, 0);
+}
+
 TEST(Vxa, ListsMayBeSeparatedBySpaces) {
   VxaParts commas, spaces;
   commas.layers = "<PhaseOffset><Layer>0,0.25</Layer><Layer>0.5,0.75</Layer></PhaseOffset>";
@@ -308,7 +321,7 @@ TEST(Vxa, TheReportHasEveryElement) {
       {"/VXA/Environment/Thermal/TempAmp", ImportOutcome::mapped},
       {"/VXA/VXC/Lattice/Lattice_Dim", ImportOutcome::mapped},
       {"/VXA/VXC/Palette/Material[3]/Mechanical/CTE", ImportOutcome::mapped},
-      {"/VXA/VXC/Palette/Material[3]/Mechanical/uStatic", ImportOutcome::ignored},
+      {"/VXA/VXC/Palette/Material[3]/Mechanical/uStatic", ImportOutcome::approximated},
       {"/VXA/VXC/Structure/Data/Layer", ImportOutcome::mapped}};
   for (const auto& [place, outcome] : expected) {
     const ImportedElement* element = element_at(report, place);
