@@ -14,6 +14,8 @@ vec2 disc_point(int i, int n) {
   return sqrt((float(i) + 0.5) / float(n)) * vec2(cos(angle), sin(angle));
 }
 
+mat2 turned_by(float turn) { return mat2(cos(turn), sin(turn), -sin(turn), cos(turn)); }
+
 // `noise` in [0, 1) rotates the pattern of samples. The point is moved along its normal, off its own surface.
 float key_visibility(vec3 point, vec3 normal, float noise) {
   float texel = frame.shadow_size.x / float(textureSize(shadow_depths, 0).x);
@@ -27,7 +29,7 @@ float key_visibility(vec3 point, vec3 normal, float noise) {
 #else
   const float turn = 0.4;
 #endif
-  mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
+  mat2 turned = turned_by(turn);
   float search = frame.to_key.w * (0.35 * receiver + beyond) / frame.shadow_size.x;
 #if SHADOW_BLOCKERS > 0
   float blockers = 0.0, sum = 0.0;

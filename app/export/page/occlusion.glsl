@@ -9,10 +9,10 @@ uniform vec2 roof_range;  // depth of the map, radius of the samples [m]
 float open_sky(vec3 point, vec3 normal) {
   const int taps = 10;
   float hidden = 0.0;
-  float turn = 6.2831853 * pixel_noise(gl_FragCoord.xy);
+  mat2 turned = turned_by(6.2831853 * pixel_noise(gl_FragCoord.xy));
   vec3 from = point + 0.06 * roof_range.y * normal;
   for (int i = 0; i < taps; ++i) {
-    vec2 off = roof_range.y * disc_point(i, taps, turn);
+    vec2 off = roof_range.y * turned * disc_point(i, taps);
     vec2 at = (from.xy + off - roof_box.xy) / roof_box.z;
     float d = textureLod(roof, at, 0.0).r;
     if (d >= 1.0 || any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)))) continue;
