@@ -83,6 +83,15 @@ constexpr Choice choices[] = {
      [](const ViewSettings& view) { return !view.cut; }},
 };
 
+// As one edit that can be undone.
+void change_configuration(PanelContext& context, const std::function<void(Configuration&)>& change) {
+  Configuration configuration = context.scene.configuration();
+  change(configuration);
+  context.scene.end_edit();
+  context.scene.set_configuration(configuration);
+  context.scene.end_edit();
+}
+
 void change_view(PanelContext& context, const std::function<void(ViewSettings&)>& change) {
   ViewSettings view = context.scene.view();
   change(view);
@@ -206,21 +215,14 @@ void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
   for (const Solver solver : {Solver::force, Solver::xpbd})
     entries.push_back({fmt::format("solver {}", name_of(solver)), "Tune", configuration.solver == solver ? "on" : "",
                        [&context, solver] {
-                         Configuration changed = context.scene.configuration();
-                         changed.solver = solver;
-                         context.scene.end_edit();
-                         context.scene.set_configuration(changed);
-                         context.scene.end_edit();
+                         change_configuration(context, [&](Configuration& changed) { changed.solver = solver; });
                        }});
   for (const std::string_view name : environment_names())
     entries.push_back({fmt::format("environment {}", name), "Tune",
                        name_of(configuration.environment) == name ? "on" : "",
                        [&context, name] {
-                         Configuration changed = context.scene.configuration();
-                         changed.environment = environment_named(name);
-                         context.scene.end_edit();
-                         context.scene.set_configuration(changed);
-                         context.scene.end_edit();
+                         change_configuration(
+                             context, [&](Configuration& changed) { changed.environment = environment_named(name); });
                        },
                        "world"});
   for_each_parameter(configuration.environment, [&]<class Value>(const auto& parameter, const Value& value) {
@@ -228,14 +230,13 @@ void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
     std::ranges::replace(label, '_', ' ');
     if constexpr (std::is_same_v<Value, bool>) {
       entries.push_back({label, "Tune", value ? "on" : "off", [&context, name = std::string(parameter.name)] {
-                           Configuration changed = context.scene.configuration();
-                           for_each_parameter(changed.environment, [&]<class Other>(const auto& other, Other& target) {
-                             if constexpr (std::is_same_v<Other, bool>)
-                               if (other.name == name) target = !target;
+                           change_configuration(context, [&](Configuration& changed) {
+                             for_each_parameter(changed.environment,
+                                                [&]<class Other>(const auto& other, Other& target) {
+                                                  if constexpr (std::is_same_v<Other, bool>)
+                                                    if (other.name == name) target = !target;
+                                                });
                            });
-                           context.scene.end_edit();
-                           context.scene.set_configuration(changed);
-                           context.scene.end_edit();
                          }});
     }
     if constexpr (std::is_same_v<Value, float>) {

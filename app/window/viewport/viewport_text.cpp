@@ -215,8 +215,8 @@ bool LegendView::drag_end(bool high, const render::Legend& legend, const Bar& ba
     return true;
   }
   if (ImGui::IsItemActivated()) held_ = *legend.scale;
-  const ImVec2 way = ImGui::GetMouseDragDelta(0, 3);  // also in the frame that lets go
-  if (!dragged || !held_ || (way.x == 0 && way.y == 0)) return false;
+  // Unlike IsMouseDragging(), also in the frame that lets go.
+  if (!dragged || !held_ || ImGui::GetIO().MouseDragMaxDistanceSqr[0] < 3 * 3) return false;
   const float position = (bar.bottom - ImGui::GetIO().MousePos.y) / (bar.bottom - bar.top);
   const bool both = view.color->is_signed && held_->low == -held_->high;  // zero stays in the middle
   const float nearest = both ? 0.5f : high ? 0.0f : 1.0f;
