@@ -22,7 +22,7 @@ def measure(robot):
 
 
 archive = GridArchive(solution_dim=1, dims=[8, 8], ranges=[(40, 240), (0.1, 0.6)])
-bodies = []  # a solution is the index of a body
+bodies: list[mercurysim.Robot] = []  # a solution is the index of a body
 for generation in range(generations):
     if generation == 0:
         children = mercurysim.random_voxel(count, seed=1)

@@ -17,7 +17,7 @@ parser.add_argument("--iterations", type=int, default=1000)
 options = parser.parse_args()
 torch.manual_seed(1)
 env = SwimEnv(eel(), options.robots, torch=True, frame_skip=50)  # an action lasts 0.1 s
-seen, _ = env.reset(seed=1)
+seen, infos = env.reset(seed=1)
 
 
 def network(outputs, gain, width=64):

@@ -26,13 +26,18 @@ from ._mercury import (
     Result,
     Results,
     Robot,
+    Water,
     evaluate,
     export,
     load,
     voxel,
 )
-from ._pages import Page, show
-from ._pictures import Film, Look, Video, picture, render
+from ._signatures import make_readable
+
+make_readable(globals())
+
+from ._pages import Page, show  # noqa: E402
+from ._pictures import Film, Look, Video, picture, render  # noqa: E402
 
 __version__: str = getattr(_mercury, "__version__")
 
@@ -55,6 +60,7 @@ __all__ = [
     "Results",
     "Robot",
     "Video",
+    "Water",
     "__version__",
     "evaluate",
     "export",

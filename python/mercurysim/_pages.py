@@ -8,13 +8,10 @@ import os
 import tempfile
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Sequence
+from typing import Any, Sequence
 
 from . import _mercury
-from ._mercury import Batch, InputError, Recording, Result, Robot
-
-if TYPE_CHECKING:
-    Environment = Any
+from ._mercury import Batch, Environment, InputError, Recording, Result, Robot
 
 _cpp: Any = _mercury
 
@@ -55,7 +52,7 @@ def show(
     what: Robot | Batch | Recording | Result | Sequence[Robot] | Sequence[Result],
     *,
     seconds: float | None = None,
-    environment: Environment = None,
+    environment: Environment | str | None = None,
     height: int = 480,
 ) -> Page:
     """Plays robots, a batch, a recording or results in a web page, which a notebook shows; save() and open() it elsewhere.

@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping, Sequence, TypedDict, Union
 
 from . import _mercury
-from ._mercury import Batch, DeviceError, InputError, Recording, Result, Robot, load
+from ._mercury import Batch, DeviceError, Environment, InputError, Recording, Result, Robot, load
 
 if TYPE_CHECKING:
     import numpy.typing
     from typing_extensions import Unpack
 
-    Environment = Any
     Filmed = Union[Robot, Sequence[Robot], Recording, Result, Sequence[Result], str, os.PathLike[str]]
 
 _most_sides = 4
@@ -63,7 +62,7 @@ def picture(
     what: Batch | Robot | Sequence[Robot],
     size: tuple[int, int] = (1280, 720),
     *,
-    environment: Environment = None,
+    environment: Environment | str | None = None,
     **look: Unpack[Look],
 ) -> numpy.typing.NDArray[numpy.uint8]:
     """A picture of a batch as it is now, or of robots at rest: an array (height, width, 3) of uint8.
@@ -161,7 +160,7 @@ def render(
     output: str | os.PathLike[str],
     seconds: float | None = None,
     *,
-    environment: Environment = None,
+    environment: Environment | str | None = None,
     solver: str = "force",
     dt: float = 1e-3,
     damping: float = 0.1,

@@ -199,6 +199,7 @@ void bind_array(nb::module_& module) {
       .def_prop_ro("nbytes", &Array::bytes, "Bytes of all elements.")
       .def_prop_ro(
           "dtype", [](const Array& self) { return numpy().attr("dtype")(dtype_name(self)); },
+          nb::sig("def dtype(self) -> numpy.dtype[typing.Any]"),
           "NumPy's name of the elements' type: float32 or bool.")
       .def_prop_ro("device", &device_of, "Where the memory is: 'cpu' or 'cuda:0'.")
       .def("__len__", [](const Array& self) { return self.shape[0]; })
@@ -207,14 +208,23 @@ void bind_array(nb::module_& module) {
              throw nb::value_error("an array is neither true nor false; use numpy.any(array) or numpy.all(array)");
            })
       .def("__repr__", &represent)
-      .def("__getitem__", [](nb::handle_t<Array> self, nb::handle key) { return nb::object(numpy_view(self)[key]); })
-      .def("__setitem__",
-           [](nb::handle_t<Array> self, nb::handle key, nb::handle value) { numpy_view(self)[key] = value; })
-      .def("numpy", &numpy_copy, "A copy in the memory of the CPU, as a NumPy array.")
+      .def(
+          "__getitem__",
+          [](nb::handle_t<Array> self, nb::handle key) { return nb::object(numpy_view(self)[key]); },
+          nb::sig("def __getitem__(self, key: typing.Any, /) -> typing.Any"))
+      .def(
+          "__setitem__",
+          [](nb::handle_t<Array> self, nb::handle key, nb::handle value) { numpy_view(self)[key] = value; },
+          nb::sig("def __setitem__(self, key: typing.Any, value: numpy.typing.ArrayLike, /) -> None"))
+      // Before numpy(), whose name hides the module's from what comes after it in the stub.
+      .def("__array__", &to_numpy, nb::arg("dtype") = nb::none(), nb::arg("copy") = nb::none(),
+           nb::sig("def __array__(self, dtype: typing.Any = None, copy: bool | None = None) -> "
+                   "numpy.typing.NDArray[typing.Any]"))
+      .def("numpy", &numpy_copy, nb::sig("def numpy(self) -> numpy.typing.NDArray[typing.Any]"),
+           "A copy in the memory of the CPU, as a NumPy array.")
       .def(
           "torch", [](nb::handle_t<Array> self) { return nb::module_::import_("torch").attr("from_dlpack")(self); },
-          "The same memory as a PyTorch tensor.")
-      .def("__array__", &to_numpy, nb::arg("dtype") = nb::none(), nb::arg("copy") = nb::none())
+          nb::sig("def torch(self) -> typing.Any"), "The same memory as a PyTorch tensor.")
       .def_prop_ro("__array_interface__", &host_interface,
                    nb::sig("def __array_interface__(self) -> dict[str, typing.Any]"),
                    "NumPy's array interface, on the CPU only.")
@@ -223,6 +233,8 @@ void bind_array(nb::module_& module) {
                    "Numba's array interface, version 3, on CUDA only.")
       .def("__dlpack__", &to_dlpack, nb::kw_only(), nb::arg("stream") = nb::none(), nb::arg("max_version") = nb::none(),
            nb::arg("dl_device") = nb::none(), nb::arg("copy") = nb::none(),
+           nb::sig("def __dlpack__(self, *, stream: typing.Any = None, max_version: tuple[int, int] | None = None, "
+                   "dl_device: tuple[int, int] | None = None, copy: bool | None = None) -> typing.Any"),
            "A DLPack capsule of this memory. `stream` is the consumer's, -1 = do not wait for the batch.")
       .def(
           "__dlpack_device__",

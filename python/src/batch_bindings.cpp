@@ -156,10 +156,13 @@ auto known(Get get) {
 
 void bind_actuation(nb::module_& module) {
   nb::class_<ActuationArrays>(module, "Actuation", actuation_description)
-      .def_ro("amplitude", &ActuationArrays::amplitude, "Amplitudes, (robots, actuators) [1].")
-      .def_ro("frequency", &ActuationArrays::frequency, "Angular frequencies, (robots, actuators) [rad/s].")
-      .def_ro("phase", &ActuationArrays::phase, "Phases, (robots, actuators) [rad].")
-      .def_ro("drive", &ActuationArrays::drive, "Drive signals u, (robots, actuators) [1]; NaN = follow the sine.")
+      .def_ro("amplitude", &ActuationArrays::amplitude, nb::sig("def amplitude(self) -> Array"),
+              "Amplitudes, (robots, actuators) [1].")
+      .def_ro("frequency", &ActuationArrays::frequency, nb::sig("def frequency(self) -> Array"),
+              "Angular frequencies, (robots, actuators) [rad/s].")
+      .def_ro("phase", &ActuationArrays::phase, nb::sig("def phase(self) -> Array"), "Phases, (robots, actuators) [rad].")
+      .def_ro("drive", &ActuationArrays::drive, nb::sig("def drive(self) -> Array"),
+              "Drive signals u, (robots, actuators) [1]; NaN = follow the sine.")
       .def(
           "names",
           [](const ActuationArrays& self, std::int64_t robot) {
@@ -188,28 +191,30 @@ void bind_properties(nb::class_<Batch>& batch) {
             return object_of(
                 self.use([](const Simulation& simulation) { return simulation.configuration().environment; }));
           },
-          "A copy of the environment.")
+          nb::sig("def environment(self) -> Environment"), "A copy of the environment.")
       .def_prop_ro("device", &Batch::device, "What steps the robots: 'cpu', 'cuda:0', or 'cuda:all' if several do.")
       .def_prop_ro("device_name", known([](Sim simulation) { return simulation.device_name(); }),
                    "The same for people, as 'CPU, 2 threads, AVX2'.")
       .def_prop_ro("notes", known([](Sim simulation) { return simulation.notes(); }),
                    "Lines worth reading, as that a robot is too large for the chip; usually none.")
       .def_prop_ro("robots", &robots, nb::sig("def robots(self) -> list[Robot]"), "The robots, as they were added.")
-      .def_prop_ro("offsets", &offsets,
+      .def_prop_ro("offsets", &offsets, nb::sig("def offsets(self) -> numpy.typing.NDArray[numpy.int64]"),
                    "Robot i has the masses offsets[i] to offsets[i + 1] of positions; robots + 1 elements.");
 }
 
 void bind_arrays(nb::class_<Batch>& batch) {
   const auto state = [](StateArray which) { return [which](Batch& self) { return self.state_array(which); }; };
   batch
-      .def_prop_ro("positions", state(StateArray::positions),
+      .def_prop_ro("positions", state(StateArray::positions), nb::sig("def positions(self) -> Array"),
                    "Positions of all masses, robot after robot, (masses, 3) float32 [m]. An Array, read-only.")
-      .def_prop_ro("velocities", state(StateArray::velocities), "Velocities, (masses, 3) float32 [m/s]; as positions.")
-      .def_prop_ro("centers", state(StateArray::centers),
+      .def_prop_ro("velocities", state(StateArray::velocities), nb::sig("def velocities(self) -> Array"),
+                   "Velocities, (masses, 3) float32 [m/s]; as positions.")
+      .def_prop_ro("centers", state(StateArray::centers), nb::sig("def centers(self) -> Array"),
                    "Centers of mass, (robots, 3) float32 [m]. An Array, read-only.")
       .def_prop_ro("center_velocities", state(StateArray::center_velocities),
+                   nb::sig("def center_velocities(self) -> Array"),
                    "Velocities of the centers of mass, (robots, 3) float32 [m/s]. An Array, read-only.")
-      .def_prop_ro("exploded", &Batch::exploded,
+      .def_prop_ro("exploded", &Batch::exploded, nb::sig("def exploded(self) -> Array"),
                    "Which robots have exploded and are frozen, (robots,) bool. An Array, read-only.")
       .def_prop_ro("actuation", &Batch::actuation, nb::sig("def actuation(self) -> Actuation"),
                    "What drives the actuators, an Actuation.")
@@ -230,7 +235,7 @@ void bind_reports(nb::class_<Batch>& batch) {
           [](const Batch& self) {
             return telemetry_array(self.use([](const Simulation& simulation) { return simulation.telemetry(); }));
           },
-          telemetry_description)
+          nb::sig("def telemetry(self) -> numpy.typing.NDArray[numpy.void]"), telemetry_description)
       .def_prop_rw(
           "measure_folding",
           [](const Batch& self) {
@@ -254,6 +259,7 @@ void bind_reports(nb::class_<Batch>& batch) {
           [](const Batch& self) {
             return numpy_array(self.use([](const Simulation& simulation) { return simulation.hashes(); }), "uint64");
           },
+          nb::sig("def hashes(self) -> numpy.typing.NDArray[numpy.uint64]"),
           "The hashes of all robots, (robots,) uint64.")
       .def("__repr__", &represent_batch)
       .def("__reduce_ex__", refused_pickle("a Batch cannot be pickled or copied: make another one of batch.robots"),
@@ -269,19 +275,31 @@ void bind_batch(nb::module_& module) {
   batch
       .def("__init__", &init, nb::arg("robots").none(), nb::arg("environment") = nb::none(),
            nb::arg("solver") = "force", nb::arg("dt") = 1e-3, nb::arg("damping") = 0.1, nb::arg("device") = "auto",
-           nb::arg("threads") = 0, init_description)
-      .def("step", &Batch::step, nb::arg("n") = 1, nb::arg("stream") = nb::none(), step_description)
-      .def("reset", &Batch::reset, nb::arg("mask") = nb::none(), nb::arg("stream") = nb::none(), reset_description)
+           nb::arg("threads") = 0,
+           nb::sig("def __init__(self, robots: Robot | collections.abc.Iterable[Robot], "
+                   "environment: Environment | str | None = None, solver: str = 'force', dt: float = 0.001, "
+                   "damping: float = 0.1, device: object = 'auto', threads: int = 0) -> None"),
+           init_description)
+      .def("step", &Batch::step, nb::arg("n") = 1, nb::arg("stream") = nb::none(),
+           nb::sig("def step(self, n: int = 1, stream: typing.Any = None) -> None"), step_description)
+      .def("reset", &Batch::reset, nb::arg("mask") = nb::none(), nb::arg("stream") = nb::none(),
+           nb::sig("def reset(self, mask: typing.Any = None, stream: typing.Any = None) -> None"), reset_description)
       .def(
           "add", [](Batch& self, nb::handle robots) { return self.add(robots_of(robots)); }, nb::arg("robots").none(),
+          nb::sig("def add(self, robots: Robot | collections.abc.Iterable[Robot]) -> int"),
           "Adds a Robot or a sequence of them, at rest at the current time. Returns the index of the first.")
       .def("keep", &Batch::keep, nb::arg("indices").none(),
+           nb::sig("def keep(self, indices: numpy.typing.ArrayLike) -> None"),
            "Keeps the robots of these indices, in this order, with their states, and removes the others.")
       .def("set_state", &set_state, nb::arg("robot"), nb::arg("positions").none(), nb::arg("velocities") = nb::none(),
+           nb::sig("def set_state(self, robot: int, positions: numpy.typing.ArrayLike, "
+                   "velocities: numpy.typing.ArrayLike | None = None) -> None"),
            "Puts the masses of a robot to `positions` [m] with `velocities` [m/s], both (masses, 3); None = at rest.\n"
            "The robot has not exploded afterwards. Raises InputError for another shape.")
       .def("configure", &configure, nb::kw_only(), nb::arg("environment") = nb::none(), nb::arg("solver") = nb::none(),
            nb::arg("dt") = nb::none(), nb::arg("damping") = nb::none(),
+           nb::sig("def configure(self, *, environment: Environment | str | None = None, solver: str | None = None, "
+                   "dt: float | None = None, damping: float | None = None) -> None"),
            "Changes what is given, from now on. States and time stay, except that robots that come to land are set\n"
            "down on the floor. Raises InputError for a value that is not accepted.")
       .def("synchronize", &Batch::synchronize, "Waits until the device has done all steps.");

@@ -273,9 +273,13 @@ void bind_evaluate(nb::module_& module) {
   nb::class_<Results>(
       module, "Results", nb::type_slots(results_slots), nb::is_weak_referenceable(),
       "The iterator over Results that evaluate() returns. As a context manager it is closed at the end.")
-      .def("__iter__", [](nb::handle_t<Results> self) { return nb::borrow(self); })
+      .def(
+          "__iter__", [](nb::handle_t<Results> self) { return nb::borrow(self); },
+          nb::sig("def __iter__(self) -> Results"))
       .def("__next__", &Results::next)
-      .def("__enter__", [](nb::handle_t<Results> self) { return nb::borrow(self); })
+      .def(
+          "__enter__", [](nb::handle_t<Results> self) { return nb::borrow(self); },
+          nb::sig("def __enter__(self) -> Results"))
       .def(
           "__exit__", [](Results& self, const nb::args&) { self.close(); }, nb::arg("error"),
           nb::sig("def __exit__(self, *error: object) -> None"))
@@ -290,7 +294,15 @@ void bind_evaluate(nb::module_& module) {
              nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,
              nb::arg("sample_every") = nb::none(), nb::arg("trials") = 1, nb::arg("jitter") = nb::none(),
              nb::arg("seed") = 1, nb::arg("folding") = false, nb::arg("hashes") = false, nb::arg("states") = false,
-             nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(), evaluate_description);
+             nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(),
+             nb::sig("def evaluate(source: Robot | collections.abc.Iterable[Robot] | "
+                     "collections.abc.Callable[[int], Robot | None], seconds: float, *, "
+                     "environment: Environment | str | None = None, solver: str = 'force', dt: float = 0.001, "
+                     "damping: float = 0.1, device: object = 'auto', threads: int = 0, settle: float = 0.0, "
+                     "sample_every: float | None = None, trials: int = 1, jitter: float | None = None, seed: int = 1, "
+                     "folding: bool = False, hashes: bool = False, states: bool = False, "
+                     "memory_limit: int | None = None, portion: int | None = None) -> Results"),
+             evaluate_description);
   // What is open when the interpreter exits is closed while threads can still run.
   const nb::object open = nb::module_::import_("weakref").attr("WeakSet")();
   module.attr("_open_results") = open;

@@ -283,7 +283,7 @@ void bind_export(nb::module_& module) {
                      "os.PathLike[str], format: str | None = None, *, "
                      "robot: str | int | None = None, still: float | None = None, start: float | None = None, "
                      "end: float | None = None, every: int = 1, springs: bool = False, seconds: float | None = None, "
-                     "environment: object = None, floor: bool = False, camera: bool = False) -> None"),
+                     "environment: Environment | str | None = None, floor: bool = False, camera: bool = False) -> None"),
              doc.c_str());
 }
 

@@ -170,7 +170,9 @@ void bind_recorder(nb::module_& module) {
       .def("frame", &BatchRecorder::frame, "Adds the batch as it is now; with `every` alone.")
       .def("close", &BatchRecorder::close, "Completes the file.")
       .def_prop_ro("frames", &BatchRecorder::frames, "Number of frames so far.")
-      .def("__enter__", [](nb::handle_t<BatchRecorder> self) { return nb::borrow(self); })
+      .def(
+          "__enter__", [](nb::handle_t<BatchRecorder> self) { return nb::borrow(self); },
+          nb::sig("def __enter__(self) -> Recorder"))
       .def(
           "__exit__", [](BatchRecorder& self, const nb::args&) { self.close(); }, nb::arg("error"),
           nb::sig("def __exit__(self, *error: object) -> None"));

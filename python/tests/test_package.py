@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import ast
 import importlib.util
+import inspect
 import re
 import shutil
 import subprocess
@@ -101,6 +102,59 @@ def test_the_type_checker_knows_the_package(tmp_path, program, errors):
                              tmp_path / "program.py"], capture_output=True, text=True, env=path)
     found = [line for line in result.stdout.splitlines() if "program.py" in line and ": error: " in line]
     assert result.returncode < 2 and len(found) == errors, result.stdout + result.stderr
+
+
+BLOCK = re.compile(r"```python\n(.*?)```", re.DOTALL)
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAMS = [*(ROOT / page for page in ("README.md", "docs/python.md", "docs/brains.md")),
+            *sorted((ROOT / "examples/python").glob("*.py"))]
+
+
+def test_the_type_checker_accepts_the_programs_of_the_documentation(tmp_path):
+    if not importlib.util.find_spec("mypy"):
+        pytest.skip("there is no mypy")
+    if not (FOLDER / "_mercury.pyi").exists():
+        pytest.skip("this build has no stubs")
+    for path in PROGRAMS:
+        text = path.read_text()
+        blocks = "\n".join(BLOCK.findall(text)) if path.suffix == ".md" else text
+        (tmp_path / f"{path.stem}_program.py").write_text(blocks)
+    variables = {} if "site-packages" in FOLDER.parts else {"MYPYPATH": str(FOLDER.parent)}
+    # Other packages may be missing here, or have no types.
+    result = subprocess.run([sys.executable, "-m", "mypy", "--disable-error-code", "import-untyped", "--disable-error-code",
+                             "import-not-found", "--cache-dir", tmp_path / "cache", *tmp_path.glob("*_program.py")],
+                            capture_output=True, text=True, env=variables)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
+WITHOUT_CONSTRUCTOR = {"Actuation", "Array", "Look", "Result", "Results"}
+
+
+def test_everything_public_has_a_signature():
+    for name in mercurysim.__all__:
+        thing = getattr(mercurysim, name)
+        if isinstance(thing, type) and issubclass(thing, Exception) or not callable(thing):
+            continue
+        if name not in WITHOUT_CONSTRUCTOR:
+            inspect.signature(thing)
+        for member, value in vars(thing).items() if isinstance(thing, type) else ():
+            if not member.startswith("_") and callable(value):
+                inspect.signature(value)
+
+
+def test_signatures_are_those_of_the_functions():
+    voxel = inspect.signature(mercurysim.random_voxel).parameters
+    assert list(voxel)[:4] == ["count", "seed", "first", "lively"] and voxel["seed"].default == 1
+    assert voxel["lively"].kind is inspect.Parameter.KEYWORD_ONLY
+    assert list(inspect.signature(mercurysim.Batch).parameters)[:3] == ["robots", "environment", "solver"]
+    assert list(inspect.signature(mercurysim.Batch([]).step).parameters) == ["n", "stream"]
+    assert inspect.signature(mercurysim.Ocean).parameters["density"].default == 1000
+
+    class Own(mercurysim.Batch):
+        def __init__(self, size):
+            super().__init__(mercurysim.random_voxel(size))
+
+    assert list(inspect.signature(Own).parameters) == ["size"] and len(Own(2)) == 2
 
 
 def test_the_package_itself_has_no_errors_of_types(tmp_path):

@@ -63,6 +63,11 @@ class RobotEnv(gymnasium.vector.VectorEnv):
     reset(options={"reset_mask": mask}) resets some robots.
     """
 
+    single_observation_space: gymnasium.spaces.Box
+    single_action_space: gymnasium.spaces.Box
+    observation_space: gymnasium.spaces.Box
+    action_space: gymnasium.spaces.Box
+
     def __init__(
         self,
         robots: Robot | Sequence[Robot] | None = None,
@@ -150,8 +155,8 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         size = 13 + 6 * markers + actuators + 2
         self.single_observation_space = gymnasium.spaces.Box(-LIMIT, LIMIT, (size,), np.float32)
         self.single_action_space = gymnasium.spaces.Box(-1, 1, (actuators,), np.float32)
-        self.observation_space = gymnasium.vector.utils.batch_space(self.single_observation_space, self.num_envs)
-        self.action_space = gymnasium.vector.utils.batch_space(self.single_action_space, self.num_envs)
+        self.observation_space = gymnasium.spaces.Box(-LIMIT, LIMIT, (self.num_envs, size), np.float32)
+        self.action_space = gymnasium.spaces.Box(-1, 1, (self.num_envs, actuators), np.float32)
 
     @classmethod
     def default_robot(cls) -> Robot:
