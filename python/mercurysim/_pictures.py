@@ -63,18 +63,19 @@ def picture(
     size: tuple[int, int] = (1280, 720),
     *,
     environment: Environment | str | None = None,
+    robot: int | None = None,
     **look: Unpack[Look],
 ) -> numpy.typing.NDArray[numpy.uint8]:
     """A picture of a batch as it is now, or of robots at rest: an array (height, width, 3) of uint8.
 
-    `size` is (width, height) in pixels. `environment` is what robots at rest are shown in; a batch has its own. `look`
-    are the options of Look, such as color="strain" or camera="top". The same state gives the same bytes. Any thread may
+    `size` is (width, height) in pixels. `environment` is what robots at rest are shown in; a batch has its own. `robot` is
+    the index of the only one that is shown of a batch. `look` are the options of Look, such as color="strain" or camera="top". The same state gives the same bytes. Any thread may
     call it; pictures are drawn one after another on a thread of Mercury's own, without a display.
 
     Raises InputError for what cannot be used, and DeviceError where there is no OpenGL, or in a process that was forked
     from one that has drawn: start processes with the method "spawn".
     """
-    image: numpy.typing.NDArray[numpy.uint8] = _cpp._picture(what, size, environment, _words(look))
+    image: numpy.typing.NDArray[numpy.uint8] = _cpp._picture(what, size, environment, robot, _words(look))
     return image
 
 

@@ -4,37 +4,30 @@
 from __future__ import annotations
 
 import __future__
-import ast
 import inspect
 import re
-import types
 from typing import Any
 
 
-def _python_function(function: Any) -> types.FunctionType:
-    """A function of Python with the signature and the docstring of one of nanobind, which it calls."""
-    text, doc, defaults = function.__nb_signature__[0]
-    names = [f"_default_{i}" for i in range(len(defaults or ()))]
-    text = re.sub(r"\\(\d+)", lambda number: f"_default_{number[1]}", text)
-    tree = ast.parse(text + ": pass")
-    (head,) = tree.body
-    assert isinstance(head, ast.FunctionDef)
-    call = ast.parse("_call()", mode="eval").body
-    assert isinstance(call, ast.Call)
-    place = head.args
-    call.args = [ast.Name(each.arg, ast.Load()) for each in place.posonlyargs + place.args]
-    call.keywords = [ast.keyword(each.arg, ast.Name(each.arg, ast.Load())) for each in place.kwonlyargs]
-    if place.vararg:
-        call.args.append(ast.Starred(ast.Name(place.vararg.arg, ast.Load()), ast.Load()))
-    if place.kwarg:
-        call.keywords.append(ast.keyword(None, ast.Name(place.kwarg.arg, ast.Load())))
-    head.body = [ast.Return(call)]
+def _signature_of(function: Any) -> inspect.Signature:
+    """The signature of a function of nanobind."""
+    text, _, defaults = function.__nb_signature__[0]
+    text = re.sub(r"\\(\d+)", lambda number: f"_defaults[{number[1]}]", text)
     annotations = __future__.annotations.compiler_flag  # they stay text
-    code = compile(ast.fix_missing_locations(tree), "<mercurysim>", "exec", annotations, dont_inherit=True)
-    names_of_code: dict[str, Any] = {"_call": function, **dict(zip(names, defaults or ()))}
-    exec(code, names_of_code)
-    made: types.FunctionType = names_of_code[head.name]
-    made.__doc__, made.__module__ = doc, "mercurysim"
+    names: dict[str, Any] = {"_defaults": defaults}
+    exec(compile(text + ": pass", "<mercurysim>", "exec", annotations, dont_inherit=True), names)
+    return inspect.signature(names[text[len("def ") : text.index("(")]])
+
+
+def _python_function(function: Any, name: str) -> Any:
+    """A function of Python with the signature and the docstring of one of nanobind, which it calls."""
+
+    def made(*arguments: Any, **named: Any) -> Any:
+        return function(*arguments, **named)
+
+    made.__name__, made.__qualname__, made.__module__ = name.rpartition(".")[2], name, "mercurysim"
+    made.__doc__ = function.__nb_signature__[0][1]
+    setattr(made, "__signature__", _signature_of(function))
     return made
 
 
@@ -58,15 +51,13 @@ def make_readable(names: dict[str, Any]) -> None:
     """Replaces the functions of nanobind among `names`, and the methods of its classes, by functions of Python."""
     for name, thing in list(names.items()):
         if _is_function(thing):
-            names[name] = _python_function(thing)
+            names[name] = _python_function(thing, name)
         elif isinstance(thing, type) and thing.__module__ == "mercurysim._mercury":
             for member, value in list(vars(thing).items()):
                 if not _is_function(value):
                     continue
                 if member == "__init__":
-                    parameters = list(inspect.signature(_python_function(value)).parameters.values())[1:]
+                    parameters = list(_signature_of(value).parameters.values())[1:]
                     setattr(thing, "__signature__", _ClassSignature(thing, inspect.Signature(parameters)))
                 elif not member.startswith("_"):
-                    made = _python_function(value)
-                    made.__qualname__ = f"{thing.__name__}.{member}"
-                    setattr(thing, member, made)
+                    setattr(thing, member, _python_function(value, f"{thing.__name__}.{member}"))

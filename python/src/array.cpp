@@ -199,8 +199,7 @@ void bind_array(nb::module_& module) {
       .def_prop_ro("nbytes", &Array::bytes, "Bytes of all elements.")
       .def_prop_ro(
           "dtype", [](const Array& self) { return numpy().attr("dtype")(dtype_name(self)); },
-          nb::sig("def dtype(self) -> numpy.dtype[typing.Any]"),
-          "NumPy's name of the elements' type: float32 or bool.")
+          nb::sig("def dtype(self) -> numpy.dtype[typing.Any]"), "NumPy's name of the elements' type: float32 or bool.")
       .def_prop_ro("device", &device_of, "Where the memory is: 'cpu' or 'cuda:0'.")
       .def("__len__", [](const Array& self) { return self.shape[0]; })
       .def("__bool__",
@@ -209,8 +208,7 @@ void bind_array(nb::module_& module) {
            })
       .def("__repr__", &represent)
       .def(
-          "__getitem__",
-          [](nb::handle_t<Array> self, nb::handle key) { return nb::object(numpy_view(self)[key]); },
+          "__getitem__", [](nb::handle_t<Array> self, nb::handle key) { return nb::object(numpy_view(self)[key]); },
           nb::sig("def __getitem__(self, key: typing.Any, /) -> typing.Any"))
       .def(
           "__setitem__",

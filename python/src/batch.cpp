@@ -5,6 +5,7 @@
 #include <chrono>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "mercury/cuda_devices.h"
@@ -50,6 +51,44 @@ void require_memory_for(const SharedRobots& robots, const Configuration& configu
 
 }  // namespace
 
+// All batches of the process. Mutexes are locked without the GIL, which threads within a batch may wait for.
+class LiveBatches {
+ public:
+  static LiveBatches& get() {
+    static LiveBatches all;
+    return all;
+  }
+  void add(Batch& batch) {
+    const std::lock_guard lock(mutex_);
+    batches_.insert(&batch);
+  }
+  void remove(Batch& batch) {
+    const std::lock_guard lock(mutex_);
+    batches_.erase(&batch);
+  }
+  void before_fork() {
+    const ReleasedGil released;
+    mutex_.lock();
+    for (Batch* const batch : batches_) batch->mutex_.lock();
+  }
+  // In both processes, by the thread that forked.
+  void after_fork() {
+    for (Batch* const batch : batches_) batch->mutex_.unlock();
+    mutex_.unlock();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<Batch*> batches_;
+};
+
+void watch_forks() {
+  const nb::object after = nb::cpp_function([] { LiveBatches::get().after_fork(); });
+  nb::module_::import_("os").attr("register_at_fork")(
+      nb::arg("before") = nb::cpp_function([] { LiveBatches::get().before_fork(); }),
+      nb::arg("after_in_parent") = after, nb::arg("after_in_child") = after);
+}
+
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
                                nb::handle device, int threads) {
   Configuration configuration{.dt = dt,
@@ -67,11 +106,13 @@ Batch::Batch(const Configuration& configuration, SharedRobots robots) : robots_(
   const ReleasedGil released;
   simulation_ = std::make_unique<Simulation>(configuration, robots_);
   change_robots();
+  LiveBatches::get().add(*this);
 }
 
 // Waits for what is queued on the device.
 Batch::~Batch() {
   const ReleasedGil released;
+  LiveBatches::get().remove(*this);
   simulation_.reset();
 }
 

@@ -69,6 +69,8 @@ class Batch {
   void change_robots();  // to be called with the lock, without the GIL
   void forget_arrays();  // to be called with the GIL
 
+  friend class LiveBatches;
+
   mutable std::mutex mutex_;
   std::unique_ptr<Simulation> simulation_;
   SharedRobots robots_;
@@ -84,6 +86,10 @@ struct ActuationArrays {
   nb::object amplitude, frequency, phase, drive;  // Array
   SharedRobots robots;
 };
+
+// Lets os.fork() wait until no thread is within a batch, so that the child finds all of them as they are between two
+// portions of steps.
+void watch_forks();
 
 // Names of the actuators of a robot.
 nb::list actuator_names(const Robot& robot);

@@ -160,7 +160,8 @@ void bind_actuation(nb::module_& module) {
               "Amplitudes, (robots, actuators) [1].")
       .def_ro("frequency", &ActuationArrays::frequency, nb::sig("def frequency(self) -> Array"),
               "Angular frequencies, (robots, actuators) [rad/s].")
-      .def_ro("phase", &ActuationArrays::phase, nb::sig("def phase(self) -> Array"), "Phases, (robots, actuators) [rad].")
+      .def_ro("phase", &ActuationArrays::phase, nb::sig("def phase(self) -> Array"),
+              "Phases, (robots, actuators) [rad].")
       .def_ro("drive", &ActuationArrays::drive, nb::sig("def drive(self) -> Array"),
               "Drive signals u, (robots, actuators) [1]; NaN = follow the sine.")
       .def(
@@ -266,10 +267,77 @@ void bind_reports(nb::class_<Batch>& batch) {
            refused_pickle_signature);
 }
 
+constexpr const char* saved_description =
+    R"(The state of all robots of a batch, which Batch.save() makes and Batch.restore() takes. It can be pickled.)";
+
+// Explosions and brains as plain tuples; the arrays are copied.
+nb::tuple document_of(const BatchState& state) {
+  nb::list explosions, brains;
+  for (const auto& [robot, step, at, spring] : state.explosions)
+    explosions.append(nb::make_tuple(robot, step, at, spring));
+  for (const BrainState& brain : state.brains)
+    brains.append(
+        nb::make_tuple(nb::cast(brain.neurons), nb::cast(brain.senses), nb::cast(brain.weights), brain.thoughts));
+  return nb::make_tuple(state.clock.dt, state.clock.base_time, state.clock.base_step, state.clock.step,
+                        vector_array(state.positions), vector_array(state.velocities), explosions, brains);
+}
+
+BatchState state_of(const nb::tuple& document) {
+  BatchState state;
+  state.clock = {.dt = nb::cast<double>(document[0]),
+                 .base_time = nb::cast<double>(document[1]),
+                 .base_step = nb::cast<std::int64_t>(document[2]),
+                 .step = nb::cast<std::int64_t>(document[3])};
+  state.positions = vectors_from(document[4], nb::len(nb::object(document[4])), "positions");
+  state.velocities = vectors_from(document[5], nb::len(nb::object(document[5])), "velocities");
+  for (const nb::handle each : document[6])
+    state.explosions.push_back({.robot = nb::cast<std::size_t>(each[0]),
+                                .step = nb::cast<std::int64_t>(each[1]),
+                                .at = nb::cast<double>(each[2]),
+                                .culprit_spring = nb::cast<std::uint32_t>(each[3])});
+  for (const nb::handle each : document[7])
+    state.brains.push_back({.neurons = nb::cast<std::vector<float>>(each[0]),
+                            .senses = nb::cast<std::vector<float>>(each[1]),
+                            .weights = nb::cast<std::vector<float>>(each[2]),
+                            .thoughts = nb::cast<std::uint64_t>(each[3])});
+  return state;
+}
+
+void bind_saved_state(nb::module_& module) {
+  nb::class_<BatchState>(module, "BatchState", saved_description)
+      .def_prop_ro(
+          "time", [](const BatchState& self) { return time_of(self.clock); }, "Simulated time [s].")
+      .def_prop_ro(
+          "positions", [](const BatchState& self) { return vector_array(self.positions); },
+          nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float32]"),
+          "Positions of all masses, robot after robot, (masses, 3) [m]. A copy.")
+      .def_prop_ro(
+          "velocities", [](const BatchState& self) { return vector_array(self.velocities); },
+          nb::sig("def velocities(self) -> numpy.typing.NDArray[numpy.float32]"),
+          "Velocities, (masses, 3) [m/s]. A copy.")
+      .def("__getstate__", &document_of, nb::sig("def __getstate__(self) -> typing.Any"))
+      .def(
+          "__setstate__",
+          [](BatchState& self, const nb::tuple& document) { new (&self) BatchState(state_of(document)); },
+          nb::arg("state"), nb::sig("def __setstate__(self, state: typing.Any, /) -> None"));
+}
+
+constexpr const char* save_description =
+    R"(The state of all robots, to return to it by restore().
+
+    state = batch.save()
+    batch.step(1000)
+    batch.restore(state)  # what follows is, bit for bit, what followed before
+
+It holds time, positions, velocities, explosions and what brains remember; not what the program gives: robots, settings
+and `actuation`.)";
+
 }  // namespace
 
 void bind_batch(nb::module_& module) {
   watch_exit();
+  watch_forks();
+  bind_saved_state(module);
   bind_actuation(module);
   nb::class_<Batch> batch(module, "Batch", batch_description);
   batch
@@ -296,6 +364,17 @@ void bind_batch(nb::module_& module) {
                    "velocities: numpy.typing.ArrayLike | None = None) -> None"),
            "Puts the masses of a robot to `positions` [m] with `velocities` [m/s], both (masses, 3); None = at rest.\n"
            "The robot has not exploded afterwards. Raises InputError for another shape.")
+      .def(
+          "save",
+          [](const Batch& self) { return self.use([](const Simulation& simulation) { return simulation.save(); }); },
+          save_description)
+      .def(
+          "restore",
+          [](Batch& self, const BatchState& state) {
+            self.change([&](Simulation& simulation) { simulation.restore(state); });
+          },
+          nb::arg("state"),
+          "Puts all robots and the time where save() has found them. Raises ValueError for the state of other robots.")
       .def("configure", &configure, nb::kw_only(), nb::arg("environment") = nb::none(), nb::arg("solver") = nb::none(),
            nb::arg("dt") = nb::none(), nb::arg("damping") = nb::none(),
            nb::sig("def configure(self, *, environment: Environment | str | None = None, solver: str | None = None, "

@@ -5,6 +5,8 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -92,6 +94,7 @@ class Results {
   std::shared_ptr<Evaluator> evaluator_;  // null once it is closed
   std::vector<std::string> notes_;        // from then on
   std::thread::id user_;                  // that is in next()
+  const pid_t process_ = getpid();        // whose threads try the robots
 };
 
 // The thread that is in next().
@@ -154,6 +157,8 @@ void Results::pull() {
 
 // One robot is taken for each result that is there, and as many as are wanted while there is none.
 Result Results::next() {
+  if (evaluator_ && getpid() != process_)
+    throw DeviceError("these results are those of the process that was forked: call evaluate() in this one");
   const Use use(*this);
   while (evaluator_) {
     if (pulled_ && pulled_->is_wanted()) pull();
@@ -198,6 +203,10 @@ std::optional<Result> Results::wait() {
 
 void Results::close() {
   if (!evaluator_) return;
+  if (getpid() != process_) {  // its threads are not here, so it cannot be ended
+    new std::shared_ptr<Evaluator>(std::move(evaluator_));
+    return;
+  }
   notes_ = evaluator_->notes();
   if (pulled_) pulled_->close();
   std::shared_ptr<Evaluator> evaluator = std::move(evaluator_);
@@ -207,7 +216,9 @@ void Results::close() {
   evaluator.reset();
 }
 
-std::vector<std::string> Results::notes() const { return evaluator_ ? evaluator_->notes() : notes_; }
+std::vector<std::string> Results::notes() const {
+  return evaluator_ && getpid() == process_ ? evaluator_->notes() : notes_;
+}
 
 int visit_references(PyObject* self, visitproc visit, void* arg) {
   Py_VISIT(Py_TYPE(self));

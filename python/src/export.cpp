@@ -272,19 +272,19 @@ void bind_export(nb::module_& module) {
       "several "
       "robots, also all of a recording, a batch or a sequence. Files are replaced, whole or not at all. Raises "
       "InputError for what the format cannot hold.";
-  module.def("export", &export_any, nb::arg("what").none(), nb::arg("path").none(),
-             nb::arg("format").none() = nb::none(), nb::kw_only(), nb::arg("robot").none() = nb::none(),
-             nb::arg("still").none() = nb::none(), nb::arg("start").none() = nb::none(),
-             nb::arg("end").none() = nb::none(), nb::arg("every").none() = 1, nb::arg("springs").none() = false,
-             nb::arg("seconds").none() = nb::none(), nb::arg("environment").none() = nb::none(),
-             nb::arg("floor").none() = false, nb::arg("camera").none() = false,
-             nb::sig("def export(what: Robot | Batch | Recording | Result | collections.abc.Sequence[Robot] | "
-                     "collections.abc.Sequence[Result], path: str | "
-                     "os.PathLike[str], format: str | None = None, *, "
-                     "robot: str | int | None = None, still: float | None = None, start: float | None = None, "
-                     "end: float | None = None, every: int = 1, springs: bool = False, seconds: float | None = None, "
-                     "environment: Environment | str | None = None, floor: bool = False, camera: bool = False) -> None"),
-             doc.c_str());
+  module.def(
+      "export", &export_any, nb::arg("what").none(), nb::arg("path").none(), nb::arg("format").none() = nb::none(),
+      nb::kw_only(), nb::arg("robot").none() = nb::none(), nb::arg("still").none() = nb::none(),
+      nb::arg("start").none() = nb::none(), nb::arg("end").none() = nb::none(), nb::arg("every").none() = 1,
+      nb::arg("springs").none() = false, nb::arg("seconds").none() = nb::none(),
+      nb::arg("environment").none() = nb::none(), nb::arg("floor").none() = false, nb::arg("camera").none() = false,
+      nb::sig("def export(what: Robot | Batch | Recording | Result | collections.abc.Sequence[Robot] | "
+              "collections.abc.Sequence[Result], path: str | "
+              "os.PathLike[str], format: str | None = None, *, "
+              "robot: str | int | None = None, still: float | None = None, start: float | None = None, "
+              "end: float | None = None, every: int = 1, springs: bool = False, seconds: float | None = None, "
+              "environment: Environment | str | None = None, floor: bool = False, camera: bool = False) -> None"),
+      doc.c_str());
 }
 
 }  // namespace mercury::python

@@ -17,6 +17,7 @@
 #include "app/scene/view_words.h"
 #include "app/video/film.h"
 #include "mercury/error.h"
+#include "python/src/arguments.h"
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
 #include "python/src/owned_array.h"
@@ -181,14 +182,34 @@ Simulation resting(const SharedRobots& robots, const Environment& environment) {
   return {Configuration{.environment = environment, .device = {.kind = DeviceKind::cpu}}, robots};
 }
 
-render::Image picture(nb::handle what, nb::handle environment, const PictureOptions& options) {
+// One robot of a batch, as it is now.
+Simulation alone(const Simulation& simulation, std::size_t robot, std::shared_ptr<const Robot> shape) {
+  Configuration configuration = simulation.configuration();
+  configuration.device = {.kind = DeviceKind::cpu, .threads = 1};
+  Simulation one(configuration, SharedRobots{std::move(shape)});
+  one.set_clock({.dt = configuration.dt, .base_time = simulation.time()});
+  one.set_state(0, simulation.state(robot));
+  return one;
+}
+
+// `robot` of a batch; nothing = all.
+render::Image picture(nb::handle what, nb::handle environment, const PictureOptions& options,
+                      std::optional<std::int64_t> robot = {}) {
   const std::shared_ptr<DrawingThread> thread = drawing();
   return with_errors([&] {
     if (nb::isinstance<Batch>(what)) {
       if (!environment.is_none()) throw ParameterError("environment", "a batch has one already");
-      return nb::cast<const Batch&>(what).use(
-          [&](const Simulation& simulation) { return picture_of(*thread, simulation, options); });
+      const Batch& batch = nb::cast<const Batch&>(what);
+      if (!robot)
+        return batch.use([&](const Simulation& simulation) { return picture_of(*thread, simulation, options); });
+      const SharedRobots robots = batch.robots();
+      const std::size_t index = checked_index(*robot, robots.size());
+      const Simulation one =
+          batch.use([&](const Simulation& simulation) { return alone(simulation, index, robots[index]); });
+      const ReleasedGil released;
+      return picture_of(*thread, one, options);
     }
+    if (robot) throw ParameterError("robot", "goes with a batch; give one robot instead");
     const SharedRobots robots = robots_of(what);
     if (robots.empty()) throw InputError("there is no robot to show");
     const Environment surroundings = environment_of(environment);
@@ -380,10 +401,9 @@ void add_png(nb::handle type, Draw draw, const char* doc) {
 void bind_pictures(nb::module_& module) {
   module.def(
       "_picture",
-      [](nb::handle what, nb::handle size, nb::handle environment, const nb::dict& look) {
-        return array_of(picture(what, environment, picture_options(size, look)));
-      },
-      nb::arg("what"), nb::arg("size"), nb::arg("environment").none(), nb::arg("look"));
+      [](nb::handle what, nb::handle size, nb::handle environment, std::optional<std::int64_t> robot,
+         const nb::dict& look) { return array_of(picture(what, environment, picture_options(size, look), robot)); },
+      nb::arg("what"), nb::arg("size"), nb::arg("environment").none(), nb::arg("robot").none(), nb::arg("look"));
   module.def("_render", &render, nb::arg("sides"), nb::arg("output"), nb::arg("seconds").none(),
              nb::arg("environment").none(), nb::arg("solver"), nb::arg("dt"), nb::arg("damping"),
              nb::arg("device").none(), nb::arg("threads"), nb::arg("size"), nb::arg("fps"), nb::arg("speed"),

@@ -141,7 +141,8 @@ void bind_result(nb::module_& module) {
           [](const Result& self) {
             return self.evaluation.robot ? nb::cast(SharedRobot{self.evaluation.robot}) : nb::none();
           },
-          nb::sig("def robot(self) -> Robot | typing.Any"), "The robot; None if the source raised InputError instead of giving one.")
+          nb::sig("def robot(self) -> Robot | typing.Any"),
+          "The robot; None if the source raised InputError instead of giving one.")
       .def_prop_ro(
           "failure",
           [](const Result& self) {
@@ -151,10 +152,11 @@ void bind_result(nb::module_& module) {
       .def_prop_ro("steps", value_of(&Evaluation::steps), "Steps of the trial after settling.")
       .def_prop_ro(
           "start", [](const Result& self) { return record(self.evaluation.start); },
-          nb::sig("def start(self) -> numpy.void"), "Telemetry after settling: a record with the fields of Batch.telemetry().")
+          nb::sig("def start(self) -> numpy.void"),
+          "Telemetry after settling: a record with the fields of Batch.telemetry().")
       .def_prop_ro(
-          "end", [](const Result& self) { return record(self.evaluation.end); },
-          nb::sig("def end(self) -> numpy.void"), "Telemetry at the end, as `start`.")
+          "end", [](const Result& self) { return record(self.evaluation.end); }, nb::sig("def end(self) -> numpy.void"),
+          "Telemetry at the end, as `start`.")
       .def_prop_ro("distance", &distance,
                    "How far the center of mass went from start to end; on land along the ground [m]. 0 if the robot "
                    "exploded, so\nthat it never leads a ranking.")
@@ -191,19 +193,22 @@ void bind_result(nb::module_& module) {
           [](const Result& self) {
             return self.has_hash && was_stepped(self) ? nb::cast(self.evaluation.hash) : nb::none();
           },
-          nb::sig("def hash(self) -> int | None"), "Batch.hash() of the final state; None unless evaluate(hashes=True).")
+          nb::sig("def hash(self) -> int | None"),
+          "Batch.hash() of the final state; None unless evaluate(hashes=True).")
       .def_prop_ro(
           "positions",
           [](const Result& self) {
             return self.has_state && was_stepped(self) ? vector_array(self.evaluation.state.positions) : nb::none();
           },
-          nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float32] | typing.Any"), "Final positions, (masses, 3) float32 [m], a NumPy array; None unless evaluate(states=True).")
+          nb::sig("def positions(self) -> numpy.typing.NDArray[numpy.float32] | typing.Any"),
+          "Final positions, (masses, 3) float32 [m], a NumPy array; None unless evaluate(states=True).")
       .def_prop_ro(
           "velocities",
           [](const Result& self) {
             return self.has_state && was_stepped(self) ? vector_array(self.evaluation.state.velocities) : nb::none();
           },
-          nb::sig("def velocities(self) -> numpy.typing.NDArray[numpy.float32] | typing.Any"), "Final velocities, (masses, 3) float32 [m/s]; as positions.")
+          nb::sig("def velocities(self) -> numpy.typing.NDArray[numpy.float32] | typing.Any"),
+          "Final velocities, (masses, 3) float32 [m/s]; as positions.")
       .def("__repr__", &represent_result);
 }
 

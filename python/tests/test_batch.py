@@ -5,6 +5,8 @@ import re
 import subprocess
 import sys
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -285,3 +287,38 @@ def test_robots_that_do_not_fit_into_memory_are_refused_in_one_line():
     assert re.fullmatch(needed + needed + r"not enough memory: more is needed than the limit, \d+ MiB \(ulimit -v\)\n1\n",
                         done.stdout), done.stdout + done.stderr
     assert done.returncode == 0
+
+
+def test_a_saved_state_is_returned_to_bit_for_bit(batch):
+    batch.step(100)
+    state = batch.save()
+    assert state.time == batch.time and np.array_equal(state.positions, batch.positions.numpy())
+    before = batch.hashes()
+    batch.step(200)
+    after = batch.hashes()
+    for saved in (state, pickle.loads(pickle.dumps(state))):
+        batch.restore(saved)
+        assert batch.steps == 100 and np.array_equal(batch.hashes(), before)
+        batch.step(200)
+        assert np.array_equal(batch.hashes(), after)
+
+
+def test_a_saved_state_holds_explosions(device):
+    batch = mercurysim.Batch(mercurysim.random_voxel(2, seed=1), device=device)
+    batch.step(10)
+    state = batch.save()
+    masses = len(batch.robots[1].masses)
+    batch.set_state(1, batch.robots[1].masses, np.full((masses, 3), 1e30))
+    batch.step(10)
+    exploded = pickle.loads(pickle.dumps(batch.save()))
+    batch.restore(state)
+    assert not batch.exploded.numpy().any()
+    batch.restore(exploded)
+    assert batch.exploded.numpy().tolist() == [False, True]
+
+
+def test_the_state_of_other_robots_is_refused(batch):
+    state = batch.save()
+    batch.keep([0])
+    with pytest.raises(ValueError):
+        batch.restore(state)

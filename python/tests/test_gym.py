@@ -14,7 +14,7 @@ gymnasium = pytest.importorskip("gymnasium")
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from mercurysim.gym import SwimEnv, WalkEnv
+from mercurysim.gym import RobotEnv, SwimEnv, WalkEnv
 
 EEL = eel()
 
@@ -300,8 +300,13 @@ def test_same_step_autoreset_returns_the_last_observation_in_the_infos():
     for action in actions(env, 5):
         observations, _, _, truncated, infos = env.step(action)
         expected = other.step(action)[0]
-    assert truncated.all() and infos["_final_obs"].all()
+        if not truncated.any():
+            assert "final_info" not in infos or not infos["_final_info"].any()
+    assert truncated.all() and infos["_final_obs"].all() and infos["_final_info"].all()
     assert np.array_equal(infos["final_obs"], expected)
+    final = infos["final_info"]
+    np.testing.assert_allclose(final["distance"], -np.asarray(other.batch.centers)[:, 0] + EEL.masses[:, 0].mean(), atol=1e-6)
+    assert final["_distance"].all() and not infos["distance"].any()
     assert np.array_equal(observations, begin)
 
 
@@ -381,3 +386,88 @@ def test_on_a_gpu_no_step_waits_for_the_device():
 def play_on(env, plan):
     env.reset(seed=1)
     return np.array([env.step(action)[0].cpu().numpy() for action in plan])
+
+
+class Rise(RobotEnv):
+    """A task of one's own: rise, and stop at a height."""
+
+    observed_numbers = 1
+
+    def reward(self, step):
+        return step.motion.velocity[:, 2] - step.effort
+
+    def is_over(self, step):
+        return step.elapsed > 0.1
+
+    def observe(self, motion):
+        return motion.center[:, 2:]
+
+
+@pytest.mark.parametrize("torch", [False, True])
+def test_a_task_of_ones_own_gives_reward_end_and_observations(torch):
+    if torch:
+        torch_or_skip()
+    env = Rise([EEL, quadruped()], 4, targets=False, torch=torch, device="cpu")
+    observations, _ = env.reset(seed=1)
+    assert observations.shape == (4, 13 + 6 * 8 + 8 + 2 + 1) and env.observation_space.shape == observations.shape
+    for step in range(1, 4):
+        observations, rewards, terminated, truncated, _ = (
+            on_host(part) if not isinstance(part, dict) else part for part in env.step(actions(env, 1, step)[0])
+        )
+        height = env.batch.centers.numpy()[:, 2]
+        np.testing.assert_allclose(observations[:, -1], height, atol=1e-6)
+        velocity = on_host(env._bodies.motion().velocity)[:, 2]
+        drive = env.batch.actuation.drive.numpy()
+        effort = 0.04 * (np.nan_to_num(drive) ** 2).sum(axis=1) / [5, 8, 5, 8]
+        np.testing.assert_allclose(rewards, velocity - effort, atol=1e-6)
+        assert terminated.all() == (step * 0.04 > 0.1) and not truncated.any()
+
+
+def test_a_task_without_a_reward_says_so():
+    env = RobotEnv(EEL, 2)
+    env.reset(seed=1)
+    with pytest.raises(NotImplementedError, match="RobotEnv has no reward"):
+        env.step(np.zeros((2, 5)))
+    with pytest.raises(InputError, match="RobotEnv has no robot of its own"):
+        RobotEnv()
+
+
+def test_the_mask_says_which_actuators_a_robot_has():
+    env = SwimEnv([EEL, quadruped()])
+    assert env.actuator_mask.tolist() == [[True] * 5 + [False] * 3, [True] * 8]
+
+
+def pictures_or_skip():
+    try:
+        mercurysim.picture(EEL, size=(16, 16))
+    except mercurysim.DeviceError as error:
+        pytest.skip(str(error))
+
+
+def test_render_returns_a_frame_per_environment():
+    pictures_or_skip()
+    env = SwimEnv(EEL, 3, render_mode="rgb_array", render_size=(64, 48), targets=False)
+    env.reset(seed=1)
+    plan = np.zeros((3, 5), np.float32)
+    plan[2] = [1, 1, 0, -1, -1]
+    for _ in range(25):
+        env.step(plan)
+    frames = env.render()
+    assert [frame.shape for frame in frames] == [(48, 64, 3)] * 3
+    assert np.array_equal(frames[0], frames[1]) and not np.array_equal(frames[0], frames[2])
+    assert SwimEnv(EEL, 3).render() is None
+
+
+def test_record_video_of_gymnasium_films_all_environments(tmp_path):
+    pictures_or_skip()
+    pytest.importorskip("moviepy")
+    from gymnasium.wrappers.vector import RecordVideo
+
+    env = RecordVideo(SwimEnv(EEL, 4, render_mode="rgb_array", render_size=(64, 48)), str(tmp_path), video_length=5,
+                      step_trigger=lambda step: step == 0)
+    env.reset(seed=1)
+    for _ in range(6):
+        env.step(env.action_space.sample())
+    env.close()
+    (film,) = tmp_path.glob("*.mp4")
+    assert film.stat().st_size > 1000

@@ -131,6 +131,64 @@ def test_forked_processes_step():
     assert (done.returncode, done.stdout) == (0, "done\n"), done.stderr
 
 
+FORK_WHILE_STEPPING = """
+import os, sys, threading
+import mercurysim
+robots = mercurysim.random_voxel(8, seed=1)
+batch = mercurysim.Batch(robots, device="cpu")
+stop = threading.Event()
+def run():
+    while not stop.is_set():
+        batch.step(20)
+threads = [threading.Thread(target=run) for _ in range(3)]
+for thread in threads: thread.start()
+children = []
+for _ in range(8):
+    pid = os.fork()
+    if pid == 0:
+        start = batch.steps
+        batch.step(10)
+        other = mercurysim.Batch(robots, device="cpu")
+        other.step(50)
+        os._exit(0 if batch.steps == start + 10 and other.steps == 50 else 1)
+    children.append(pid)
+states = [os.waitpid(pid, 0)[1] for pid in children]
+stop.set()
+for thread in threads: thread.join()
+print(states)
+"""
+
+
+def test_a_process_may_fork_while_threads_step():
+    done = subprocess.run([sys.executable, "-c", FORK_WHILE_STEPPING], capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout) == (0, f"{[0] * 8}\n"), done.stderr
+
+
+FORK_WHILE_EVALUATING = """
+import os
+import mercurysim
+results = mercurysim.evaluate(mercurysim.random_voxel(200, seed=1), 2, device="cpu")
+next(results)
+pid = os.fork()
+if pid == 0:
+    try:
+        next(results)
+    except mercurysim.DeviceError as error:
+        print(error, flush=True)
+    results.close()
+    own = list(mercurysim.evaluate(mercurysim.random_voxel(3, seed=1), 1, device="cpu"))
+    os._exit(len(own))
+assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 3
+assert len(list(results)) == 199
+"""
+
+
+def test_results_belong_to_the_process_that_asked_for_them():
+    done = subprocess.run([sys.executable, "-c", FORK_WHILE_EVALUATING], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("these results are those of the process that was forked")
+
+
 def child(seed):
     return hashes_after(20, mercurysim.random_voxel(2, seed=seed), "cpu")
 

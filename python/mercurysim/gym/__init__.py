@@ -8,7 +8,8 @@
     observations, rewards, terminations, truncations, infos = env.step(env.action_space.sample())
 
 SwimEnv and WalkEnv take one robot, copied as often as wanted, or thousands of different ones. gymnasium.make_vec()
-knows them as "mercurysim/Swim-v0" and "mercurysim/Walk-v0", gymnasium.make() as environments of one robot.
+knows them as "mercurysim/Swim-v0" and "mercurysim/Walk-v0", gymnasium.make() as environments of one robot. Tasks of
+your own derive from RobotEnv.
 """
 
 try:
@@ -17,7 +18,8 @@ except ImportError:
     raise ImportError("mercurysim.gym needs Gymnasium: pip install 'mercurysim[gym]'") from None
 
 from ..bodies import eel, quadruped
-from ._environment import RobotEnv
+from ._bodies import Motion
+from ._environment import RobotEnv, Step
 from ._single import SingleEnv
 from ._tasks import SwimEnv, WalkEnv
 
@@ -29,4 +31,4 @@ for _name, _kind in (("Swim", SwimEnv), ("Walk", WalkEnv)):
         disable_env_checker=True,  # it warns about dtypes of rewards; the tests run check_env() instead
     )
 
-__all__ = ["RobotEnv", "SingleEnv", "SwimEnv", "WalkEnv", "eel", "quadruped"]
+__all__ = ["Motion", "RobotEnv", "SingleEnv", "Step", "SwimEnv", "WalkEnv", "eel", "quadruped"]

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What swimming and walking have in common: a vector environment over one batch."""
+"""A vector environment over one batch: the base of swimming, walking and tasks of a user's own."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import gymnasium
@@ -22,8 +23,31 @@ from ._targets import Targets
 LIMIT = 10.0  # observations are cut off here
 
 
+@dataclass
+class Step:
+    """What a step did, to n robots: what RobotEnv.reward() and is_over() are given. Arrays of float32 unless said."""
+
+    motion: Motion  # where the robots are now and how they move
+    progress: Any  # (n,), how much nearer the robots came to their targets, or how far along x [body lengths]
+    reached: Any  # (n,) bool, whether they are at their targets
+    exploded: Any  # (n,) bool
+    drive: Any  # (n, actuators), the drive signal; 0 for actuators that a robot does not have
+    effort: Any  # (n,), mean of drive^2 over a robot's actuators, times the seconds that an action lasts [s]
+    elapsed: Any  # (n,), since the episode began [s]
+
+
 class RobotEnv(gymnasium.vector.VectorEnv):
-    """Robots that are driven by their actuators; the base of SwimEnv and WalkEnv.
+    """Robots that are driven by their actuators; the base of SwimEnv, WalkEnv and tasks of your own.
+
+        class JumpEnv(RobotEnv):
+            def reward(self, step):
+                return step.motion.velocity[:, 2] - 0.01 * step.effort
+
+        env = JumpEnv(quadruped(), 16, environment=Land(), dt=1e-3, targets=False)
+
+    A task overrides reward(), and may override is_over(), observe() with observed_numbers, and default_robot(). They
+    take and return arrays of n robots, of `xp`, which is numpy, or torch with torch=True. On a GPU they are recorded as a
+    CUDA graph: there they use operations of torch alone, no `if` on values, and nothing that is replaced between calls.
 
     robots           a Robot or a sequence of them; robot i of the batch is robots[i % len(robots)]
     num_envs         default: one environment per robot
@@ -41,7 +65,8 @@ class RobotEnv(gymnasium.vector.VectorEnv):
     torch            True: observations, rewards and flags are tensors on the device, and actions may be. No call waits
                      for the device, but for the first step(), which records CUDA graphs.
     seed             of the targets, as if given to the first reset()
-    render_mode      None or "rgb_array"
+    render_mode      None or "rgb_array": render() returns a frame per robot
+    render_size      of a frame, (width, height) [pixels]
     batch            further arguments of Batch, such as environment, solver, damping, threads
 
     The body length of a robot is its longest side at rest. Its body frame is forward, left and up (x, y, z of the robot
@@ -55,14 +80,16 @@ class RobotEnv(gymnasium.vector.VectorEnv):
 
     direction to the target (3), distance (1; 0 without targets), velocity of the center of mass per second (3), angular
     momentum of the markers over their moment of inertia [rad/s] (3), up of the world (3), positions of the markers from
-    their middle (3 each), their velocities per second (3 each), u, and sine and cosine of a clock of one period per
-    second (2).
+    their middle (3 each), their velocities per second (3 each), u, sine and cosine of a clock of one period per
+    second (2), and what observe() adds.
 
-    An episode terminates when the robot reaches its target or explodes. Infos: "distance" still to go [m] (without
-    targets, the way along x with a minus), "reached" and "exploded". With AutoresetMode.DISABLED,
-    reset(options={"reset_mask": mask}) resets some robots.
+    An episode terminates when the robot reaches its target or explodes, or when is_over() says so. Infos: "distance"
+    still to go [m] (without targets, the way along x with a minus), "reached" and "exploded". With
+    AutoresetMode.SAME_STEP, "final_obs" and "final_info" are those of the step that ended an episode. With
+    AutoresetMode.DISABLED, reset(options={"reset_mask": mask}) resets some robots.
     """
 
+    observed_numbers = 0  # how many observe() adds per robot
     single_observation_space: gymnasium.spaces.Box
     single_action_space: gymnasium.spaces.Box
     observation_space: gymnasium.spaces.Box
@@ -88,6 +115,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         torch: bool = False,
         seed: int | None = None,
         render_mode: str | None = None,
+        render_size: tuple[int, int] = (320, 240),
         **batch: Any,
     ) -> None:
         if not torch and device not in ("auto", "cpu"):
@@ -109,7 +137,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         self.frame_skip, self.action_seconds = frame_skip, frame_skip * dt
         self.episode_steps = max(1, round(episode_seconds / self.action_seconds))
         self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self.render_mode = render_mode
+        self.render_mode, self.render_size = render_mode, render_size
         self.metadata = {
             "autoreset_mode": self.autoreset_mode,
             "render_modes": ["rgb_array"],
@@ -152,24 +180,43 @@ class RobotEnv(gymnasium.vector.VectorEnv):
 
     def _make_spaces(self, markers: int) -> None:
         actuators = self._has_actuator.shape[1]
-        size = 13 + 6 * markers + actuators + 2
+        size = 13 + 6 * markers + actuators + 2 + self.observed_numbers
         self.single_observation_space = gymnasium.spaces.Box(-LIMIT, LIMIT, (size,), np.float32)
         self.single_action_space = gymnasium.spaces.Box(-1, 1, (actuators,), np.float32)
         self.observation_space = gymnasium.spaces.Box(-LIMIT, LIMIT, (self.num_envs, size), np.float32)
         self.action_space = gymnasium.spaces.Box(-1, 1, (self.num_envs, actuators), np.float32)
 
+    @property
+    def xp(self) -> Any:
+        """The module of the arrays: numpy, or torch."""
+        return self._xp
+
+    @property
+    def actuator_mask(self) -> Any:
+        """Which actuators each robot has, (num_envs, actuators) bool. What an action says of the others has no effect."""
+        return self._has_actuator > 0
+
     @classmethod
     def default_robot(cls) -> Robot:
-        raise NotImplementedError
+        """The robot of an environment that is made without one."""
+        raise InputError(f"robots: {cls.__name__} has no robot of its own; give at least one")
 
     @classmethod
     def single(cls, robot: Robot | None = None, **settings: Any) -> SingleEnv:
         """The same with one robot, as a gymnasium.Env."""
         return SingleEnv(cls(robot, 1, autoreset_mode=AutoresetMode.DISABLED, **settings))
 
-    def _reward(self, progress: Any, motion: Motion, reached: Any, exploded: Any) -> Any:
-        """All (n,) float32. progress: in this step [body lengths]; reached, exploded: 0 or 1."""
-        raise NotImplementedError
+    def reward(self, step: Step) -> Any:
+        """The reward of a step, (n,) float32."""
+        raise NotImplementedError(f"{type(self).__name__} has no reward(): a task of your own needs one")
+
+    def is_over(self, step: Step) -> Any:
+        """Which episodes end, besides those of robots that reach their targets or explode, (n,) bool; None = no other."""
+        return None
+
+    def observe(self, motion: Motion) -> Any:
+        """More to observe, (n, observed_numbers) float32."""
+        return None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Puts the robots at rest where they start. A seed decides the targets of this and all later episodes."""
@@ -201,11 +248,15 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         observations, rewards, terminated, truncated, *report = results[size:]
         infos = self._infos(*report)
         if self.autoreset_mode is AutoresetMode.SAME_STEP:
-            infos |= {"final_obs": observations, "_final_obs": terminated | truncated}
+            over = terminated | truncated
+            final = {name: over if name.startswith("_") else value for name, value in infos.items()}
+            final_obs = observations
             self.batch.reset(self._done, stream=self._arrays.stream())
             results = self._begin_over(*self._state())
             self._set_state(results[:size])
             observations = results[size]
+            infos = self._infos(self._remaining + 0, report[1] & ~over, report[2] & ~over)
+            infos |= {"final_obs": final_obs, "_final_obs": over, "final_info": final, "_final_info": over}
         return observations, rewards, terminated, truncated, infos
 
     def _state(self) -> tuple[Any, ...]:
@@ -234,10 +285,14 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         exploded = self._exploded != 0
         reached = (remaining < self._reach) & ~exploded & self._targets.wanted
         progress = self._xp.where(exploded, 0 * remaining, (self._remaining - remaining) / self._bodies.lengths)
-        rewards = self._reward(progress, motion, self._arrays.single(reached), self._arrays.single(exploded))
+        step = Step(motion, progress, reached, exploded, self._u, self._effort(), self._elapsed * self.action_seconds)
+        rewards = self._arrays.single(self.reward(step))
+        ended = self.is_over(step)
         if self.autoreset_mode is AutoresetMode.NEXT_STEP:
             rewards = self._xp.where(over, 0 * rewards, rewards)
         terminated = reached | exploded
+        if ended is not None:
+            terminated = terminated | (ended != 0)
         truncated = (self._elapsed >= self.episode_steps) & ~terminated
         self._remaining, self._done = remaining, terminated | truncated
         observations = self._observe(motion)
@@ -250,8 +305,10 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         return *self._state(), self._observe(self._bodies.motion())
 
     def render(self) -> Any:
-        """One picture of all robots, (h, w, 3) uint8. None without a render_mode."""
-        return (mercurysim.picture(self.batch),) if self.render_mode else None
+        """A picture of each robot, (h, w, 3) uint8. None without a render_mode."""
+        if not self.render_mode:
+            return None
+        return tuple(mercurysim.picture(self.batch, self.render_size, robot=i) for i in range(self.num_envs))
 
     def _restart(self, mask: Any) -> None:
         """Ends the episodes of some robots and begins their next ones."""
@@ -306,6 +363,8 @@ class RobotEnv(gymnasium.vector.VectorEnv):
             xp.sin(phase),
             xp.cos(phase),
         ]
+        if self.observed_numbers:
+            parts.append(self._arrays.single(self.observe(motion)))
         return xp.clip(self._arrays.joined(parts), -LIMIT, LIMIT)
 
     def _infos(self, remaining: Any, reached: Any, exploded: Any) -> dict[str, Any]:

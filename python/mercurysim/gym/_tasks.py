@@ -5,8 +5,7 @@ from typing import Any
 
 from .. import Land, Ocean, Robot
 from ..bodies import eel, quadruped
-from ._bodies import Motion
-from ._environment import RobotEnv
+from ._environment import RobotEnv, Step
 
 
 class SwimEnv(RobotEnv):
@@ -30,8 +29,8 @@ class SwimEnv(RobotEnv):
     def default_robot(cls) -> Robot:
         return eel()
 
-    def _reward(self, progress: Any, motion: Motion, reached: Any, exploded: Any) -> Any:
-        return progress - self._energy_cost * self._effort() + reached - exploded
+    def reward(self, step: Step) -> Any:
+        return step.progress - self._energy_cost * step.effort + 1.0 * step.reached - 1.0 * step.exploded
 
 
 class WalkEnv(RobotEnv):
@@ -63,6 +62,6 @@ class WalkEnv(RobotEnv):
     def default_robot(cls) -> Robot:
         return quadruped()
 
-    def _reward(self, progress: Any, motion: Motion, reached: Any, exploded: Any) -> Any:
-        tilt = self._tilt_cost * self.action_seconds * (1 - motion.axes[:, 2, 2])
-        return progress - self._energy_cost * self._effort() - tilt + reached - exploded
+    def reward(self, step: Step) -> Any:
+        tilt = self._tilt_cost * self.action_seconds * (1 - step.motion.axes[:, 2, 2])
+        return step.progress - self._energy_cost * step.effort - tilt + 1.0 * step.reached - 1.0 * step.exploded
