@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mercury/configuration.h"
+#include "mercury/generator.h"
 #include "mercury/robot.h"
 
 namespace mercury::python {
@@ -34,6 +35,9 @@ nb::object object_of(const Environment& environment);
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
                                nb::handle device, int threads);
 
+// Parameters of a generator from keyword arguments; `function` is named in errors. Throws TypeError, InputError.
+ParameterValues generator_values(const std::string& function, const Generator& generator, const nb::kwargs& given);
+
 // __reduce_ex__ of objects that cannot be pickled or copied: raises TypeError.
 inline const nb::sig refused_pickle_signature(
     "def __reduce_ex__(self, protocol: object, /) -> str | tuple[typing.Any, ...]");
@@ -50,6 +54,7 @@ void bind_array(nb::module_& module);
 void bind_batch(nb::module_& module);
 void bind_brains(nb::module_& module);
 void bind_evaluate(nb::module_& module);
+void bind_evolution(nb::module_& module);
 void bind_pictures(nb::module_& module);
 void bind_recording(nb::module_& module);
 void bind_export(nb::module_& module);

@@ -9,6 +9,7 @@
 #include <charconv>
 
 #include "mercury/error.h"
+#include "mercury/host_memory.h"
 #include "mercury/lively.h"
 #include "python/src/bindings.h"
 #include "python/src/gil.h"
@@ -105,22 +106,15 @@ struct Reader {
   }
 };
 
-ParameterValues values_from(const std::string& function, const Generator& generator, const nb::kwargs& given) {
-  ParameterValues values;
-  for (const auto [key, value] : given) {
-    const auto name = nb::cast<std::string>(key);
-    if (name == lively_name) continue;
-    const auto parameter = std::ranges::find(generator.parameters, name, &GeneratorParameter::name);
-    if (parameter == generator.parameters.end()) {
-      std::vector<std::string> names{"count", "seed", "first", lively_name};
-      for (const GeneratorParameter& known : generator.parameters) names.push_back(known.name);
-      throw nb::type_error((function + "() has no parameter " + name + suggestion(name, names)).c_str());
-    }
-    ParameterValue read = std::visit(Reader{name, value}, parameter->initial);
-    check(*parameter, read);
-    values.emplace(name, std::move(read));
-  }
-  return values;
+// Raises MemoryError if `count` robots like these do not fit into memory.
+void require_memory_for(std::uint64_t count, const std::vector<Robot>& some) {
+  double bytes = 0;
+  for (const Robot& robot : some) bytes += MemoryUse{}.of(robot);
+  const double needed = bytes / static_cast<double>(some.size()) * static_cast<double>(count);
+  const std::size_t usable = usable_host_memory();
+  if (needed <= static_cast<double>(usable)) return;
+  PyErr_SetString(PyExc_MemoryError, memory_line(static_cast<std::size_t>(std::min(needed, 1e18)), usable).c_str());
+  throw nb::python_error();
 }
 
 nb::list random_robots(const std::string& function, const Generator& generator, nb::handle count_given,
@@ -131,7 +125,7 @@ nb::list random_robots(const std::string& function, const Generator& generator, 
   RandomRobots request{.kind = generator.kind,
                        .seed = seed_from("seed", seed_given),
                        .first = seed_from("first", first_given),
-                       .values = values_from(function, generator, given)};
+                       .values = generator_values(function, generator, given)};
   nb::list list;
   if (given.contains(lively_name)) {
     const nb::handle lively = given[lively_name];
@@ -161,6 +155,7 @@ nb::list random_robots(const std::string& function, const Generator& generator, 
       const ReleasedGil released;
       robots = make_random_robots(request);
     }
+    if (done == 0 && count > portion) require_memory_for(count, robots);
     for (Robot& robot : robots) list.append(SharedRobot{std::make_shared<const Robot>(std::move(robot))});
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
   }
@@ -192,6 +187,24 @@ std::string documentation_of(const Generator& generator) {
 }
 
 }  // namespace
+
+ParameterValues generator_values(const std::string& function, const Generator& generator, const nb::kwargs& given) {
+  ParameterValues values;
+  for (const auto [key, value] : given) {
+    const auto name = nb::cast<std::string>(key);
+    if (name == lively_name) continue;
+    const auto parameter = std::ranges::find(generator.parameters, name, &GeneratorParameter::name);
+    if (parameter == generator.parameters.end()) {
+      std::vector<std::string> names{"count", "seed", "first", lively_name};
+      for (const GeneratorParameter& known : generator.parameters) names.push_back(known.name);
+      throw nb::type_error((function + "() has no parameter " + name + suggestion(name, names)).c_str());
+    }
+    ParameterValue read = std::visit(Reader{name, value}, parameter->initial);
+    check(*parameter, read);
+    values.emplace(name, std::move(read));
+  }
+  return values;
+}
 
 void bind_generators(nb::module_& module) {
   for (const Generator& generator : generators()) {

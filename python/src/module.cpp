@@ -14,6 +14,7 @@ NB_MODULE(_mercury, module) {
   bind_batch(module);
   bind_brains(module);
   bind_evaluate(module);
+  bind_evolution(module);
   bind_pictures(module);
   bind_recording(module);
   bind_export(module);

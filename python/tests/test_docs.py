@@ -42,6 +42,7 @@ def recording():
 NEEDS = {
     "gpu": gpu,
     "gymnasium": lambda: importlib.util.find_spec("gymnasium") is not None,
+    "pandas": lambda: importlib.util.find_spec("pandas") is not None,
     "pictures": pictures,
     "recording": recording,
     "film": lambda: pictures() and shutil.which("ffmpeg") is not None,

@@ -73,6 +73,24 @@ def test_map_elites_fills_cells_and_saves_the_best(tmp_path):
     assert again.distance == pytest.approx(best[-1], abs=5e-4)
 
 
+@slow
+def test_a_map_of_elites_is_evolved_in_a_run_folder(tmp_path):
+    rows = run("evolve.py", "swim", 2, folder=tmp_path).splitlines()
+    elites = [int(re.search(r"(\d+) elites", row)[1]) for row in rows[:3]]
+    assert elites == sorted(elites) and elites[0] > 1
+    rows = run("evolve.py", "swim", 3, folder=tmp_path).splitlines()
+    assert rows[0].startswith("generation   3:") and re.fullmatch(r" *\d+ [\d.]+ m, \d+ masses", rows[-1])
+    assert mercurysim.load(tmp_path / "swim_best.json").name.startswith("swim-")
+
+
+@slow
+def test_a_search_takes_scores_of_python(tmp_path):
+    rows = run("ask_and_tell.py", 4, folder=tmp_path).splitlines()
+    best = [float(row.split()[-1]) for row in rows]
+    assert len(best) == 4 and best == sorted(best) and best[-1] > best[0]
+    assert mercurysim.load(tmp_path / "light_swimmer.json").name == "light-swimmer"
+
+
 def test_a_recording_is_plotted(tmp_path, mercury):
     needs("h5py", "matplotlib")
     mercury("run", "--random", "voxel:2", "--seconds", 1, "--record", tmp_path / "swim.h5")

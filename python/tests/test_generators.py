@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
+import inspect
 import itertools
 import json
 import re
@@ -101,7 +102,7 @@ def test_bad_values_are_refused_in_one_line(values, error, message):
 def test_every_parameter_of_a_generator_is_documented(function):
     """The signature, the docstring and what is accepted agree: each default can be given."""
     documented = re.findall(r"^(\w+): .*\(default .*\)$", function.__doc__, re.MULTILINE)
-    text = function.__doc__.splitlines()[0] if "->" in function.__doc__.splitlines()[0] else function.__nb_signature__[0][0]
+    text = str(inspect.signature(function))
     names = re.findall(r"(\w+): ", text)
     assert names == ["count", "seed", "first", "lively", *documented]
     defaults = dict(re.findall(r"^(\w+): .*\(default (.*?); .*\)$", function.__doc__, re.MULTILINE))
@@ -143,3 +144,10 @@ def test_lively_robots_are_those_that_get_farthest():
     assert [robot.name for robot in lively] == [names[result.index] for result in ranking[:2]]
     with pytest.raises(TypeError, match="lively"):
         mercurysim.random_voxel(2, lively=3)
+
+
+def test_more_robots_than_memory_holds_are_refused_before_it_is_taken():
+    with pytest.raises(MemoryError, match="of memory are needed"):
+        mercurysim.random_voxel(10**12)
+    with pytest.raises(MemoryError):
+        mercurysim.random_voxel(2**63 - 1)
