@@ -7,8 +7,8 @@
     run.go_on(lambda run: print(run.generations()["best_score"][-1]))
     run.best().save("best.json")
 
-A run folder is that of `mercury evolve`, which goes on with it by --resume, and the reverse. Robots of a run are told
-apart by their ids, in the order of birth.
+A run folder is that of `mercury evolve`, which goes on with it by --resume, and the reverse. Robots of a run have ids, in
+the order of birth.
 """
 
 from __future__ import annotations
@@ -275,7 +275,7 @@ class Search:
 
     @property
     def generation(self) -> int:
-        """How many generations were told."""
+        """How many generations have scores."""
         return int(self._search.next_generation)
 
     def ask(self) -> list[Genome]:

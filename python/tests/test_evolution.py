@@ -119,7 +119,7 @@ def test_robots_that_are_given_are_the_first(tmp_path):
     assert run.settings["genes"] == "muscles"
 
 
-def test_a_search_that_is_told_the_same_scores_is_the_same_search(run):
+def test_a_search_with_the_same_scores_is_the_same_search(run):
     search = evolution.Search("voxel", SIZE, **{**SETTINGS, "seconds": 10})
     individuals, first = run.individuals(), 0
     for generation in range(4):
