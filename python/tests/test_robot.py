@@ -580,3 +580,20 @@ def test_load_imports_files_of_other_simulators(tmp_path):
     (tmp_path / "bad.vxa").write_text("<VXA/>")
     with pytest.raises(mercurysim.InputError, match="bad.vxa: /VXA: has no element VXC"):
         mercurysim.load(tmp_path / "bad.vxa")
+
+
+def test_members_of_a_file_that_this_version_does_not_know_are_kept(tmp_path):
+    robot = mercurysim.random_voxel(1, seed=1)[0]
+    robot.save(tmp_path / "plain.json")
+    document = json.loads((tmp_path / "plain.json").read_text())
+    document |= {"lab": {"strain": [1, 2.5, None, True], "name": "B\u00e4r"}, "weight": 3}
+    (tmp_path / "noted.json").write_text(json.dumps(document))
+    noted = mercurysim.load(tmp_path / "noted.json")
+    for path in ("again.json", "again.cbor"):
+        noted.save(tmp_path / path)
+        noted = mercurysim.load(tmp_path / path)
+    pickle.loads(pickle.dumps(noted.with_actuators({"a": [0]}))).save(tmp_path / "last.json")
+    last = json.loads((tmp_path / "last.json").read_text())
+    assert last["lab"] == document["lab"] and last["weight"] == 3
+    robot.save(tmp_path / "plain.json")
+    assert noted != robot and set(json.loads((tmp_path / "plain.json").read_text())) == set(document) - {"lab", "weight"}

@@ -10,6 +10,7 @@
 
 #include "mercury/robot.h"
 #include "robots/file/document.h"
+#include "robots/file/other_members.h"
 
 namespace mercury {
 
@@ -77,7 +78,8 @@ void write_robot(const Robot& robot, DocumentEvents& events);
 void write_sensors(const Robot& robot, DocumentEvents& events);
 void write_brain(const Brain& brain, DocumentEvents& events);
 
-// Builds a robot from the events of its document. Keys that the format does not know are ignored.
+// Builds a robot from the events of its document. Members of the document that the format does not know are kept
+// (Robot::other), other keys that it does not know are ignored.
 // An event that breaks a rule throws InputError, with its place as a JSON pointer.
 class RobotReader : public DocumentEvents {
  public:
@@ -167,6 +169,7 @@ class RobotReader : public DocumentEvents {
   JsonWriter origin_{robot_.origin};
   std::string sensors_text_, brain_text_;
   JsonWriter sensors_{sensors_text_}, brain_{brain_text_};
+  OtherMembers other_;
 };
 
 }  // namespace mercury

@@ -68,13 +68,11 @@ void RobotReader::wrong_type(const std::string& given) const {
   refuse("must hold numbers, not " + given);
 }
 
-// True where an event is not part of the robot: within the origin, which is copied, or under an unknown key.
+// True where an event is not part of the robot: under an unknown key of a material.
 // `change_of_depth` is 1 for an event that opens, -1 for one that closes.
 bool RobotReader::passes_by(int change_of_depth) {
   const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
-  const bool in_unknown = section_ == unknown && inside >= 1;
-  const bool in_material_extra = section_ == materials && field_ == unknown_key && inside >= 3;
-  if (!in_unknown && !in_material_extra) return false;
+  if (section_ != materials || field_ != unknown_key || inside < 3) return false;
   depth_ += change_of_depth;
   return true;
 }
@@ -83,11 +81,12 @@ JsonWriter* RobotReader::text_part() {
   return section_ == origin ? &origin_ : section_ == sensors ? &sensors_ : section_ == brain ? &brain_ : nullptr;
 }
 
-// What takes an event within the origin, sensors, a brain or the list of actuators; nullptr for others. Follows the
-// depth.
+// What takes an event within the origin, sensors, a brain, the list of actuators or an unknown member; nullptr for
+// others. Follows the depth.
 DocumentEvents* RobotReader::part(int change_of_depth) {
   const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
   DocumentEvents* const part = section_ == actuators && inside >= 2 ? static_cast<DocumentEvents*>(&actuators_)
+                               : section_ == unknown && inside >= 1 ? static_cast<DocumentEvents*>(&other_)
                                : section_ >= origin && depth_ >= 2  ? text_part()
                                                                     : nullptr;
   if (part) depth_ += change_of_depth;
@@ -284,7 +283,7 @@ void RobotReader::key(std::string_view key_name) {
   if (depth_ == 1) {
     const auto* const found = std::find(std::begin(section_names), std::end(section_names), key_name);
     section_ = static_cast<Section>(found - std::begin(section_names));
-    if (section_ == unknown) return;
+    if (section_ == unknown) return other_.begin_member(key_name);
     if (has(section_)) refuse("appears twice");
     seen_ |= 1u << section_;
   } else if (DocumentEvents* const to = part(0)) {
@@ -409,6 +408,7 @@ Robot RobotReader::take() {
   if (has(sensors)) set_sensors(robot_, sensors_text_);
   if (has(brain)) set_brain(robot_, brain_text_);
   validate_brain(robot_);
+  robot_.other = other_.take();
   return std::move(robot_);
 }
 

@@ -45,6 +45,54 @@ class Copy : public DocumentEvents {
   int depth_ = 0;
 };
 
+// Copies the members of an object into the robot's document, or counts them.
+class Members : public DocumentEvents {
+ public:
+  explicit Members(DocumentEvents* to) : to_(to) {}
+  std::size_t count() const { return count_; }
+  void null() override {
+    send([&] { to_->null(); });
+  }
+  void boolean(bool value) override {
+    send([&] { to_->boolean(value); });
+  }
+  void number(const Number& value) override {
+    send([&] { to_->number(value); });
+  }
+  void text(std::string_view value) override {
+    send([&] { to_->text(value); });
+  }
+  void bytes(std::string_view value) override {
+    send([&] { to_->bytes(value); });
+  }
+  void begin_array(std::size_t announced) override {
+    send([&] { to_->begin_array(announced); }), ++depth_;
+  }
+  void end_array() override {
+    --depth_, send([&] { to_->end_array(); });
+  }
+  void begin_object(std::size_t announced) override {
+    send([&] { to_->begin_object(announced); }), ++depth_;
+  }
+  void key(std::string_view name) override {
+    if (depth_ == 1) ++count_;
+    send([&] { to_->key(name); });
+  }
+  void end_object() override {
+    --depth_, send([&] { to_->end_object(); });
+  }
+
+ private:
+  template <class Event>
+  void send(const Event& event) {
+    if (to_ && depth_ > 0) event();
+  }
+
+  DocumentEvents* to_;  // null = they are counted
+  int depth_ = 0;
+  std::size_t count_ = 0;
+};
+
 class RobotWriter {
  public:
   RobotWriter(const Robot& robot, DocumentEvents& events) : robot_(robot), events_(events) {}
@@ -56,7 +104,7 @@ class RobotWriter {
                has_sensors = !robot_.sensors.empty(), has_brain = robot_.brain.has_value();
     const std::vector<std::string_view> requirements = requirements_of(robot_);
     events_.begin_object(6u + !requirements.empty() + has_materials + has_mass + has_velocity + has_fixed +
-                         has_actuators + has_sensors + has_brain + has_origin);
+                         has_actuators + has_sensors + has_brain + has_origin + send_other(nullptr));
     field("format", "mercury-robot");
     field("version", 1u);
     if (!requirements.empty())
@@ -91,6 +139,7 @@ class RobotWriter {
     if (has_sensors) events_.key("sensors"), write_sensors(robot_, events_);
     if (has_brain) events_.key("brain"), write_brain(*robot_.brain, events_);
     if (has_origin) write_origin();
+    send_other(&events_);
     events_.end_object();
   }
 
@@ -160,6 +209,13 @@ class RobotWriter {
     } catch (const InputError& error) {
       throw InputError("/origin", error.what());
     }
+  }
+
+  // Members that this version does not know. Returns how many there are.
+  std::size_t send_other(DocumentEvents* to) const {
+    Members members(to);
+    if (!robot_.other.empty()) read_json(robot_.other, members);
+    return members.count();
   }
 
   const Robot& robot_;

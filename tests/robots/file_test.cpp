@@ -186,15 +186,34 @@ TEST_F(RobotFiles, LinesOfAFileAreShort) {
     EXPECT_TRUE(line.size() < 160 || line.starts_with("\"origin\"")) << line;
 }
 
-TEST_F(RobotFiles, UnknownKeysAreIgnored) {
+TEST_F(RobotFiles, UnknownKeysOfMaterialsAreIgnoredAndThoseOfTheDocumentKept) {
   const std::string document =
       R"({"comment": [1, {"masses": [[]]}, null], "springs": [[0, 1, 1]], "format": "mercury-robot",
     "materials": [{"stiffness": 1}, {"stiffness": 2, "color": {"r": [1]}, "name": "m"}],
-    "version": 1, "masses": [[0, 0, 0], [1, 0, 0]], "faces": [], "x": 1e99})";
+    "version": 1, "masses": [[0, 0, 0], [1, 0, 0]], "faces": [], "x": 1.5})";
   const Robot robot = parse_robot(document, RobotFormat::json);
   EXPECT_EQ(robot.springs, (std::vector<Spring>{{0, 1, 1, 1}}));
   EXPECT_EQ(robot.materials, (std::vector<Material>{{1, 0, 0, 0}, {2, 0, 0, 0}}));
   EXPECT_EQ(robot.material_names, (std::vector<std::string>{"", "m"}));
+  const std::string others = R"({"comment":[1,{"masses":[[]]},null],"x":1.5})";
+  EXPECT_EQ(robot.other, others);
+  for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor}) {
+    const std::string written = serialize_robot(robot, format);
+    EXPECT_EQ(parse_robot(written, format), robot);
+    EXPECT_EQ(serialize_robot(parse_robot(written, format), format), written);
+  }
+  EXPECT_EQ(json_member(serialize_robot(robot, RobotFormat::json), "comment"), R"([1,{"masses":[[]]},null])");
+}
+
+TEST_F(RobotFiles, MembersThatJsonCannotHoldAreLeftOut) {
+  Robot plain{.name = "a", .masses = {{0, 0, 0}}};
+  std::string document = serialize_robot(plain, RobotFormat::cbor);
+  ++document[0];                                        // one member more in the map
+  document += std::string("\x61z\x81\x42\x01\x02", 6);  // "z": [h'0102']
+  EXPECT_EQ(parse_robot(document, RobotFormat::cbor), plain);
+  document[0] += 1;
+  document += "\x61y\x01";  // "y": 1
+  EXPECT_EQ(parse_robot(document, RobotFormat::cbor).other, R"({"y":1})");
 }
 
 TEST_F(RobotFiles, ARobotWithoutANameIsNamedByItsFile) {

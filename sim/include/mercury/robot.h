@@ -52,6 +52,7 @@ struct Robot {
   std::vector<Actuator> actuators;   // empty = those that actuators_of() finds
   std::vector<Sensor> sensors;
   std::optional<Brain> brain;  // drives actuators from what the sensors give
+  std::string other;           // members of its file that this version does not know, a JSON object; empty = none
   friend bool operator==(const Robot&, const Robot&) = default;
 };
 
