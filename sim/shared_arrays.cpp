@@ -23,9 +23,10 @@ SharedArray<T> allocate(const Backend& backend, std::size_t rows, std::size_t co
   return array;
 }
 
-std::vector<float> read(const Backend& backend, const SharedArray<float>& array) {
-  std::vector<float> values(array.rows * array.columns);
-  if (!values.empty()) backend.copy_shared(values.data(), array.data.get(), values.size() * sizeof(float));
+template <class T>
+std::vector<T> read(const Backend& backend, const SharedArray<T>& array) {
+  std::vector<T> values(array.rows * array.columns);
+  if (!values.empty()) backend.copy_shared(values.data(), array.data.get(), values.size() * sizeof(T));
   return values;
 }
 
@@ -37,7 +38,7 @@ std::span<const Material> present_materials(const Robot& robot, const std::uniqu
 // What the materials of an actuator have in common, NaN where they differ.
 ActuatorSetting common_setting(const Actuator& actuator, std::span<const Material> materials) {
   const Material& first = materials[actuator.materials.front()];
-  ActuatorSetting common{first.amplitude, first.frequency, first.phase, none};
+  ActuatorSetting common{first.amplitude, first.frequency, first.phase, none, false};
   for (const MaterialId id : actuator.materials) {
     if (materials[id].amplitude != first.amplitude) common.amplitude = none;
     if (materials[id].frequency != first.frequency) common.frequency = none;
@@ -87,7 +88,7 @@ void SharedState::forget() { *this = {}; }
 
 const Actuation& SharedActuation::arrays(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
                                          std::span<const std::unique_ptr<MaterialTable>> tables) {
-  if (!made_) make(backend, robots, tables, {}, {});
+  if (!made_) make(backend, robots, tables, {}, {}, {});
   return arrays_;
 }
 
@@ -97,23 +98,26 @@ void SharedActuation::rearrange(Backend& backend, std::span<const std::shared_pt
   if (!made_) return;
   std::vector<float> old;
   for (const auto field : fields) std::ranges::copy(read(backend, arrays_.*field), std::back_inserter(old));
-  make(backend, robots, tables, old, kept);
+  make(backend, robots, tables, old, read(backend, arrays_.driven), kept);
 }
 
-// `old` = all four arrays as they were; `kept` = the old rows of the first robots.
+// `old` = the four arrays of numbers as they were, `old_driven` the other; `kept` = the old rows of the first robots.
 void SharedActuation::make(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
                            std::span<const std::unique_ptr<MaterialTable>> tables, std::span<const float> old,
-                           std::span<const std::size_t> kept) {
+                           std::span<const std::uint8_t> old_driven, std::span<const std::size_t> kept) {
   std::vector<std::vector<Actuator>> actuators;
   std::size_t columns = 0;
   for (const auto& robot : robots) {
     actuators.push_back(actuators_of(*robot));
     columns = std::max(columns, actuators.back().size());
   }
+  counts_.clear();
+  for (const auto& own : actuators) counts_.push_back(own.size());
   actuator_of_.assign(robots.size() * max_materials, ActuationSources::no_actuator);
   const std::size_t old_columns = arrays_.drive.columns, old_size = arrays_.drive.rows * old_columns;
   const std::size_t size = robots.size() * columns;
   std::vector<float> values(4 * size, none);
+  std::vector<std::uint8_t> driven(size, 0);
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const std::span<const Material> materials = present_materials(*robots[i], tables[i]);
     for (std::size_t a = 0; a < actuators[i].size(); ++a) {
@@ -124,6 +128,7 @@ void SharedActuation::make(Backend& backend, std::span<const std::shared_ptr<con
       for (std::size_t field = 0; field < 4; ++field)
         values[field * size + i * columns + a] =
             i < kept.size() ? old[field * old_size + kept[i] * old_columns + a] : initial[field];
+      if (i < kept.size()) driven[i * columns + a] = old_driven[kept[i] * old_columns + a];
     }
   }
   for (std::size_t field = 0; field < 4; ++field) {
@@ -131,8 +136,11 @@ void SharedActuation::make(Backend& backend, std::span<const std::shared_ptr<con
     array = allocate<float>(backend, robots.size(), columns);
     if (size > 0) backend.copy_shared(array.data.get(), values.data() + field * size, size * sizeof(float));
   }
+  arrays_.driven = allocate<std::uint8_t>(backend, robots.size(), columns);
+  if (size > 0) backend.copy_shared(arrays_.driven.data.get(), driven.data(), size);
   made_ = true;
   applied_.assign(4 * size, 0);
+  applied_driven_.assign(size, 0);
   attach(backend);
 }
 
@@ -143,6 +151,7 @@ void SharedActuation::attach(Backend& backend) {
                                        .frequency = arrays_.frequency.data.get(),
                                        .phase = arrays_.phase.data.get(),
                                        .drive = arrays_.drive.data.get(),
+                                       .driven = arrays_.driven.data.get(),
                                        .columns = arrays_.drive.columns,
                                        .actuator_of = actuator_of_});
 }
@@ -159,13 +168,26 @@ void SharedActuation::set_drives(const Backend& backend, std::span<const DriveSe
   backend.copy_shared(drive.data.get(), values.data(), values.size() * sizeof(float));
 }
 
+ActuatorSetting SharedActuation::setting(std::size_t at) const {
+  const float drive = arrays_.drive.data.get()[at];
+  return {arrays_.amplitude.data.get()[at], arrays_.frequency.data.get()[at], arrays_.phase.data.get()[at], drive,
+          is_driven(arrays_.driven.data.get()[at], drive)};
+}
+
 // Robots are written whose settings are not, bit for bit, those of the last step.
-void SharedActuation::apply(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
+void SharedActuation::apply(Backend& backend, std::int64_t step, std::span<const std::shared_ptr<const Robot>> robots,
                             std::span<const std::unique_ptr<MaterialTable>> tables) {
   if (!made_ || by_backend_) return;
   const std::size_t columns = arrays_.drive.columns, size = robots.size() * columns;
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    bool same = applied_is_known_;
+    bool same = applied_is_known_, failed = false;
+    for (std::size_t at = i * columns; at < i * columns + counts_[i]; ++at) {
+      const ActuatorSetting now = setting(at);
+      failed = failed || has_failed(now);
+      same = same && (applied_driven_[at] != 0) == now.driven;
+      applied_driven_[at] = now.driven;
+    }
+    if (failed && backend.status(i).exploded_step < 0) backend.set_status(i, {.exploded_step = step});
     for (std::size_t field = 0; field < 4; ++field) {
       const float* const row = (arrays_.*fields[field]).data.get() + i * columns;
       std::uint32_t* const applied = applied_.data() + field * size + i * columns;
@@ -181,9 +203,7 @@ void SharedActuation::apply(Backend& backend, std::span<const std::shared_ptr<co
     for (std::size_t id = 0; id < max_materials; ++id) {
       const std::size_t a = actuator_of_[i * max_materials + id];
       if (a == ActuationSources::no_actuator) continue;
-      const std::size_t at = i * columns + a;
-      table[id] = actuated(table[id], {arrays_.amplitude.data.get()[at], arrays_.frequency.data.get()[at],
-                                       arrays_.phase.data.get()[at], arrays_.drive.data.get()[at]});
+      table[id] = actuated(table[id], setting(i * columns + a));
     }
     backend.write_materials(i, table);
   }

@@ -51,8 +51,9 @@ class SharedActuation {
   // Makes arrays for other robots, if there are any. `kept` = the old indices of the first ones; the others are new.
   void rearrange(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
                  std::span<const std::unique_ptr<MaterialTable>> tables, std::span<const std::size_t> kept);
-  // Changes the materials of the backend, unless it reads the arrays itself. To be called before every step.
-  void apply(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
+  // Changes the materials of the backend, and explodes robots whose drives have failed, unless it reads the arrays
+  // itself. To be called before every step.
+  void apply(Backend& backend, std::int64_t step, std::span<const std::shared_ptr<const Robot>> robots,
              std::span<const std::unique_ptr<MaterialTable>> tables);
   // Writes drives into arrays that have been made.
   void set_drives(const Backend& backend, std::span<const DriveSetting> settings);
@@ -64,11 +65,15 @@ class SharedActuation {
  private:
   void make(Backend& backend, std::span<const std::shared_ptr<const Robot>> robots,
             std::span<const std::unique_ptr<MaterialTable>> tables, std::span<const float> old,
-            std::span<const std::size_t> kept);
+            std::span<const std::uint8_t> old_driven, std::span<const std::size_t> kept);
+
+  ActuatorSetting setting(std::size_t at) const;
 
   Actuation arrays_;
   std::vector<std::uint8_t> actuator_of_;  // ActuationSources::actuator_of
-  std::vector<std::uint32_t> applied_;     // the bits of all four arrays at the last step
+  std::vector<std::uint32_t> applied_;     // the bits of the four arrays of numbers at the last step
+  std::vector<std::uint8_t> applied_driven_;
+  std::vector<std::size_t> counts_;  // of the robots' actuators
   bool made_ = false, by_backend_ = false, applied_is_known_ = false;
 };
 

@@ -315,7 +315,7 @@ std::int64_t Simulation::Parts::before_step() {
       steps = brains.steps_until_thought(next) + 1;
     }
   }
-  shared_actuation.apply(*backend, robots, changed_tables);
+  shared_actuation.apply(*backend, clock.step, robots, changed_tables);
   return steps;
 }
 

@@ -258,6 +258,7 @@ nb::object Batch::actuation() {
                                                .frequency = array(shared.frequency),
                                                .phase = array(shared.phase),
                                                .drive = array(shared.drive),
+                                               .driven = nb::cast(array_of<bool>(shared.driven, last_stream_, true)),
                                                .robots = std::move(robots)});
   if (arrays_[actuation_place].is_valid() && version == version_) return arrays_[actuation_place];
   if (version == version_) arrays_[actuation_place] = object;

@@ -83,7 +83,7 @@ class Batch {
 
 // What drives the actuators of a batch, as Python has it.
 struct ActuationArrays {
-  nb::object amplitude, frequency, phase, drive;  // Array
+  nb::object amplitude, frequency, phase, drive, driven;  // Array
   SharedRobots robots;
 };
 

@@ -79,16 +79,21 @@ exploded_at          when [s], 0 unless exploded
 culprit_spring       index of the spring that is the cause, -1 if none is known)";
 
 constexpr const char* actuation_description =
-    R"(What drives the actuators of a batch: writable arrays of (robots, actuators), float32, on the device.
+    R"(What drives the actuators of a batch: writable arrays of (robots, actuators) on the device, `driven` of bool, the
+others of float32.
 
 Column a of row i is actuator a of robot i; names(i) lists them. A robot with fewer actuators ignores the other columns.
 
-    L(t) = L0 (1 + amplitude sin(frequency t + phase))     while drive is NaN
-    L    = L0 (1 + amplitude drive)                        otherwise
+    L(t) = L0 (1 + amplitude sin(frequency t + phase))     while driven is False
+    L    = L0 (1 + amplitude drive)                        while driven is True
 
-NaN says that there is none: springs keep the amplitude, frequency or phase of their materials, and follow the sine.
-Amplitudes are limited to (-1, 1), drives to [-1, 1]. At first every actuator has the values that its materials have in
-common, NaN where they differ, and no drive. Every Batch.step() reads the arrays when it begins.
+Every Batch.step() reads the arrays when it begins. At first no actuator is driven; a step that reads a number in
+`drive` sets `driven`, which may also be set before. From then on a drive of NaN or infinity explodes the robot, which
+`exploded` shows: the policy that wrote it has diverged. To follow the sine again, an actuator takes a drive of NaN and
+`driven` False.
+
+Amplitudes are limited to (-1, 1), drives to [-1, 1]. Every actuator begins with the values that its materials have in
+common, NaN where they differ: springs then keep the amplitude, frequency or phase of their materials.
 
     batch.actuation.drive[:] = 0.5                                   # on the CPU
     torch.from_dlpack(batch.actuation.drive)[:] = policy(state)      # on any device)";
@@ -163,7 +168,9 @@ void bind_actuation(nb::module_& module) {
       .def_ro("phase", &ActuationArrays::phase, nb::sig("def phase(self) -> Array"),
               "Phases, (robots, actuators) [rad].")
       .def_ro("drive", &ActuationArrays::drive, nb::sig("def drive(self) -> Array"),
-              "Drive signals u, (robots, actuators) [1]; NaN = follow the sine.")
+              "Drive signals u, (robots, actuators) [1].")
+      .def_ro("driven", &ActuationArrays::driven, nb::sig("def driven(self) -> Array"),
+              "Which actuators are driven, (robots, actuators) bool; the others follow the sine.")
       .def(
           "names",
           [](const ActuationArrays& self, std::int64_t robot) {

@@ -52,10 +52,56 @@ def test_drives_act_from_the_next_step_on_and_on_one_robot(batch, device):
     drive = np.full(batch.actuation.drive.shape, np.nan, dtype=np.float32)
     drive[1] = 1
     write(batch.actuation.drive, drive)
+    assert not batch.actuation.driven.numpy().any()
     batch.step(50)
     other.step(50)
     same = batch.hashes() == other.hashes()
     assert same.tolist() == [True, False, True]
+    count = len(batch.actuators(1))
+    assert batch.actuation.driven.dtype == bool
+    assert batch.actuation.driven.numpy().sum(axis=1).tolist() == [0, count, 0]
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
+def test_a_policy_that_diverges_explodes_its_robot_and_no_other(batch, device, wrong):
+    other = mercurysim.Batch(batch.robots, device=device)
+    drive = np.full(batch.actuation.drive.shape, 0.5, dtype=np.float32)
+    for each in (batch, other):
+        write(each.actuation.drive, drive)
+        each.step(30)
+    before = batch.hash(1)
+    drive[1, 0] = wrong
+    write(batch.actuation.drive, drive)
+    batch.step(20)
+    other.step(20)
+    assert batch.exploded.numpy().tolist() == [False, True, False]
+    assert batch.hash(1) == before  # it stays as it was before the step
+    assert batch.telemetry()[1]["exploded_at"] == pytest.approx(0.03)
+    assert [batch.hash(i) for i in (0, 2)] == [other.hash(i) for i in (0, 2)]
+    batch.reset([False, True, False])
+    assert not batch.exploded.numpy().any()
+    batch.step(1)
+    assert batch.exploded.numpy().tolist() == [False, True, False]  # the drive is still wrong
+
+
+def test_nan_from_the_first_step_on_is_seen_where_driven_is_set(batch):
+    driven = np.zeros(batch.actuation.driven.shape, bool)
+    driven[2] = True
+    write(batch.actuation.driven, driven)
+    batch.step(1)
+    assert batch.exploded.numpy().tolist() == [False, False, True]
+
+
+def test_an_actuator_follows_the_sine_again(batch, device):
+    other = mercurysim.Batch(batch.robots, device=device)
+    write(batch.actuation.drive, np.float32(0.5))
+    batch.step(30)
+    batch.reset()
+    write(batch.actuation.drive, np.float32(np.nan))
+    write(batch.actuation.driven, np.zeros(batch.actuation.driven.shape, bool))
+    batch.step(30)
+    other.step(30)
+    assert np.array_equal(batch.hashes(), other.hashes())
 
 
 def test_a_constant_drive_is_the_sine_at_frequency_zero(batch, device):
@@ -72,7 +118,7 @@ def test_a_constant_drive_is_the_sine_at_frequency_zero(batch, device):
     assert not np.allclose(batch.positions.numpy(), still.positions.numpy(), atol=1e-3)
 
 
-def test_drives_beyond_one_are_limited_and_nan_follows_the_sine(batch, device):
+def test_drives_beyond_one_are_limited_and_nan_is_none(batch, device):
     limited = mercurysim.Batch(batch.robots, device=device)
     write(batch.actuation.drive, np.float32(1))
     write(limited.actuation.drive, np.float32(1e30))
@@ -83,7 +129,6 @@ def test_drives_beyond_one_are_limited_and_nan_follows_the_sine(batch, device):
     endless = mercurysim.Batch(batch.robots, device=device)
     for array in [endless.actuation.amplitude, endless.actuation.frequency, endless.actuation.phase]:
         write(array, np.float32(np.nan))
-    write(endless.actuation.drive, np.float32(np.inf))
     sine.step(50)
     endless.step(50)
     assert np.array_equal(sine.hashes(), endless.hashes())

@@ -305,6 +305,7 @@ def test_a_saved_state_is_returned_to_bit_for_bit(batch):
 
 def test_a_saved_state_holds_explosions(device):
     batch = mercurysim.Batch(mercurysim.random_voxel(2, seed=1), device=device)
+    batch.actuation.driven
     batch.step(10)
     state = batch.save()
     masses = len(batch.robots[1].masses)

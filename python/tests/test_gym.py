@@ -134,12 +134,33 @@ def test_the_drive_follows_the_action_with_its_time_constant():
     np.testing.assert_allclose(observations[:, -7:-2], expected, rtol=1e-5)
 
 
-def test_nan_counts_as_no_action():
-    env = SwimEnv(EEL, 2)
+@pytest.mark.parametrize("torch", [False, True])
+def test_a_robot_whose_policy_has_diverged_explodes(torch):
+    if torch:
+        torch_or_skip()
+    env, other = (SwimEnv(EEL, 2, torch=torch, device="auto" if torch else "cpu") for _ in range(2))
+    for each in (env, other):
+        each.reset(seed=1)
+        each.step(np.zeros((2, 5), np.float32))
+    observations, rewards, terminated, truncated, infos = (
+        part if isinstance(part, dict) else on_host(part)
+        for part in env.step(np.array([[0, np.nan, 0, 0, 0], [0.5] * 5], np.float32))
+    )
+    expected = on_host(other.step(np.full((2, 5), 0.5, np.float32))[0])
+    assert terminated.tolist() == [True, False] and on_host(infos["exploded"]).tolist() == [True, False]
+    assert rewards[0] == -1 and np.isfinite(observations).all() and np.array_equal(observations[1], expected[1])
+    env.step(np.zeros((2, 5), np.float32))  # begins its next episode
+    observations, rewards, terminated, *_ = env.step(np.ones((2, 5), np.float32))
+    assert not on_host(terminated).any() and np.isfinite(on_host(rewards)).all()
+
+
+def test_a_value_of_nan_for_an_actuator_that_a_robot_lacks_has_no_effect():
+    env = SwimEnv([EEL, quadruped()])
     env.reset(seed=1)
-    env.step(np.array([[np.nan] * 5, [0] * 5]))
-    assert np.array_equal(env.batch.actuation.drive, np.zeros((2, 5)))
-    assert env.batch.hash(0) == env.batch.hash(1)
+    actions = np.zeros(env.action_space.shape, np.float32)
+    actions[0, 5:] = np.nan
+    observations, rewards, terminated, *_ = env.step(actions)
+    assert not terminated.any() and np.isfinite(observations).all() and np.isfinite(rewards).all()
 
 
 def test_actions_of_actuators_that_a_robot_lacks_have_no_effect():

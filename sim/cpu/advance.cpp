@@ -101,7 +101,9 @@ void advance_alone(const Kernel& kernel, Body& body, const StepSetting& setting,
 std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& setting, const Clock& clock,
                     std::int64_t steps) {
   if (batch.spring_parameters_are_stale) update_spring_parameters(batch, setting.model);
-  for_each_body(batch, [&](Body& body) { read_drives(body, batch.muscles); });
+  for_each_body(batch, [&](Body& body) {
+    if (!read_drives(body, batch.muscles) && body.status.exploded_step < 0) body.status = {.exploded_step = clock.step};
+  });
   std::size_t broken_up = 0;
   const auto break_up_counted = [&](LockstepGroup& group) {
     break_up(group, batch);

@@ -32,8 +32,8 @@ class Actuators {
   const ActuationSources& sources() const { return sources_; }
 
   // Computes all driven materials, and their phases for this clock. Asynchronous.
-  void apply(const Clock& clock, cudaStream_t stream) const {
-    if (!empty()) actuate(driven_.data(), driven_.size(), sources_, clock, stream);
+  void apply(const Clock& clock, bool before_step, cudaStream_t stream) const {
+    if (!empty()) actuate(driven_.data(), driven_.size(), sources_, clock, before_step, stream);
   }
 
  private:

@@ -154,7 +154,7 @@ bool CudaBackend::set_actuation(const ActuationSources& sources) {
   choose_launches();
   if (driven.empty()) return true;
   owned_->actuators.set(driven, sources, main().get());
-  owned_->actuators.apply({}, main().get());
+  owned_->actuators.apply({}, false, main().get());
   main().synchronize();
   return true;
 }

@@ -101,7 +101,7 @@ void CudaBackend::step_in_stream(const Clock& clock, std::int64_t steps, const P
   use_device();
   report_valid_ = report_expected_ = copy_valid_ = false;
   const cudaStream_t stream = enter(cuda_stream);
-  owned_->actuators.apply(clock, stream);
+  owned_->actuators.apply(clock, true, stream);
   fork_launches(clock, stream);
   launch(clock, steps, nullptr, stream);
   join_launches(stream);
@@ -123,7 +123,7 @@ void CudaBackend::leave(cudaStream_t stream) const {
 void CudaBackend::actuate_after_caller(const Clock& clock) const {
   if (owned_->actuators.empty()) return;
   const cudaStream_t stream = enter(nullptr);
-  owned_->actuators.apply(clock, stream);
+  owned_->actuators.apply(clock, true, stream);
   leave(stream);
 }
 

@@ -119,9 +119,13 @@ __global__ void rename_kernel(std::uint32_t* records, std::size_t records_per_ro
   }
 }
 
-__global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, ActuationSources sources, Clock clock) {
+__global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, ActuationSources sources, Clock clock,
+                               bool before_step) {
   const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
-  if (i < count) set_driven(driven[i], sources, clock);
+  if (i >= count) return;
+  const bool works = set_driven(driven[i], sources, clock);
+  // Several threads may write the same step.
+  if (!works && before_step && driven[i].status->exploded_step < 0) driven[i].status->exploded_step = clock.step;
 }
 
 }  // namespace
@@ -174,8 +178,8 @@ void rename_materials(std::uint32_t* records, std::size_t robots, std::size_t re
 }
 
 void actuate(const DrivenMaterial* driven, std::size_t count, const ActuationSources& sources, const Clock& clock,
-             cudaStream_t stream) {
-  actuate_kernel<<<blocks_for(count), many_threads, 0, stream>>>(driven, count, sources, clock);
+             bool before_step, cudaStream_t stream) {
+  actuate_kernel<<<blocks_for(count), many_threads, 0, stream>>>(driven, count, sources, clock, before_step);
   check(cudaGetLastError(), "driving actuators");
 }
 

@@ -61,11 +61,13 @@ struct DrivenMaterial {
   Material* now;
   MusclePhase* phase;
   MuscleSwing* swing;
+  DeviceStatus* status;   // of the robot
   std::uint32_t setting;  // index in the shared arrays
 };
 
-// Computes all driven materials, and their phases for this clock.
+// Computes all driven materials, and their phases for this clock. `before_step`: robots whose drives have failed
+// explode.
 void actuate(const DrivenMaterial* driven, std::size_t count, const ActuationSources& sources, const Clock& clock,
-             cudaStream_t stream);
+             bool before_step, cudaStream_t stream);
 
 }  // namespace mercury::cuda

@@ -150,8 +150,12 @@ std::vector<Material> SizeClass::driven_table(std::uint32_t place) const {
 
 DrivenMaterial SizeClass::driven_material(std::uint32_t place, MaterialId id, std::uint32_t setting) const {
   const std::size_t first = std::size_t{place} * max_materials, driven = first + driven_ids_[first + id];
-  return {device_materials_.data() + first + id, driven_materials_.data() + driven, phases_.data() + driven,
-          swings_.data() + driven, setting};
+  return {device_materials_.data() + first + id,
+          driven_materials_.data() + driven,
+          phases_.data() + driven,
+          swings_.data() + driven,
+          statuses_.data() + place,
+          setting};
 }
 
 }  // namespace mercury::cuda

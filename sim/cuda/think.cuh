@@ -356,7 +356,7 @@ class Thought {
     }
     wait();
     for (std::uint32_t i = robot_.thread(); i < of_.driven; i += robot_.threads())
-      set_driven(thoughts_.driven[of_.first_driven + i], sources, clock_);
+      (void)set_driven(thoughts_.driven[of_.first_driven + i], sources, clock_);
     wait();
   }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "mercury/host_device.h"
 #include "mercury/material.h"
@@ -39,10 +40,23 @@ MERCURY_HOST_DEVICE float arcsine(float u) {
   return static_cast<float>(u < 0 ? -angle : angle);
 }
 
-// What a program gives an actuator; a number that is not finite is none (mercury/shared_array.h).
+// What a program gives an actuator. Amplitude, frequency and phase that are not finite are none
+// (mercury/shared_array.h).
 struct ActuatorSetting {
   float amplitude, frequency, phase, drive;
+  bool driven;  // else it follows the sine
 };
+
+// Whether a program drives the actuator: from its first number on, or since it says so.
+MERCURY_HOST_DEVICE bool is_driven(std::uint8_t& driven, float drive) {
+  if (driven == 0 && !std::isnan(drive)) driven = 1;
+  return driven != 0;
+}
+
+// A drive that is not finite comes from a program that has failed. The robot explodes, so that this is seen.
+MERCURY_HOST_DEVICE bool has_failed(const ActuatorSetting& setting) {
+  return setting.driven && !std::isfinite(setting.drive);
+}
 
 // The material that an actuator's springs have while it has this setting.
 MERCURY_HOST_DEVICE Material actuated(const Material& own, const ActuatorSetting& setting) {
@@ -51,7 +65,7 @@ MERCURY_HOST_DEVICE Material actuated(const Material& own, const ActuatorSetting
     now.amplitude = std::fmin(std::fmax(setting.amplitude, -max_actuated_amplitude), max_actuated_amplitude);
   if (std::isfinite(setting.frequency)) now.frequency = setting.frequency;
   if (std::isfinite(setting.phase)) now.phase = setting.phase;
-  if (std::isfinite(setting.drive)) {
+  if (setting.driven && std::isfinite(setting.drive)) {
     now.frequency = 0;
     now.phase = arcsine(setting.drive);
     now.half_wave = false;

@@ -151,6 +151,7 @@ TEST_P(ActuationOf, ByADriveHasNoHalfWaves) {
   // Without the drive it moves by half waves again: sin(4 t + 1) > 0 at the first of these times, < 0 at the second.
   for (const std::int64_t first : {100, 800}) {
     batch.write(arrays.drive, {nan_value, nan_value});
+    batch.write(arrays.driven, {0, 0});
     batch->step(first - batch->steps());
     const double time = batch->time(), sine = std::sin(4 * time + 1), whole = 1 + double{0.3f} * sine;
     batch->set_state(0, robots[0].masses, std::vector<Vec3>(2));
@@ -201,12 +202,51 @@ TEST_P(ActuationOf, WithAnyBitsBreaksNothing) {
       batch.write(*array, values);
       shift += 3;
     }
+    batch.write(arrays.driven, std::vector<std::uint8_t>(values.size()));
+    batch->reset();
     batch->step(5);
-    for (const Telemetry& telemetry : batch->telemetry()) {
-      EXPECT_TRUE(std::isfinite(telemetry.kinetic_energy));
-      EXPECT_FALSE(telemetry.exploded);
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const auto drives = std::span(values).subspan(i * arrays.drive.columns, actuators_of(robots[i]).size());
+      EXPECT_TRUE(std::isfinite(batch->telemetry(i).kinetic_energy));
+      EXPECT_EQ(batch->telemetry(i).exploded, std::ranges::any_of(drives, [](float u) { return std::isinf(u); })) << i;
     }
   }
+}
+
+// The length of a muscle whose drive is no number is none, so that nobody takes its robot for a living one.
+TEST_P(ActuationOf, ThatFailsExplodesTheRobotAloneBeforeTheStep) {
+  const std::vector<Robot> robots(4, bodies::pair({50, 0.3f, 4, 1}));
+  SharedBatch batch = this->batch({.environment = empty_space()}, robots);
+  const Actuation& arrays = batch->actuation();
+  EXPECT_EQ(batch.read(arrays.driven), std::vector<std::uint8_t>(4));
+  batch.write(arrays.drive, {0.5f, 0.5f, nan_value, nan_value});
+  batch->step(10);
+  EXPECT_EQ(batch.read(arrays.driven), (std::vector<std::uint8_t>{1, 1, 0, 0}));
+  const auto before = batch->hashes();
+  batch.write(arrays.drive, {0.5f, nan_value, nan_value, nan_value});
+  batch.write(arrays.driven, {1, 1, 0, 1});
+  batch->step(10);
+  const auto after = batch->hashes();
+  const auto telemetry = batch->telemetry();
+  for (const std::size_t i : {1, 3}) {
+    EXPECT_TRUE(telemetry[i].exploded) << i;
+    EXPECT_DOUBLE_EQ(telemetry[i].exploded_at, 10 * 1e-3) << i;
+    EXPECT_EQ(after[i], before[i]) << i;
+  }
+  for (const std::size_t i : {0, 2}) {
+    EXPECT_FALSE(telemetry[i].exploded) << i;
+    EXPECT_NE(after[i], before[i]) << i;
+  }
+}
+
+TEST_P(ActuationOf, KeepsWhatIsDrivenWithItsRobots) {
+  const std::vector<Robot> robots(3, bodies::pair({50, 0.3f, 4, 1}));
+  SharedBatch batch = this->batch({.environment = empty_space()}, robots);
+  batch.write(batch->actuation().drive, {nan_value, 0.5f, nan_value});
+  batch->step(1);
+  batch->keep(std::vector<std::size_t>{2, 1});
+  batch->add(robots[0]);
+  EXPECT_EQ(batch.read(batch->actuation().driven), (std::vector<std::uint8_t>{0, 1, 0}));
 }
 
 TEST_P(ActuationOf, GoesOnWhenMaterialsChange) {

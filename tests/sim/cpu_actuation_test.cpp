@@ -44,7 +44,8 @@ class Both {
         actuation.amplitude.data.get()[i] = amplitudes[random() % 6];
         actuation.frequency.data.get()[i] = frequencies[random() % 6];
         actuation.phase.data.get()[i] = phases[random() % 6];
-        actuation.drive.data.get()[i] = drives[random() % 6];
+        const float drive = actuation.drive.data.get()[i] = drives[random() % 6];
+        actuation.driven.data.get()[i] = !std::isnan(drive);
       }
     });
   }

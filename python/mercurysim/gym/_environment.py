@@ -74,7 +74,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
 
     An action a has one number in [-1, 1] per actuator; those that a robot does not have are ignored. The drive signal u
     follows it as u += (a - u) (1 - exp(-frame_skip dt / smoothing)), because a muscle whose length jumps throws masses
-    of 1 kg about. NaN counts as 0.
+    of 1 kg about. A robot whose action has a NaN explodes: its policy has diverged.
 
     An observation is, in the body frame, lengths in body lengths, float32, cut off at 10:
 
@@ -268,10 +268,10 @@ class RobotEnv(gymnasium.vector.VectorEnv):
 
     def _follow_actions(self, u: Any, actions: Any) -> tuple[Any, ...]:
         """Writes the new drive signal for the batch."""
-        actions = self._xp.nan_to_num(self._xp.clip(actions, -1, 1)) * self._has_actuator
+        actions = self._xp.where(self._has_actuator > 0, self._xp.clip(actions, -1, 1), 0 * self._u)
         u = u + (actions - u) * self._follow
         self._drive[:] = u[:, : self._drive.shape[1]]
-        return (u,)
+        return (self._xp.nan_to_num(u),)
 
     def _outcome(self, *state: Any) -> tuple[Any, ...]:
         """The state after a step, observations, rewards, two flags, and what _infos() takes."""

@@ -15,13 +15,15 @@ bool move_alike(const Material& a, const Material& b) {
   return a.amplitude == b.amplitude && a.frequency == b.frequency && a.phase == b.phase && a.half_wave == b.half_wave;
 }
 
-// The setting of an actuator with the drive as the sine that stands for it, so that this is computed once for all its
-// materials.
 ActuatorSetting setting_of(const Drives& drives, std::size_t actuator) {
-  ActuatorSetting setting{drives.amplitude[actuator], drives.frequency[actuator], drives.phase[actuator],
-                          drives.drive[actuator]};
-  if (!std::isfinite(setting.drive)) return setting;
-  return {setting.amplitude, 0, arcsine(setting.drive), std::numeric_limits<float>::quiet_NaN()};
+  const float drive = drives.drive[actuator];
+  return {drives.amplitude[actuator], drives.frequency[actuator], drives.phase[actuator], drive,
+          is_driven(drives.driven[actuator], drive)};
+}
+
+// With the sine that stands for the drive, so that this is computed once for all materials of an actuator.
+ActuatorSetting as_sine(const ActuatorSetting& setting) {
+  return {setting.amplitude, 0, arcsine(setting.drive), std::numeric_limits<float>::quiet_NaN(), false};
 }
 
 }  // namespace
@@ -29,7 +31,8 @@ ActuatorSetting setting_of(const Drives& drives, std::size_t actuator) {
 void set_drives(Body& body, const ActuationSources& sources, std::size_t robot) {
   remove_drives(body);
   const std::size_t row = robot * sources.columns;
-  body.drives = {sources.amplitude + row, sources.frequency + row, sources.phase + row, sources.drive + row, {}};
+  body.drives = {sources.amplitude + row, sources.frequency + row, sources.phase + row,
+                 sources.drive + row,     sources.driven + row,    {}};
   for (std::size_t id = 0; id < body.materials.size(); ++id) {
     const std::uint8_t actuator = sources.actuator_of[robot * max_materials + id];
     if (actuator == ActuationSources::no_actuator || !body.measures.used[id]) continue;
@@ -59,17 +62,24 @@ void add_driven_factors(Body& body, Muscles& muscles) {
   }
 }
 
-void read_drives(Body& body, Muscles& muscles) {
+bool read_drives(Body& body, Muscles& muscles) {
   const DrivenMaterial* previous = nullptr;
   ActuatorSetting setting{};
+  bool by_drive = false, failed = false;
   for (const DrivenMaterial& driven : body.drives.materials) {
-    if (!previous || previous->actuator != driven.actuator) setting = setting_of(body.drives, driven.actuator);
+    if (!previous || previous->actuator != driven.actuator) {
+      setting = setting_of(body.drives, driven.actuator);
+      failed = failed || has_failed(setting);
+      by_drive = setting.driven && std::isfinite(setting.drive);
+      if (by_drive) setting = as_sine(setting);
+    }
     Material& now = body.changed_materials[driven.id];
     now = actuated(driven.own, setting);
-    if (std::isfinite(body.drives.drive[driven.actuator])) now.half_wave = false;  // as in actuated()
+    if (by_drive) now.half_wave = false;  // as in actuated()
     muscles.drive(driven.factor, now);
     previous = &driven;
   }
+  return !failed;
 }
 
 }  // namespace mercury::cpu

@@ -29,6 +29,7 @@ struct DrivenMaterial {
 
 struct Drives {
   const float *amplitude = nullptr, *frequency = nullptr, *phase = nullptr, *drive = nullptr;  // the robot's rows
+  std::uint8_t* driven = nullptr;                                                              // the same
   std::vector<DrivenMaterial> materials;  // those that springs have, by actuator
 };
 
@@ -40,7 +41,7 @@ void remove_drives(Body& body);
 
 // Adds the factors of the driven materials: one for those of an actuator that move alike by themselves.
 void add_driven_factors(Body& body, Muscles& muscles);
-// Reads the program's arrays and changes the body's materials and their factors.
-void read_drives(Body& body, Muscles& muscles);
+// Reads the program's arrays and changes the body's materials and their factors. Returns false if a drive has failed.
+bool read_drives(Body& body, Muscles& muscles);
 
 }  // namespace mercury::cpu

@@ -53,6 +53,7 @@ struct ActuationSources {
   static constexpr std::uint8_t no_actuator = 255;
   const float *amplitude = nullptr, *frequency = nullptr, *phase = nullptr;  // [robot][columns]
   float* drive = nullptr;                                                    // the same; brains write it
+  std::uint8_t* driven = nullptr;                                            // the same; steps write it
   std::size_t columns = 0;
   std::span<const std::uint8_t>
       actuator_of;  // [robot][max_materials], the material's column or no_actuator; host memory
@@ -140,8 +141,9 @@ class Backend {
   // Writes the current state of all robots of the batch into shared arrays. Returns when it is done. The default reads
   // everything back.
   virtual void publish(std::span<const Robot* const> robots, const PublishedArrays& arrays) const;
-  // From now on every step begins with reading these. They stay valid until the next call, load(), add() or keep(),
-  // after which there are none. Returns false if the backend does not; Simulation then changes materials instead.
+  // From now on every step begins with reading these, and explodes robots whose drives have failed. They stay valid
+  // until the next call, load(), add() or keep(), after which there are none. Returns false if the backend does not;
+  // Simulation then changes materials instead.
   virtual bool set_actuation(const ActuationSources& /*sources*/) { return false; }
   // From now on the backend lets these brains think between its steps, one per robot, null = none, and drives the
   // actuators of set_actuation() by them. It has their states, which write_brains() sets, with weights if there are

@@ -26,17 +26,21 @@ enum class StateArray {
 // What drives the actuators, [robot][actuator]. Column a of row i is actuator a of actuators_of(robot i); columns that
 // a robot does not have are ignored.
 //
-//   L(t) = L0 (1 + amplitude sin(frequency t + phase))     while the drive is NaN, as in material.h
-//   L    = L0 (1 + amplitude drive)                        otherwise
+//   L(t) = L0 (1 + amplitude sin(frequency t + phase))     while it is not driven, as in material.h
+//   L    = L0 (1 + amplitude drive)                        while it is driven
 //
-// A number that is not finite means that there is none: materials then keep their own amplitude, frequency or phase,
-// and follow the sine, or its half wave, which a drive replaces too. Amplitudes are limited to (-1, 1), drives to [-1,
-// 1].
+// At first no actuator is driven, and drives are NaN. A step that reads a number in `drive` sets `driven`, which may
+// also be set before. A driven actuator whose drive is NaN or infinite explodes its robot: what writes the drives has
+// failed. To follow the sine again, it takes a drive of NaN and `driven` 0.
+//
+// Amplitudes, frequencies and phases that are not finite are none: materials then keep their own. A drive replaces half
+// waves, too. Amplitudes are limited to (-1, 1), drives to [-1, 1].
 struct Actuation {
-  SharedArray<float> amplitude;  // [1]
-  SharedArray<float> frequency;  // [rad/s]
-  SharedArray<float> phase;      // [rad]
-  SharedArray<float> drive;      // u [1]
+  SharedArray<float> amplitude;      // [1]
+  SharedArray<float> frequency;      // [rad/s]
+  SharedArray<float> phase;          // [rad]
+  SharedArray<float> drive;          // u [1]
+  SharedArray<std::uint8_t> driven;  // 0 or 1
 };
 
 }  // namespace mercury

@@ -144,8 +144,8 @@ class Simulation {
   SharedArray<float> shared_state(StateArray which);
   SharedArray<std::uint8_t> shared_exploded();  // [robot][1], 1 = has exploded
   // What drives the actuators of all robots. At first, every actuator has the values that its materials have in common,
-  // NaN where they differ, and no drive. Every step() and step_in_stream() reads the arrays when it begins. add() and
-  // keep() make other arrays with the same values for the robots that stay.
+  // NaN where they differ, and is not driven. Every step() and step_in_stream() reads the arrays when it begins. add()
+  // and keep() make other arrays with the same values for the robots that stay.
   const Actuation& actuation();
 
   // Brains (mercury/brain.h) think by themselves while the simulation steps: on the device if that is one CUDA device,
