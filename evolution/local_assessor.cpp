@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -28,7 +29,8 @@ class Tally {
       : request_(request), settings_(settings), objectives_(objectives) {}
 
   void add(const Evaluation& evaluation) {
-    assessment_.fate = worse(assessment_.fate, fate_of(evaluation, request_, settings_));
+    const Fate fate = fate_of(evaluation, request_, settings_);
+    assessment_.fate = worse(assessment_.fate, fate);
     // Runs of earlier versions do not rank robots by it.
     if (settings_.median)
       assessment_.violation = std::max(assessment_.violation, violation_of(evaluation, request_, settings_));
@@ -38,17 +40,22 @@ class Tally {
       return;
     }
     assessment_.hash = Fnv1a(assessment_.hash).add(evaluation.hash).value();
-    const std::vector<double> values =
-        quantities_of({.robot = *evaluation.robot, .evaluation = evaluation, .configuration = request_.configuration});
+    const std::vector<double> values = quantities_of({.robot = *evaluation.robot,
+                                                      .evaluation = evaluation,
+                                                      .configuration = request_.configuration,
+                                                      .net_efficiency = !settings_.median});
     values_.resize(values.size());
     for (std::size_t q = 0; q < values.size(); ++q) values_[q].push_back(values[q]);
     scores_.resize(objectives_.size());
-    for (std::size_t o = 0; o < objectives_.size(); ++o) scores_[o].push_back(objectives_[o].score(values));
+    for (std::size_t o = 0; o < objectives_.size(); ++o) {
+      scores_[o].push_back(objectives_[o].score(values));
+      if (settings_.median && is_scored(fate) && scores_[o].back() == worst_score) note_undefined(objectives_[o]);
+    }
   }
 
   Assessment result(std::vector<double> interim_scores) {
     if (assessment_.fate != Fate::failed) assessment_.values = together(values_);
-    if (assessment_.fate == Fate::sound || assessment_.fate == Fate::stopped) {
+    if (is_scored(assessment_.fate)) {
       assessment_.scores = together(scores_);
       if (settings_.median && trials_ > 1) add_quartiles();
     } else {
@@ -59,6 +66,12 @@ class Tally {
   }
 
  private:
+  static bool is_scored(Fate fate) { return fate == Fate::sound || fate == Fate::stopped; }
+  void note_undefined(const Objective& objective) {
+    assessment_.fate = worse(assessment_.fate, Fate::undefined);
+    assessment_.violation = std::numeric_limits<double>::infinity();
+    if (assessment_.problem.empty()) assessment_.problem = objective.undefined_text();
+  }
   // Of each row, one number per trial.
   std::vector<double> together(const std::vector<std::vector<double>>& rows) const {
     std::vector<double> numbers;
@@ -106,8 +119,10 @@ class LocalAssessor : public Assessor {
       request.goes_on = [&](const Evaluation& so_far) {
         std::vector<double>& scores = interim_scores[so_far.index];  // one trial per candidate
         const std::size_t check = scores.size();
-        scores.push_back(objectives_.front().score(
-            quantities_of({.robot = *so_far.robot, .evaluation = so_far, .configuration = configuration_})));
+        scores.push_back(objectives_.front().score(quantities_of({.robot = *so_far.robot,
+                                                                  .evaluation = so_far,
+                                                                  .configuration = configuration_,
+                                                                  .net_efficiency = !settings_.median})));
         return interim_limits.empty() || scores[check] >= interim_limits[check];
       };
     }

@@ -53,7 +53,7 @@ constexpr Column table[] = {
      [](const RobotResult& robot) { return text(robot.identity.random); }},
     {{"fate", "",
       "`sound`, `stopped` (early, by the user), `exploded`, `overstretched` (beyond `--strain-limit`), "
-      "`too small`, `failed` (it could not be made)"},
+      "`too small`, `undefined` (the distance is not a finite number), `failed` (it could not be made)"},
      [](const RobotResult& robot) { return text(std::string(name_of(robot.fate))); }},
     {{"failure", "", "why it could not be made"}, [](const RobotResult& robot) { return text(robot.failure); }},
     {{"masses", "", "number of masses"}, [](const RobotResult& robot) { return count(robot, robot.masses); }},
@@ -80,7 +80,10 @@ constexpr Column table[] = {
      figure_of<&RobotResult::cruise_lengths>},
     {{"steady", "", "`true` if the speeds in the second and the last third agree within 20 %"},
      [](const RobotResult& robot) { return std::isnan(robot.steady) ? Cell() : Cell(robot.steady > 0.5); }},
-    {{"work", "J", "that the muscles did"}, figure_of<&RobotResult::work>},
+    {{"work", "J", "that the muscles did, less what they took back"}, figure_of<&RobotResult::work>},
+    {{"positive_work", "J", "that the muscles did while their power was positive"},
+     figure_of<&RobotResult::positive_work>},
+    {{"absolute_work", "J", "`positive_work` and what the muscles took back"}, figure_of<&RobotResult::absolute_work>},
     {{"highest", "m", "largest z of the center of mass"}, figure_of<&RobotResult::highest>},
     {{"largest_strain", "1", "largest strain of any spring"}, figure_of<&RobotResult::largest_strain>},
     {{"strained_share", "1", "share of the springs above 50 % strain, in the sample that has most of them"},
@@ -160,11 +163,14 @@ RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationReques
   const double seconds = static_cast<double>(evaluation.steps) * configuration.dt;
   result.end = end.center_of_mass;
   result.distance = distance_between(start.center_of_mass, end.center_of_mass, configuration.environment);
+  if (result.fate == Fate::sound && !std::isfinite(result.distance)) result.fate = Fate::undefined;
   result.mean_speed = seconds > 0 ? evaluation.path / seconds : 0;
   result.cruise_speed = quantity("cruise_speed", evaluation, configuration);
   result.cruise_lengths = quantity("cruise_lengths", evaluation, configuration);
   result.steady = quantity("steady", evaluation, configuration);
   result.work = evaluation.work;
+  result.positive_work = evaluation.positive_work;
+  result.absolute_work = evaluation.absolute_work();
   result.highest = evaluation.highest;
   result.largest_strain = evaluation.largest_strain;
   result.strained_share = evaluation.strained_share;
@@ -181,8 +187,8 @@ void take_medians(RobotResult& result, std::span<const RobotResult> trials) {
   };
   for (double RobotResult::*figure :
        {&RobotResult::distance, &RobotResult::mean_speed, &RobotResult::cruise_speed, &RobotResult::cruise_lengths,
-        &RobotResult::work, &RobotResult::highest, &RobotResult::largest_strain, &RobotResult::strained_share,
-        &RobotResult::inverted, &RobotResult::overlap})
+        &RobotResult::work, &RobotResult::positive_work, &RobotResult::absolute_work, &RobotResult::highest,
+        &RobotResult::largest_strain, &RobotResult::strained_share, &RobotResult::inverted, &RobotResult::overlap})
     result.*figure = median([&](const RobotResult& trial) { return trial.*figure; });
   for (Vec3 RobotResult::*place : {&RobotResult::start, &RobotResult::end})
     for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z})

@@ -49,14 +49,14 @@ struct RobotResult {
   double mean_speed = none;                             // length of its path per time of the trial [m/s]
   double cruise_speed = none, cruise_lengths = none;    // after the first third of the trial [m/s], [body lengths/s]
   double steady = none;                                 // 1 = the last two thirds agree, 0 = they do not
-  double work = none;                                   // that the muscles did [J]
-  double highest = none;                                // largest z of the center of mass [m]
-  double largest_strain = none;                         // over all samples [1]
-  double strained_share = none;                         // largest Telemetry::strained_share of all samples [1]
-  double inverted = none, overlap = none;               // largest of Telemetry of all samples, if measured [1]
-  double exploded_at = none;                            // [s], if it exploded
-  std::uint32_t culprit_spring = no_spring;             // if it exploded
-  std::uint64_t hash = 0;                               // of the final positions and velocities, of all trials
+  double work = none, positive_work = none, absolute_work = none;  // of the muscles [J]
+  double highest = none;                                           // largest z of the center of mass [m]
+  double largest_strain = none;                                    // over all samples [1]
+  double strained_share = none;              // largest Telemetry::strained_share of all samples [1]
+  double inverted = none, overlap = none;    // largest of Telemetry of all samples, if measured [1]
+  double exploded_at = none;                 // [s], if it exploded
+  std::uint32_t culprit_spring = no_spring;  // if it exploded
+  std::uint64_t hash = 0;                    // of the final positions and velocities, of all trials
 
   bool exploded() const { return fate == Fate::exploded; }
   bool was_stepped() const { return fate != Fate::failed; }

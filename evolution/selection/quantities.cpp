@@ -92,6 +92,10 @@ double is_steady(const Trial& trial) {
   return std::abs(second - last) <= most_apart * std::max(second, last) ? 1 : 0;
 }
 
+double efficiency(const Trial& trial) {
+  return ratio(distance(trial), trial.net_efficiency ? trial.evaluation.work : trial.evaluation.positive_work);
+}
+
 // name, unit, help, of the body alone, usual range, value, whether it grows with how far the robot gets, whether
 // it needs EvaluationRequest::folding
 constexpr Quantity table[] = {
@@ -116,9 +120,13 @@ constexpr Quantity table[] = {
      false, 0, 5, target_distance},
     {"target_approach", "m", "by how much target_distance is less than at the start", false, 0, 5, target_approach},
     {"height", "m", "how far the center of mass rose above its start", false, 0, 1, height},
-    {"work", "J", "that the muscles did", false, 0, 100, [](const Trial& trial) { return trial.evaluation.work; }},
-    {"efficiency", "m/J", "distance per work; 0 where the muscles did none", false, 0, 1,
-     [](const Trial& trial) { return ratio(distance(trial), trial.evaluation.work); }, true},
+    {"work", "J", "that the muscles did, less what they took back", false, 0, 100,
+     [](const Trial& trial) { return trial.evaluation.work; }},
+    {"positive_work", "J", "that the muscles did while their power was positive", false, 0, 100,
+     [](const Trial& trial) { return trial.evaluation.positive_work; }},
+    {"absolute_work", "J", "positive_work and what the muscles took back", false, 0, 100,
+     [](const Trial& trial) { return trial.evaluation.absolute_work(); }},
+    {"efficiency", "m/J", "distance per positive_work; 0 where the muscles did none", false, 0, 1, efficiency, true},
     {"strain", "", "largest strain of a spring", false, 0, 2,
      [](const Trial& trial) { return trial.evaluation.largest_strain; }},
     {"strained_share", "", "largest share of the springs that were strained by more than half at the same time", false,

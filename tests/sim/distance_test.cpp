@@ -92,12 +92,47 @@ TEST_P(Distance, MeasuresAreThoseOfAnEvaluator) {
   EXPECT_EQ(simulation.hash(0), expected.hash);
   EXPECT_EQ(found.path, expected.path);
   EXPECT_EQ(found.work, expected.work);
+  EXPECT_EQ(found.positive_work, expected.positive_work);
   EXPECT_EQ(found.highest, expected.highest);
   EXPECT_EQ(found.largest_strain, expected.largest_strain);
   EXPECT_EQ(found.strained_share, expected.strained_share);
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, Distance, every_device, BackendTest::name);
+
+// Of P = offset + sin t over three periods. With c = offset, P > 0 between -asin c and pi + asin c, so the integral of
+// its positive part is 2 (sqrt(1 - c^2) + c (pi / 2 + asin c)) in each period, and that of P is 2 pi c. The error of
+// the trapezoid rule is at most T h^2 / 12, that of a corner below h^2.
+TEST(TrialMeasures, PositiveWorkIsTheIntegralOfThePowerWhereItIsPositive) {
+  constexpr double pi = 3.14159265358979323846;
+  constexpr int samples = 3 * 120;
+  constexpr double h = 6 * pi / samples;
+  for (const double c : {-1.5, -0.6, 0.0, 0.3, 1.25}) {
+    TrialMeasures measures({.muscle_power = c});
+    for (int i = 1; i <= samples; ++i) measures.add({.muscle_power = c + std::sin(h * i)}, h);
+    Evaluation result;
+    measures.write(result);
+    const double positive = c >= 1    ? 2 * pi * c
+                            : c <= -1 ? 0
+                                      : 2 * (std::sqrt(1 - c * c) + c * (pi / 2 + std::asin(c)));
+    const double accepted = 3 * (2 * pi * h * h / 12 + 2 * h * h);
+    EXPECT_NEAR(result.work, 3 * 2 * pi * c, accepted) << c;
+    EXPECT_NEAR(result.positive_work, 3 * positive, accepted) << c;
+    EXPECT_NEAR(result.absolute_work(), 3 * (2 * positive - 2 * pi * c), 3 * accepted) << c;
+  }
+}
+
+// Power that goes along a line from 1 W to -3 W in 2 s is positive for half a second.
+TEST(TrialMeasures, PowerGoesAlongALineBetweenSamplesAndEndsWithAnExplosion) {
+  TrialMeasures measures({.muscle_power = 1});
+  measures.add({.muscle_power = -3}, 2);
+  measures.add({.muscle_power = 100, .exploded = true}, 2);
+  Evaluation result;
+  measures.write(result);
+  EXPECT_EQ(result.work, -2);
+  EXPECT_EQ(result.positive_work, 0.25);
+  EXPECT_EQ(result.absolute_work(), 0.25 + 2.25);
+}
 
 // However long a trial is, the way takes bounded memory, and the thirds of an even motion are where they belong.
 TEST(TrialMeasures, ThirdsAreKnownOfTrialsOfAnyLength) {

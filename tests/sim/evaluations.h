@@ -62,6 +62,7 @@ inline void expect_equal(const std::vector<Evaluation>& a, const std::vector<Eva
     expect_equal(a[i].end, b[i].end);
     EXPECT_EQ(a[i].path, b[i].path);
     EXPECT_EQ(a[i].work, b[i].work);
+    EXPECT_NEAR(a[i].positive_work, b[i].positive_work, 1e-12 * (1 + a[i].absolute_work()));
     EXPECT_EQ(a[i].highest, b[i].highest);
     EXPECT_EQ(a[i].largest_strain, b[i].largest_strain);
     EXPECT_EQ(a[i].strained_share, b[i].strained_share);
@@ -109,7 +110,15 @@ inline std::vector<Evaluation> simulated(const EvaluationRequest& request, const
     const double seconds = request.configuration.dt * static_cast<double>(step - std::exchange(sampled, step));
     for (std::size_t i = 0; i < robots.size(); ++i) {
       expected[i].path += static_cast<double>(length(now[i].center_of_mass - last[i].center_of_mass));
-      if (!now[i].exploded) expected[i].work += seconds * 0.5 * (last[i].muscle_power + now[i].muscle_power);
+      if (!now[i].exploded) {
+        const double before = last[i].muscle_power, after = now[i].muscle_power;
+        expected[i].work += seconds * 0.5 * (before + after);
+        // The power crosses zero after a share before / (before - after) of the time, if at all.
+        const double crossing = before * after < 0 ? before / (before - after) : 1;
+        expected[i].positive_work +=
+            seconds * 0.5 *
+            (crossing * std::max(0.0, before) + (crossing < 1 ? 1 - crossing : 1) * std::max(0.0, after));
+      }
       expected[i].highest = std::max(expected[i].highest, static_cast<double>(now[i].center_of_mass.z));
       expected[i].largest_strain = std::max(expected[i].largest_strain, static_cast<double>(now[i].largest_strain));
       expected[i].strained_share = std::max(expected[i].strained_share, static_cast<double>(now[i].strained_share));

@@ -22,6 +22,7 @@ struct Trial {
   const Robot& robot;
   const Evaluation& evaluation;  // its robot was stepped: no failure
   const Configuration& configuration;
+  bool net_efficiency = false;  // efficiency is distance per work, as in runs of earlier versions
 };
 
 struct Quantity {

@@ -47,8 +47,8 @@ struct EvaluationRequest {
   Configuration configuration;  // the device may be cuda:all: each portion goes to one device
   std::int64_t settling = 0;    // steps before the start of the trial, at least 0
   std::int64_t steps = 0;       // of the trial, at least 0
-  // Steps between two samples of the telemetry; 0 = only at start and end. `path`, `work`, `highest` and the strains of
-  // an Evaluation are as good as the samples are dense.
+  // Steps between two samples of the telemetry; 0 = only at start and end. `path`, `highest`, both kinds of work and
+  // the strains of an Evaluation are as good as the samples are dense.
   std::int64_t sample_every = 0;
   // Where the masses of a robot begin: it changes `positions`, one per mass, from those of the robot at rest. With
   // ground, the robot is then set down on it. Robots that are one object (the same pointer, index after index) are
@@ -90,10 +90,15 @@ struct Evaluation {
   std::int64_t steps = 0;              // of the trial that it made; fewer than requested if it was removed or stopped
   Telemetry start, end;                // at the start of the trial, after settling, and at its end
   double path = 0;                     // length of the path of the center of mass from sample to sample [m]
-  double work = 0;                     // that the muscles did, up to an explosion: trapezoid rule over the samples [J]
-  double highest = 0;                  // largest z of the center of mass of all samples [m]
-  double largest_strain = 0;           // of all samples [1]
-  double strained_share = 0;           // largest Telemetry::strained_share of all samples [1]
+  // Of the muscles, up to an explosion: the integral of the power P of all of them, Telemetry::muscle_power, which goes
+  // from sample to sample along a line [J].
+  double work = 0;
+  double positive_work = 0;  // the integral of max(0, P): what they did, without what they took back [J]
+  // The integral of |P| = 2 max(0, P) - P [J].
+  double absolute_work() const { return 2 * positive_work - work; }
+  double highest = 0;         // largest z of the center of mass of all samples [m]
+  double largest_strain = 0;  // of all samples [1]
+  double strained_share = 0;  // largest Telemetry::strained_share of all samples [1]
   double inverted =
       std::numeric_limits<double>::quiet_NaN();  // largest Telemetry::inverted of all samples [1]; NaN = not measured
   double overlap = std::numeric_limits<double>::quiet_NaN();  // the same of Telemetry::overlap

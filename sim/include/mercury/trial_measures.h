@@ -18,7 +18,7 @@ class TrialMeasures {
   // All that the samples so far have left.
   struct Sums {
     Telemetry start, last;
-    double path = 0, work = 0, highest = 0, largest_strain = 0, strained_share = 0;
+    double path = 0, work = 0, positive_work = 0, highest = 0, largest_strain = 0, strained_share = 0;
     double inverted = std::numeric_limits<double>::quiet_NaN(), overlap = inverted;  // NaN = not measured
     double elapsed = 0;  // from the start to the last sample [s]
     // The way of the center of mass: its places at every stride-th sample, from the start; samples are `period` [s]
@@ -46,7 +46,10 @@ class TrialMeasures {
   // has exploded is frozen: it does no work, though its muscles are still reported to push.
   void add(const Telemetry& now, double seconds) {
     sums_.path += static_cast<double>(length(now.center_of_mass - sums_.last.center_of_mass));
-    if (!now.exploded) sums_.work += seconds * 0.5 * (sums_.last.muscle_power + now.muscle_power);
+    if (!now.exploded) {
+      sums_.work += seconds * 0.5 * (sums_.last.muscle_power + now.muscle_power);
+      sums_.positive_work += seconds * mean_positive(sums_.last.muscle_power, now.muscle_power);
+    }
     sums_.highest = std::max(sums_.highest, static_cast<double>(now.center_of_mass.z));
     sums_.largest_strain = std::max(sums_.largest_strain, static_cast<double>(now.largest_strain));
     sums_.strained_share = std::max(sums_.strained_share, static_cast<double>(now.strained_share));
@@ -64,6 +67,7 @@ class TrialMeasures {
     result.end = sums_.last;
     result.path = sums_.path;
     result.work = sums_.work;
+    result.positive_work = sums_.positive_work;
     result.highest = sums_.highest;
     result.largest_strain = sums_.largest_strain;
     result.strained_share = sums_.strained_share;
@@ -79,6 +83,13 @@ class TrialMeasures {
   explicit TrialMeasures(const Sums& sums) : sums_(sums) {}
 
  private:
+  // Of max(0, P), where P goes from `a` to `b` along a line.
+  static double mean_positive(double a, double b) {
+    const double high = std::max(a, b), low = std::min(a, b);
+    if (high <= 0) return 0;
+    return low >= 0 ? 0.5 * (a + b) : 0.5 * high * high / (high - low);
+  }
+
   void note(Vec3 place, double seconds) {
     if (sums_.samples == 0) sums_.period = seconds;
     if (seconds != sums_.period || sums_.way.empty()) return;

@@ -196,7 +196,10 @@ TEST_F(RunCommand, NothingIsMeasuredWhileRobotsSettle) {
     EXPECT_NEAR(at(rest, "distance"),
                 std::hypot(at(whole, "end_x") - at(settling, "end_x"), at(whole, "end_y") - at(settling, "end_y")),
                 1e-6);
-    EXPECT_NEAR(at(rest, "work"), at(whole, "work") - at(settling, "work"), 1e-6);  // sums of the same samples
+    for (const char* work : {"work", "positive_work", "absolute_work"})
+      EXPECT_NEAR(at(rest, work), at(whole, work) - at(settling, work), 1e-6);  // sums of the same samples
+    EXPECT_NEAR(at(rest, "absolute_work"), 2 * at(rest, "positive_work") - at(rest, "work"), 1e-9);
+    EXPECT_GE(at(rest, "positive_work"), at(rest, "work"));
   }
 }
 
@@ -342,8 +345,8 @@ TEST_F(RunCommand, ExplodedRobotsAreReportedAndFailOnlyWithStrict) {
   EXPECT_EQ(robot["fate"], "exploded");
   EXPECT_EQ(robot["start_x"], 0.5);
   // What depends on how far it got means nothing.
-  for (const char* figure :
-       {"distance", "end_x", "end_y", "end_z", "mean_speed", "work", "highest", "largest_strain", "strained_share"})
+  for (const char* figure : {"distance", "end_x", "end_y", "end_z", "mean_speed", "work", "positive_work",
+                             "absolute_work", "highest", "largest_strain", "strained_share"})
     EXPECT_TRUE(robot[figure].is_null()) << figure;
 
   std::vector<std::string> strict = unstable;

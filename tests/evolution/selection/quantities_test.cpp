@@ -31,6 +31,7 @@ class OneTrial : public testing::Test {
                         .end = {.center_of_mass = {4, 5, -11}},
                         .path = 26,
                         .work = 52,
+                        .positive_work = 65,
                         .highest = 1.5,
                         .largest_strain = 0.25,
                         .strained_share = 0.125,
@@ -52,9 +53,26 @@ TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
   EXPECT_DOUBLE_EQ(value("inverted"), 0.0625);
   EXPECT_DOUBLE_EQ(value("overlap"), 0.5);
   EXPECT_DOUBLE_EQ(value("work"), 52);
-  EXPECT_DOUBLE_EQ(value("efficiency"), 13.0 / 52);
+  EXPECT_DOUBLE_EQ(value("positive_work"), 65);
+  EXPECT_DOUBLE_EQ(value("absolute_work"), 65 + 13);  // what the muscles took back is 65 - 52
+  EXPECT_DOUBLE_EQ(value("efficiency"), 13.0 / 65);
   EXPECT_DOUBLE_EQ(value("height"), 0.5);
   EXPECT_NEAR(value("direction"), 53.130102354155978, 1e-12);  // of the triangle 3, 4, 5
+}
+
+// Muscles may take back more than they do. Runs of earlier versions divide by the difference.
+TEST_F(OneTrial, NetWorkMayBeNegative) {
+  evaluation.work = -52;
+  EXPECT_DOUBLE_EQ(value("efficiency"), 13.0 / 65);
+  EXPECT_DOUBLE_EQ(value("absolute_work"), 65 + 117);
+  const auto efficiency = [&](double work) {
+    evaluation.work = work;
+    return quantities_of(
+               {.robot = robot, .evaluation = evaluation, .configuration = configuration, .net_efficiency = true})
+        .at(find_quantity("efficiency").value());
+  };
+  EXPECT_DOUBLE_EQ(efficiency(52), 13.0 / 52);
+  EXPECT_EQ(efficiency(-52), 0);
 }
 
 // From (1, 1, 1), 13 m from a target at (4, 5, 13), to a place 24 m below that.
@@ -79,6 +97,7 @@ TEST_F(OneTrial, ARobotThatStoodStillHasNoNaN) {
   evaluation.path = 0;
   evaluation.steps = 0;
   evaluation.work = 0;
+  evaluation.positive_work = 0;
   for (const double v : quantities_of({.robot = robot, .evaluation = evaluation, .configuration = configuration}))
     EXPECT_TRUE(std::isfinite(v));
   EXPECT_EQ(value("straightness"), 0);
@@ -126,6 +145,7 @@ TEST_F(OneTrial, QuantitiesOfTheBodyDoNotDependOnTheTrial) {
                          .end = {.center_of_mass = {-1, -1, -1}},
                          .path = 3,
                          .work = 4,
+                         .positive_work = 6,
                          .highest = 9,
                          .largest_strain = 0.5,
                          .strained_share = 1,
