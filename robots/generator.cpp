@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "mercury/error.h"
+#include "mercury/muscle_laws.h"
 #include "mercury/names.h"
 #include "mercury/origin.h"
 #include "mercury/real_body.h"
@@ -229,10 +230,17 @@ static std::string shown_name(const Robot& robot) { return robot.name.empty() ? 
 
 Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name) {
   const Generator* generator = generator_of(parent);
-  if (!generator)
-    throw InputError(shown_name(parent),
-                     "cannot be mutated; only " + generator_kinds() + " robots know how they were made");
-  return generator->mutate(parent, request, name);
+  if (generator) return generator->mutate(parent, request, name);
+  validate(request);
+  if (request.muscles == 0)
+    throw InputError(shown_name(parent), "cannot be mutated; only " + generator_kinds() +
+                                             " robots know how they were made, but --muscles 1 changes its muscles");
+  Robot child = with_mutated_muscles(parent, request.muscles, request.seed);
+  if (child == parent) throw InputError(shown_name(parent), "cannot be mutated; it has no muscles");
+  child.name = name;
+  child.origin = with_ancestry(child.origin,
+                               {.parents = {parent.name}, .mutation_seed = request.seed, .muscles = request.muscles});
+  return child;
 }
 
 Robot cross_robots(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {

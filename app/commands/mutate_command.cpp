@@ -27,7 +27,8 @@ int mutate(const MutateOptions& options) {
   validate(options.mutation);
   if (options.mutation.strength == 0 && options.mutation.muscles == 0)
     throw InputError("--strength, --muscles", "both are 0, which changes nothing; give one of them above 0");
-  const std::vector<Robot> parents = load_parents(options.robots, "mutated");
+  const std::vector<Robot> parents = load_parents_of(
+      options.robots, [&](const Robot& parent) { mutate_robot(parent, options.mutation, parent.name); });
   const std::uint64_t each = options.output.count();
   if (each > std::numeric_limits<std::uint64_t>::max() / parents.size())
     throw InputError("--count", fmt::format("{} is not accepted; give fewer", each));
@@ -69,10 +70,12 @@ void add_mutate_command(const Command& program, const Choose& choose) {
       .on_first_screen();
   command.set_footer(
       "A child differs from its parent and from the other children. The same files, options and seed give the same\n"
-      "children on every machine. Their origin names the parent and the seed. The names of the files are printed.\n\n"
+      "children on every machine. Their origin names the parent and the seed. The names of the files are printed.\n"
+      "Of robots that no generator made, only the muscles change.\n\n"
       "Examples:\n"
       "  mercury mutate eel.json -o children/ --count 20 --seed 3\n"
       "  mercury mutate eel.json -o late.json --strength 0 --muscles 1\n"
+      "  mercury mutate sample:dog -o dogs/ --count 8 --muscles 1\n"
       "  mercury mutate best/ -o generation-2/ --count 8 --strength 2 --muscles 0.5");
   command.when_chosen([options, choose] { choose([options] { return options->robots.status(mutate(*options)); }); });
 }

@@ -28,19 +28,24 @@ std::uint64_t seed_of_draw(std::uint64_t seed, std::uint64_t index, std::uint64_
 
 }  // namespace
 
-std::vector<Robot> load_parents(const RobotInputs& files, const char* verb) {
+std::vector<Robot> load_parents_of(const RobotInputs& files, const std::function<void(const Robot&)>& handmade) {
   if (files.empty()) throw InputError("no robots given; name files or folders");
-  return robots_of(files.load([verb](const Robot& parent) {
+  return robots_of(files.load([&handmade](const Robot& parent) {
     const Generator* generator = generator_of(parent);
-    if (!generator)
-      throw InputError(parent.name,
-                       fmt::format("cannot be {}; only {} robots know how they were made", verb, generator_kinds()));
+    if (!generator) return handmade(parent);
     try {
       generator->regrow(parent);
     } catch (const InputError& error) {
       throw InputError(parent.name, error.what());
     }
   }));
+}
+
+std::vector<Robot> load_parents(const RobotInputs& files, const char* verb) {
+  return load_parents_of(files, [verb](const Robot& parent) {
+    throw InputError(parent.name,
+                     fmt::format("cannot be {}; only {} robots know how they were made", verb, generator_kinds()));
+  });
 }
 
 int write_children(const RobotOutput& output, RobotFiles files, std::uint64_t count, const std::vector<Robot>& parents,

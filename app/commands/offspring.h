@@ -16,6 +16,8 @@ namespace mercury {
 // The robots of files and folders that a generator made. One that cannot be grown again is as a file that cannot be
 // used, with `verb` in the message: "eel: cannot be mutated, ...".
 std::vector<Robot> load_parents(const RobotInputs& files, const char* verb);
+// The same, but calls handmade(robot), which may throw InputError, for a robot that no generator made.
+std::vector<Robot> load_parents_of(const RobotInputs& files, const std::function<void(const Robot&)>& handmade);
 
 // Makes the index-th child from a seed. Throws InputError if it cannot be made.
 using MakeChild = std::function<Robot(std::uint64_t index, std::uint64_t seed)>;

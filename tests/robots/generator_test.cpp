@@ -237,6 +237,11 @@ TEST(Generators, HaveNamesOfTheirOwnForThemselvesAndTheirParameters) {
             "kind: \"fish\" is not a kind of robot; give " + generator_kinds());
   EXPECT_THAT(generator_kinds(":N"), HasSubstr(":N or "));
   EXPECT_THAT(refusal([] { mutate_robot({.name = "eel"}, {}, "child"); }), HasSubstr("eel: cannot be mutated"));
+  EXPECT_EQ(
+      refusal([] {
+        mutate_robot({.name = "rod", .masses = {{}, {1, 0, 0}}, .springs = {{0, 1, tissue, 1}}}, {.muscles = 1}, "c");
+      }),
+      "rod: cannot be mutated; it has no muscles");
   const Robot voxel = made(generator_named("voxel"), 1), shell = made(generator_named("shell"), 1);
   EXPECT_THAT(refusal([&] { cross_robots(voxel, {.name = "eel"}, 1, "child"); }), HasSubstr("eel: cannot be crossed"));
   EXPECT_EQ(refusal([&] { cross_robots(voxel, shell, 1, "child"); }),

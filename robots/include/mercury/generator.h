@@ -175,7 +175,9 @@ struct FailedRobot {
 std::vector<Robot> make_random_robots(const RandomRobots& request, std::vector<FailedRobot>* failed = nullptr,
                                       const WorkWatch& watch = {});
 
-// A changed copy of a robot that one of the generators made, named `name`. Throws InputError if none did.
+// A changed copy of a robot, named `name`. Of a robot that no generator made, only the muscles change, as in an
+// evolution of muscles (with_mutated_muscles()); `strength` has no effect. Throws InputError if nothing of it could
+// change.
 Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name);
 
 // A child of two robots that one generator made, named `name`. Throws InputError if none did, or two different ones.

@@ -11,6 +11,7 @@
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
+#include "mercury/samples.h"
 #include "mercury/shell.h"
 #include "mercury/voxel.h"
 #include "tests/app/program.h"
@@ -96,6 +97,21 @@ TEST_F(MutateCommand, TakesFoldersAndNames) {
   EXPECT_EQ(listing("d")[0], "g1-0-m0.cbor");
 }
 
+TEST_F(MutateCommand, MusclesOfRobotsThatNoGeneratorMadeChange) {
+  ASSERT_EQ(
+      mercury({"mutate", "sample:dog", "-o", path("dogs"), "--count", "3", "--seed", "7", "--muscles", "2"}).status, 0);
+  const Robot dog = load_robot(sample_or_path("sample:dog"));
+  ASSERT_EQ(listing("dogs").size(), 3u);
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const std::string name = "dog-m" + std::to_string(i);
+    const Robot child = load_robot(path("dogs/" + name + ".json"));
+    EXPECT_EQ(child, mutate_robot(dog, {.seed = seed_of(7, i), .muscles = 2}, name));
+    EXPECT_EQ(child.masses, dog.masses);
+    EXPECT_NE(child.materials, dog.materials);
+    EXPECT_EQ(ancestry_of(child)->parents, std::vector{dog.name});
+  }
+}
+
 TEST_F(MutateCommand, InvalidInputIsReported) {
   Robot unknown = a_;
   unknown.name = "made-by-hand";
@@ -104,9 +120,9 @@ TEST_F(MutateCommand, InvalidInputIsReported) {
   Robot broken = a_;
   broken.origin = R"({"kind":"voxel","size":[1,1,1],"edge":0.1,"cells":[77]})";
   save_robot(path("broken.json"), broken);
-  EXPECT_EQ(
-      refusal({"mutate", path("unknown.json"), "-o", path("c/")}),
-      "mercury: made-by-hand: cannot be mutated; only " + generator_kinds() + " robots know how they were made\n");
+  EXPECT_EQ(refusal({"mutate", path("unknown.json"), "-o", path("c/")}),
+            "mercury: made-by-hand: cannot be mutated; only " + generator_kinds() +
+                " robots know how they were made, but --muscles 1 changes its muscles\n");
   EXPECT_EQ(refusal({"mutate", path("broken.json"), "-o", path("c/")}),
             "mercury: voxel-1-0: /origin: cells must be 0 (air) or base materials (1 to 22)\n");
   EXPECT_EQ(refusal({"mutate", path("a.json"), "-o", path("c/"), "--strength", "-1"}),

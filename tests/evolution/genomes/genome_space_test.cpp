@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mercury/error.h"
+#include "mercury/generator.h"
 #include "mercury/genome.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/origin.h"
@@ -54,6 +55,20 @@ class EveryGenome : public testing::TestWithParam<Case> {
  protected:
   std::unique_ptr<GenomeSpace> space_ = make_genome_space(request_for(GetParam()));
 };
+
+// `mercury mutate --muscles` and `evolve --genes muscles` give the same children.
+TEST(GivenBody, MutatesAsMutateRobotDoes) {
+  const Robot parent = given_robot();
+  const auto space = make_genome_space({.genes = Genes::muscles, .founders = {parent}});
+  const GenomePointer founder = space->random(1, 0);
+  for (const double strength : {0.1, 1.0, 4.0})
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+      Robot child = mutate_robot(parent, {.seed = seed, .muscles = strength}, "child");
+      EXPECT_EQ(ancestry_of(child)->parents, std::vector{parent.name});
+      child.origin = parent.origin;
+      EXPECT_EQ(child, founder->mutate(strength, seed)->grow("child"));
+    }
+}
 
 TEST_P(EveryGenome, ComesBackFromItsBytes) {
   for (std::uint64_t index = 0; index < 10; ++index) {
