@@ -23,6 +23,10 @@ std::string at(const CheckedStep& step) {
 }
 
 bool is_sound(const CheckedStep& step) { return step.fate == Fate::sound; }
+std::string fate_text(const CheckedStep& step) {
+  return (step.fate == Fate::undefined ? "the objective is not a finite number" : std::string(name_of(step.fate))) +
+         " " + at(step);
+}
 
 // Empty = it is not chaotic.
 std::string chaos(const Confirmation& checked, double same) {
@@ -40,7 +44,7 @@ std::string chaos(const Confirmation& checked, double same) {
 // Empty = it does not depend on dt.
 std::string dependence(const Confirmation& checked, double same) {
   for (const CheckedStep& step : checked.steps)
-    if (!is_sound(step)) return std::string(name_of(step.fate)) + " " + at(step);
+    if (!is_sound(step)) return fate_text(step);
   const CheckedStep &coarse = checked.steps.front(), &fine = checked.steps.back();
   const double change = std::abs(coarse.score.median - fine.score.median), scale = std::abs(fine.score.median);
   const double accepted =
@@ -58,11 +62,13 @@ CheckedStep checked_step(std::span<const Evaluation> trials, const EvaluationReq
   std::vector<double> scores;
   double steady_trials = 0;
   for (const Evaluation& trial : trials) {
-    step.fate = worse(step.fate, fate_of(trial, request, settings));
+    const Fate fate = fate_of(trial, request, settings);
+    step.fate = worse(step.fate, fate);
     if (!trial.failure.empty()) continue;
     const std::vector<double> values =
         quantities_of({.robot = *trial.robot, .evaluation = trial, .configuration = request.configuration});
     scores.push_back(objective.score(values));
+    if (fate == Fate::sound && scores.back() == worst_score) step.fate = worse(step.fate, Fate::undefined);
     steady_trials += values[steady];
   }
   if (!is_sound(step)) return step;
@@ -88,7 +94,7 @@ void judge(Confirmation& checked, double same, bool travels) {
   };
   const CheckedStep& first = checked.steps.front();
   if (first.fate == Fate::failed) return decide(Verdict::failed, std::move(checked.reason));
-  if (!is_sound(first)) return decide(Verdict::unsound, std::string(name_of(first.fate)) + " " + at(first));
+  if (!is_sound(first)) return decide(Verdict::unsound, fate_text(first));
   if (std::string reason = chaos(checked, same); !reason.empty()) return decide(Verdict::chaotic, std::move(reason));
   if (std::string reason = dependence(checked, same); !reason.empty())
     return decide(Verdict::depends_on_dt, std::move(reason));

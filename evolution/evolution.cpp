@@ -194,7 +194,8 @@ std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& wa
 }
 
 namespace {
-constexpr std::string_view fates[] = {"sound", "stopped", "exploded", "overstretched", "failed", "too small"};
+constexpr std::string_view fates[] = {"sound",  "stopped",   "exploded", "overstretched",
+                                      "failed", "too small", "undefined"};
 }
 
 std::string_view name_of(Fate fate) { return fates[static_cast<std::size_t>(fate)]; }
@@ -206,7 +207,7 @@ std::optional<Fate> fate_named(std::string_view name) {
 }
 
 Fate worse(Fate a, Fate b) {
-  constexpr int severity[] = {0, 1, 2, 3, 5, 4};
+  constexpr int severity[] = {0, 1, 3, 4, 6, 5, 2};
   return severity[static_cast<std::size_t>(a)] < severity[static_cast<std::size_t>(b)] ? b : a;
 }
 

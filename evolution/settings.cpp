@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "evolution/selection/registry.h"
 #include "mercury/error.h"
@@ -22,9 +24,11 @@ void require(bool holds, const char* parameter, const std::string& problem) {
 
 void validate_axes(std::span<const MapAxis> axes) {
   double cells = 1;
+  std::set<std::string_view> names;
   for (const MapAxis& axis : axes) {
     require(find_quantity(axis.quantity).has_value(), "axes",
             "there is no quantity \"" + axis.quantity + "\"; give one of " + list_of(names_of_quantities()));
+    require(names.insert(axis.quantity).second, "axes", axis.quantity + " is given twice");
     require(std::isfinite(axis.lowest) && std::isfinite(axis.highest) && std::isfinite(axis.highest - axis.lowest) &&
                 axis.lowest < axis.highest,
             "axes", axis.quantity + " needs two finite ends, the lower one first");

@@ -145,6 +145,14 @@ std::string json_of(const CheckReport& report) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+void warn_of_undefined(const CheckReport& report, const Objective& objective) {
+  const auto is_undefined = [](const Confirmation& robot) {
+    return std::ranges::find(robot.steps, Fate::undefined, &CheckedStep::fate) != robot.steps.end();
+  };
+  const auto count = std::ranges::count_if(report.robots, is_undefined);
+  if (count > 0) warn(fmt::format("{} for {} of {} robots", objective.undefined_text(), count, report.robots.size()));
+}
+
 int check(const CheckOptions& options) {
   OutputFiles outputs = options.output.files();
   for (const std::filesystem::path& file : options.robots.files()) outputs.add_input(file);
@@ -194,6 +202,7 @@ int check(const CheckOptions& options) {
     flush_standard_output();
   }
   if (!options.csv.empty()) write_results(options.csv, csv_of(report));
+  warn_of_undefined(report, objective);
   return report.count(Verdict::confirmed) == report.robots.size() ? 0 : 1;
 }
 

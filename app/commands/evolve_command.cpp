@@ -53,12 +53,28 @@ double median_score(const Evolution& evolution) {
   return *middle;
 }
 
+void require_not_past(int generations, const EvolveOptions& options, const RunHistory& run) {
+  const int last = static_cast<int>(run.generations().size()) - 1;
+  if (generations < last)
+    throw InputError("--generations",
+                     fmt::format("{} is not accepted; {} has {} generations already, so give {} or more", generations,
+                                 options.folder, last, last));
+}
+
+// The number that the user gives, unless the run is past it.
+void set_generations(const EvolveOptions& options, RunFolder& run) {
+  const std::optional<int> given = options.run.generations();
+  if (!given) return;
+  require_not_past(*given, options, run.history());
+  run.set_generations(*given);
+}
+
 RunFolder open_folder(const EvolveOptions& options, const Command& command) {
   const std::filesystem::path folder = options.folder;
   if (options.resume) {
     options.run.require_only_what_may_change(command);
     RunFolder run = RunFolder::open(folder);
-    if (options.run.generations()) run.set_generations(*options.run.generations());
+    set_generations(options, run);
     return run;
   }
   if (!options.output.force() && is_run_folder(folder))
@@ -70,6 +86,16 @@ RunFolder open_folder(const EvolveOptions& options, const Command& command) {
   if (settings.evolution.configuration.device.kind == DeviceKind::cuda)
     make_backend(settings.evolution.configuration.device);
   return RunFolder::create(folder, settings, options.output.force());
+}
+
+// Returns whether there were such robots.
+bool warn_of_undefined(const Generation& generation) {
+  const auto is_undefined = [](const Individual& one) { return one.assessment.fate == Fate::undefined; };
+  const auto first = std::ranges::find_if(generation.born, is_undefined);
+  if (first == generation.born.end()) return false;
+  warn(fmt::format("{} for {} of {} robots of generation {}, which are not sound", first->assessment.problem,
+                   std::ranges::count_if(generation.born, is_undefined), generation.born.size(), generation.number));
+  return true;
 }
 
 // How many threads check champions beside the search.
@@ -85,12 +111,14 @@ bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor, ChampionCh
     progress.update(done, all);
     return !interrupted();
   };
+  bool has_warned = false;
   while (!evolution.is_over()) {
     const auto start = std::chrono::steady_clock::now();
     const std::optional<Generation> generation = evolution.advance(assessor, watch);
     if (!generation) return false;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     run.append(*generation, {.seconds = seconds, .device = assessor.device_name()});
+    if (!has_warned) has_warned = warn_of_undefined(*generation);
     if (checks) checks->update();
     progress.finish_generation(generation->born.size() * static_cast<std::size_t>(evolution.settings().trials.trials),
                                evolution.living().empty() ? worst_score : evolution.living().front().score(),
@@ -274,12 +302,14 @@ int merge(const EvolveOptions& options, const Command& command) {
   RunFolder run = RunFolder::open(options.folder);
   const auto finished = static_cast<int>(run.history().generations().size());
   const bool was_over = finished > run.history().settings().evolution.generations;
-  if (options.run.generations()) run.set_generations(*options.run.generations());
+  set_generations(options, run);
   Evolution evolution(run.history().settings().evolution, run.space());
   restore(run.history(), evolution);
   require_more_generations(options, evolution);
   if (was_over) return 0;  // there is nothing to merge before more generations are wanted
-  run.append(merge_shards(options.folder, evolution), {.seconds = 0, .device = "shards"});
+  const Generation generation = merge_shards(options.folder, evolution);
+  run.append(generation, {.seconds = 0, .device = "shards"});
+  warn_of_undefined(generation);
   remove_shards(options.folder, evolution.next_generation());
   run.write_all();
   report(options, run, evolution);
@@ -298,6 +328,7 @@ int describe_more(const EvolveOptions& options, const Command& command) {
   options.run.require_only_what_may_change(command);
   if (!options.shard.empty()) shard_from(options.shard);
   const RunHistory history(options.folder);
+  if (options.run.generations()) require_not_past(*options.run.generations(), options, history);
   const EvolutionSettings settings = settings_here(options, command, history.settings());
   return print_dry_run("evolve",
                        {{"go on with", options.folder},

@@ -226,8 +226,8 @@ Json info_of(const Repro& repro, const std::filesystem::path& file) {
 Json info_of(const RunHistory& run) {
   const RunSettings& settings = run.settings();
   Json fates = Json::object(), devices = Json::array();
-  for (const Fate fate :
-       {Fate::sound, Fate::stopped, Fate::exploded, Fate::overstretched, Fate::too_small, Fate::failed})
+  for (const Fate fate : {Fate::sound, Fate::stopped, Fate::exploded, Fate::overstretched, Fate::too_small,
+                          Fate::undefined, Fate::failed})
     fates[std::string(name_of(fate))] =
         std::ranges::count(run.individuals(), fate, [](const Individual& one) { return one.assessment.fate; });
   double seconds = 0;

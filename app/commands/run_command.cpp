@@ -142,6 +142,9 @@ int report_results(const RunOptions& options, const RunReport& report) {
   if (exploded > 0)
     warn(fmt::format("{} of {} robots exploded; a smaller --dt or --solver xpbd helps", exploded,
                      report.robots.size() - failed));
+  if (const std::size_t undefined = report.count(Fate::undefined); undefined > 0)
+    warn(fmt::format("the distance is not a finite number for {} of {} robots, which are not sound", undefined,
+                     report.robots.size() - failed));
   if (report.interrupted) {
     warn(report.problem.empty() ? fmt::format("stopped at {:.6g} s", report.seconds) : report.problem);
     if (report.missing > 0)

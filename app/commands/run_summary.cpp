@@ -94,6 +94,7 @@ Totals totals_of(const RunHistory& run) {
     totals.fates[Fate::exploded] += generation.exploded;
     totals.fates[Fate::overstretched] += generation.overstretched;
     totals.fates[Fate::too_small] += generation.too_small;
+    totals.fates[Fate::undefined] += generation.undefined;
     totals.fates[Fate::stopped] += generation.stopped;
     totals.fates[Fate::failed] += generation.failed;
     totals.seconds += generation.times.seconds;

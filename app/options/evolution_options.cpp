@@ -24,6 +24,7 @@ namespace mercury {
 namespace {
 
 constexpr const char* search_group = "Search";
+constexpr double most_noise = 1;
 
 std::vector<std::string> names_of_algorithms() {
   std::vector<std::string> names;
@@ -173,6 +174,10 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
   evolution.algorithm = algorithm();
   if (!objectives_.empty()) evolution.objectives = objectives_;
   evolution.trials.seconds = simulation_.seconds();
+  // Runs of earlier versions may have more.
+  if (evolution.trials.noise > most_noise)
+    throw InputError("--noise",
+                     fmt::format("{:g} is not accepted; give 0 to {:g}", evolution.trials.noise, most_noise));
   if (evolution.trials.racing && !command_->is_given("--trials")) evolution.trials.trials = 1;
   Physics physics = real_material_in(settings.space.values) ? Physics::real : Physics::paper;
   evolution.configuration = simulation_.configuration(physics);

@@ -162,8 +162,8 @@ void write_generations(const RunHistory& run) {
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})
       csv.cell(name + score_name(i, objectives));
-  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "failed", "physics", "seconds",
-                           "robots_per_second", "device"})
+  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed",
+                           "physics", "seconds", "robots_per_second", "device"})
     csv.cell(name);
   csv.end_line();
   for (const GenerationSummary& generation : run.generations()) {
@@ -171,11 +171,12 @@ void write_generations(const RunHistory& run) {
     for (const ScoreSpread& scores : generation.scores)
       csv.cell(scores.highest).cell(scores.upper_quartile).cell(scores.median).cell(scores.lower_quartile);
     csv.cell(generation.born - generation.stopped - generation.exploded - generation.overstretched -
-             generation.too_small - generation.failed)
+             generation.too_small - generation.undefined - generation.failed)
         .cell(generation.stopped)
         .cell(generation.exploded)
         .cell(generation.overstretched)
         .cell(generation.too_small)
+        .cell(generation.undefined)
         .cell(generation.failed)
         .cell(name_of(physics_of(run.settings().space)));
     const double seconds = generation.times.seconds;

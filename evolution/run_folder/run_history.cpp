@@ -100,6 +100,7 @@ GenerationSummary summary_of(int number, GenerationTimes times, std::span<const 
     summary.exploded += fate == Fate::exploded;
     summary.overstretched += fate == Fate::overstretched;
     summary.too_small += fate == Fate::too_small;
+    summary.undefined += fate == Fate::undefined;
     summary.stopped += fate == Fate::stopped;
     summary.failed += fate == Fate::failed;
   }

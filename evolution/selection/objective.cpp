@@ -158,6 +158,8 @@ Objective::Objective(const std::string& formula)
 
 const std::vector<std::size_t>& Objective::uses() const { return parsed_->used; }
 
+std::string Objective::undefined_text() const { return "the objective \"" + formula_ + "\" is not a finite number"; }
+
 bool uses_folding(const Objective& objective) {
   return std::ranges::any_of(objective.uses(), [](std::size_t q) { return quantities()[q].of_folding; });
 }

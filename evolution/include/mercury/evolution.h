@@ -39,9 +39,9 @@ struct EvolutionSettings {
   std::uint64_t seed = 1;
 
   static constexpr std::tuple parameters{
-      Parameter("generations", &EvolutionSettings::generations, "", Accepts::at_least_zero, {1, 1000, true},
+      Parameter("generations", &EvolutionSettings::generations, "", Accepts::between(0, 1e9), {1, 1000, true},
                 "Generations after the first, random one"),
-      Parameter("children", &EvolutionSettings::children, "", Accepts::at_least_zero, {0, 4096},
+      Parameter("children", &EvolutionSettings::children, "", Accepts::between(0, 1e6), {0, 4096},
                 "Robots born in a generation")
           .with_default_note("default: --population"),
       Parameter("mutation", &EvolutionSettings::mutation, "", Accepts::above_zero, {0.1f, 10, true},

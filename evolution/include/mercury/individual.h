@@ -16,9 +16,10 @@ namespace mercury {
 inline constexpr double worst_score = -std::numeric_limits<double>::infinity();
 
 // How the trials of an individual ended: as the worst of them. Only `sound` individuals have scores above the worst;
-// those `stopped` early by racing have the score that they had when they were stopped. Files have the numbers.
-enum class Fate : std::uint8_t { sound, stopped, exploded, overstretched, failed, too_small };
-inline constexpr Fate last_fate = Fate::too_small;
+// those `stopped` early by racing have the score that they had when they were stopped. `undefined`: an objective is not
+// a finite number. Files have the numbers.
+enum class Fate : std::uint8_t { sound, stopped, exploded, overstretched, failed, too_small, undefined };
+inline constexpr Fate last_fate = Fate::undefined;
 std::string_view name_of(Fate fate);  // "sound", ...
 std::optional<Fate> fate_named(std::string_view name);
 Fate worse(Fate a, Fate b);
@@ -26,7 +27,7 @@ Fate worse(Fate a, Fate b);
 // What the trials of one individual gave.
 struct Assessment {
   Fate fate = Fate::failed;
-  std::string problem;                 // why it failed: its robot could not be grown or breaks a rule
+  std::string problem;  // why it failed: its robot could not be grown or breaks a rule; why its score is undefined
   std::vector<double> scores;          // per objective, of all trials together; worst_score unless sound or stopped
   std::vector<double> values;          // per quantity (quantity.h), of all trials together; empty if it failed
   std::vector<double> interim_scores;  // of the first objective at the checks of racing that it passed or lost

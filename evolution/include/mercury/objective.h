@@ -24,6 +24,8 @@ class Objective {
   double score(std::span<const double> values) const;
   // Indices of the quantities that the formula names, ascending.
   const std::vector<std::size_t>& uses() const;
+  // 'the objective "1/0" is not a finite number', for a score that is worst_score.
+  std::string undefined_text() const;
 
  private:
   struct Parsed;

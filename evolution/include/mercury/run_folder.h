@@ -51,7 +51,7 @@ struct ScoreSpread {
 struct GenerationSummary {
   int number = 0;
   std::size_t born = 0, living = 0;
-  std::size_t exploded = 0, overstretched = 0, too_small = 0, stopped = 0, failed = 0;  // of those born in it
+  std::size_t exploded = 0, overstretched = 0, too_small = 0, undefined = 0, stopped = 0, failed = 0;  // born in it
   std::uint64_t best = 0;           // id of the best living individual
   std::vector<double> best_scores;  // its scores
   double median_score = 0;          // of the living, first objective

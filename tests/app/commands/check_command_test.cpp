@@ -53,6 +53,14 @@ TEST_F(CheckCommand, WritesALinePerRobot) {
   EXPECT_EQ(mercury(Arguments{"check", "--csv", "-"} + robots).output, csv);
 }
 
+TEST_F(CheckCommand, NamesAnObjectiveThatIsNotANumber) {
+  const Outcome outcome = mercury(Arguments{"check", "--csv", path("a.csv"), "--objective", "log(-1)"} + robots);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.messages, HasSubstr("the objective \"log(-1)\" is not a finite number for 3 of 3 robots"));
+  EXPECT_THAT(read("a.csv"),
+              HasSubstr("not sound,the objective is not a finite number at dt 0.001 s,log(-1),undefined,"));
+}
+
 TEST_F(CheckCommand, RefusesWhatMeansNothing) {
   const auto refusal = [](const Arguments& more) {
     const Outcome outcome = mercury(Arguments{"check", "--random", "voxel:1"} + more);

@@ -105,6 +105,58 @@ TEST_F(EvolveCommand, RunsOfVersion02GoOn) {
     }
 }
 
+// Robots of generation 0 do not depend on the objective, so a run for speed_x says who goes backward.
+TEST_F(EvolveCommand, RobotsWhoseObjectiveIsNotANumberAreUnsound) {
+  const Arguments one_trial = joined(small("0"), {"--trials", "1"});
+  const Outcome outcome = evolve("roots", joined(one_trial, {"--objective", "sqrt(speed_x)"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  ASSERT_EQ(evolve("speeds", joined(one_trial, {"--objective", "speed_x"})).status, 0);
+  const auto roots = rows_of(lineage("roots")), speeds = rows_of(lineage("speeds"));
+  ASSERT_EQ(roots.size(), 8u);
+  ASSERT_EQ(speeds.size(), 8u);
+  int undefined = 0;
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    ASSERT_EQ(speeds[i].at("fate"), "sound");
+    const double speed = std::stod(speeds[i].at("score"));
+    undefined += speed < 0;
+    EXPECT_EQ(roots[i].at("fate"), speed < 0 ? "undefined" : "sound");
+    if (speed < 0)
+      EXPECT_EQ(roots[i].at("score"), "-inf");
+    else
+      EXPECT_NEAR(std::stod(roots[i].at("score")), std::sqrt(speed), 1e-12);
+  }
+  EXPECT_GT(undefined, 0);
+  EXPECT_LT(undefined, 8);
+  EXPECT_EQ(rows_of(read("roots/generations.csv")).at(0).at("undefined"), std::to_string(undefined));
+  EXPECT_THAT(outcome.messages, testing::HasSubstr("the objective \"sqrt(speed_x)\" is not a finite number for " +
+                                                   std::to_string(undefined) + " of 8 robots of generation 0"));
+}
+
+TEST_F(EvolveCommand, AnObjectiveThatIsNeverANumberIsNamedOnce) {
+  const Outcome outcome = evolve("run", joined(small("2"), {"--objective", "1/0"}));
+  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.messages, testing::HasSubstr("the objective \"1/0\" is not a finite number for 8 of 8 robots"));
+  EXPECT_EQ(outcome.messages.find("\"1/0\""), outcome.messages.rfind("\"1/0\""));
+  EXPECT_THAT(outcome.output, testing::HasSubstr("no robot is sound; the first one is undefined"));
+  EXPECT_THAT(mercury({"info", path("run")}).output, testing::HasSubstr("24 undefined (100.0 %)"));
+}
+
+TEST_F(EvolveCommand, GoesOnToNoFewerGenerationsThanThereAre) {
+  ASSERT_EQ(evolve("run", small("3")).status, 0);
+  const std::string settings = read("run/run.toml"), before = lineage("run");
+  for (const Arguments& go_on : {Arguments{"--resume"}, {"--merge"}, {"--resume", "--dry-run"}}) {
+    const Outcome outcome = evolve("run", joined(go_on, {"--generations", "2"}));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.messages, "mercury: --generations: 2 is not accepted; " + path("run") +
+                                    " has 3 generations already, so give 3 or more\n");
+  }
+  EXPECT_EQ(read("run/run.toml"), settings);
+  EXPECT_EQ(evolve("run", {"--resume", "--generations", "3", "--quiet"}).status, 0);
+  EXPECT_EQ(lineage("run"), before);
+  EXPECT_EQ(evolve("run", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  EXPECT_EQ(generations_in("run"), 5u);  // generation 0 included
+}
+
 // All champions are checked, beside the search; those whose results hold are in best/, and no others.
 TEST_F(EvolveCommand, OnlyConfirmedChampionsAreInBest) {
   const Arguments settings{"--from",   "voxel:3x2x2", "--population", "8", "--generations", "6", "--seconds", "1",
@@ -480,6 +532,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadOptions{{"--genes", "brain"}, "--genes: brain alone needs robots that have one, and voxel robots"},
         BadOptions{{"--from", "sample:eel", "--genes", "brain"},
                    "--genes: brain alone needs robots that have one, and robot eel has none; start from"},
+        BadOptions{{"--children", "18446744073709551615"},
+                   "--children: 18446744073709551615 is not accepted; give 0 to 1000000"},
+        BadOptions{{"--generations", "2147483647"}, "--generations: 2147483647 is not accepted; give 0 to 1000000000"},
+        BadOptions{{"--noise", "1.5"}, "--noise: 1.5 is not accepted; give 0 to 1"},
+        BadOptions{{"--noise", "nan"}, "--noise: "},
+        BadOptions{{"--axis", "masses", "--axis", "masses:0:9"}, "--axis: masses is given twice"},
         BadOptions{{"--shard", "0/4"}, "--shard: \"0/4\" is not accepted"}, BadOptions{{"--resume"}, ""}));
 
 }  // namespace

@@ -49,7 +49,7 @@ def check_standard(run):
     assert living == int(generations[-1]["living"])
     assert len(rows) == sum(int(row["born"]) for row in generations)
     for row in generations:
-        fates = sum(int(row[name]) for name in ("sound", "stopped", "exploded", "overstretched", "too_small", "failed"))
+        fates = sum(int(row[name]) for name in ("sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed"))
         assert fates == int(row["born"])
     picture = ElementTree.parse(run / "progress.svg")
     assert picture.getroot().tag == "{http://www.w3.org/2000/svg}svg"
