@@ -40,6 +40,8 @@ class Tally {
       return;
     }
     assessment_.hash = Fnv1a(assessment_.hash).add(evaluation.hash).value();
+    // One trial has its own hash, as in `mercury run`, except in runs of earlier versions.
+    if (settings_.median && settings_.trials == 1) assessment_.hash = evaluation.hash;
     const std::vector<double> values = quantities_of({.robot = *evaluation.robot,
                                                       .evaluation = evaluation,
                                                       .configuration = request_.configuration,

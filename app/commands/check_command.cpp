@@ -24,6 +24,7 @@
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
+#include "evolution/run_folder/champion_checks.h"
 #include "mercury/confirmation.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
@@ -40,6 +41,7 @@ struct CheckOptions {
   OutputOptions output;
   std::string objective = "distance", csv;
   bool json = false;
+  std::optional<Command> typed;  // the command line
 };
 
 struct CheckReport {
@@ -162,24 +164,35 @@ int check(const CheckOptions& options) {
   if (options.json && is_standard_output(options.csv))
     throw InputError("--csv", options.csv + " and --json both mean standard output; give --csv a file");
   options.simulation.check(options.robots.physics());
-  const Objective objective(options.objective);
+  Objective objective(options.objective);
   CheckReport report{.configuration = {}, .trials = options.trials, .objective = options.objective};
   report.trials.seconds = options.simulation.seconds();
   validate(report.trials);
   const RobotSequence robots = options.robots.sequence();
+  std::uint64_t seed = options.robots.seed_or_default();
+  if (robots.run) {  // as `evolve` checks its champions
+    const EvolutionSettings& run = robots.run->evolution;
+    report.trials = trials_over(check_settings_of(run), *options.typed, options.trials);
+    report.trials.seconds = options.simulation.seconds(report.trials.seconds);
+    validate(report.trials);
+    if (!options.typed->is_given("--objective")) objective = Objective(run.objectives.front());
+    if (!options.typed->is_given("--seed")) seed = check_seed_of(run);
+    report.objective = objective.formula();
+  }
   std::vector<std::string> notes;
-  report.configuration = options.simulation.configuration(robots.environments, notes, robots.physics);
+  report.configuration = options.simulation.configuration_of(robots, notes);
   for (const std::string& note : notes) warn(note);
   if (const std::string why = why_meaningless(objective, report.configuration.environment); !why.empty())
     throw InputError("--objective", why);
   if (options.output.dry_run())
-    return print_dry_run("check",
-                         {{"robots", size_text(robots)},
-                          {"simulate", time_text(report.configuration, options.simulation.steps()) +
-                                           fmt::format(", {} trials, also at dt/2 and dt/4", report.trials.trials)},
-                          {"in", environment_text(report.configuration)},
-                          {"on", device_text(report.configuration.device)},
-                          {"write", options.csv}});
+    return print_dry_run(
+        "check",
+        {{"robots", size_text(robots)},
+         {"simulate", time_text(report.configuration, std::llround(report.trials.seconds / report.configuration.dt)) +
+                          fmt::format(", {} trials, also at dt/2 and dt/4", report.trials.trials)},
+         {"in", environment_text(report.configuration)},
+         {"on", device_text(report.configuration.device)},
+         {"write", options.csv}});
   {
     const std::size_t per_robot = static_cast<std::size_t>(report.trials.trials) * 7;  // 1 + 2 + 4 times as many steps
     Progress progress("checking", "trials", static_cast<std::int64_t>(robots.count * per_robot));
@@ -187,8 +200,8 @@ int check(const CheckOptions& options) {
       progress.update(static_cast<std::int64_t>(done));
       return !interrupted();
     };
-    auto checked = check_robots(robots.source, robots.count, report.configuration, report.trials, objective,
-                                options.robots.seed_or_default(), watch, &report.device);
+    auto checked = check_robots(robots.source, robots.count, report.configuration, report.trials, objective, seed,
+                                watch, &report.device);
     if (!checked) throw Interrupted();
     report.robots = std::move(*checked);
   }
@@ -234,8 +247,14 @@ void add_check_command(const Command& program, const Choose& choose) {
       "Examples:\n"
       "  mercury check sample:eel\n"
       "  mercury check swim/best --seconds 20 --csv champions.csv\n"
+      "  mercury check swim --robot 57         (an individual of the run swim, as evolve checks champions)\n"
       "  mercury check my-robots --objective \"cruise_speed\" --environment land");
-  command.when_chosen([options, choose] { choose([options] { return options->robots.status(check(*options)); }); });
+  command.when_chosen([options, choose, command] {
+    choose([options, command] {
+      options->typed = command;
+      return options->robots.status(check(*options));
+    });
+  });
 }
 
 }  // namespace mercury

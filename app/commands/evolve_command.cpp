@@ -150,6 +150,7 @@ void report_checks(const EvolveOptions& options, const RunHistory& run, const Ch
                                       ? "is confirmed"
                                       : fmt::format("is not confirmed: {}{}{}", name_of(best->verdict),
                                                     best->reason.empty() ? "" : ": ", best->reason));
+  const bool has_map = run.settings().evolution.algorithm.name == "map-elites";
   std::size_t confirmed = 0, checked = 0;
   for (const auto& [id, generation] : champions)
     if (const Confirmation* check = check_of(id)) {
@@ -159,8 +160,9 @@ void report_checks(const EvolveOptions& options, const RunHistory& run, const Ch
   const std::filesystem::path folder = options.folder;
   fmt::print("{} of {} champions are confirmed{}{}; {} lists all\n", confirmed, champions.size(),
              checked < champions.size() ? fmt::format(", {} not yet checked", champions.size() - checked) : "",
-             confirmed > 0 ? fmt::format(", in {}", (folder / champions_name).string()) : "",
+             confirmed > 0 && !has_map ? fmt::format(", in {}", (folder / champions_name).string()) : "",
              (folder / checks_name).string());
+  if (has_map) fmt::print("{} holds the map\n", (folder / champions_name).string());
 }
 
 void report(const EvolveOptions& options, const RunFolder& run, const Evolution& evolution) {

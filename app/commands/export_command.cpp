@@ -249,7 +249,7 @@ ImportedSettings world_with_warnings(const Configuration& configuration, std::op
 std::optional<ImportedSettings> world_of(const ExportOptions& options, const LoadedRobots& loaded) {
   if (options.for_simulation.empty() && !options.for_seconds) return std::nullopt;
   std::vector<std::string> notes;
-  const Configuration configuration = options.simulation.configuration(loaded.environments, notes, loaded.physics);
+  const Configuration configuration = options.simulation.configuration_of(loaded, notes);
   for (const std::string& note : notes) warn(note);
   return world_with_warnings(configuration,
                              options.for_seconds ? std::optional(options.simulation.seconds()) : std::nullopt);
@@ -268,7 +268,7 @@ int export_robots(const ExportOptions& options) {
   const bool together = targets.together() && targets.robots().size() > 1;
   if (!moves && (!together || !options.for_simulation.empty())) return export_poses(options, loaded, targets);
   std::vector<std::string> notes;
-  const Configuration configuration = options.simulation.configuration(loaded.environments, notes, loaded.physics);
+  const Configuration configuration = options.simulation.configuration_of(loaded, notes);
   for (const std::string& note : notes) warn(note);
   return export_simulated(options, configuration, loaded.robots, targets, moves ? options.simulation.seconds() : 0,
                           {.title = {}, .command = options.command, .captions = {}});
@@ -377,7 +377,9 @@ int export_all(const ExportOptions& options) {
   const std::string chosen = options.film.given();
   const ExportFormat* format = options.format.empty() ? export_format_of(options.path) : &export_format(options.format);
   // Poses of a run are those of its champions' files.
-  if (!chosen.empty() || options.for_seconds || (format && format->motions))
+  const bool are_chosen = !options.robots.chosen_of_runs().empty();
+  if (are_chosen && !chosen.empty()) throw InputError("--robot", "not together with " + chosen);
+  if (!are_chosen && (!chosen.empty() || options.for_seconds || (format && format->motions)))
     if (const auto run = options.robots.alone(is_run_folder, "a run is exported alone; give it without other robots"))
       return export_run(options, *run);
   if (!chosen.empty()) throw InputError(chosen, "chooses robots of a run of mercury evolve; give its folder");
@@ -429,7 +431,12 @@ void add_export_command(const Command& program, const Choose& choose) {
       .required();
   add_choice(command, "--format", options->format, format_words(), "The format (default: that of the file's extension)")
       .on_first_screen();
-  add_text(command, "--robot", options->robot, "One robot of several: its name, or its number from 0", "NAME|N")
+  command.find_option("--robot")
+      ->with_help(
+          "One robot of several: its name, or its number from 0; of a run folder, the individual of this number, the "
+          "best "
+          "one, the elites (all that live), or the champions in best/ (the default)")
+      .with_form("NAME|N|best|elites|champions")
       .on_first_screen();
   add_number(command, "--from", options->range.from, "Where to begin in a recording (default: its start)", "S")
       .on_first_screen();
@@ -474,6 +481,8 @@ void add_export_command(const Command& program, const Choose& choose) {
   command.when_chosen([options, choose, command, of_simulation] {
     choose([options, command, of_simulation] {
       options->command = as_typed(command);
+      if (std::ranges::none_of(options->robots.files(), is_run_folder))
+        for (std::string& robot : options->robots.take_chosen_of_runs()) options->robot = std::move(robot);
       options->for_seconds = command.is_given("--seconds");
       for (const Option& option : of_simulation)
         if (option.is_given() && options->for_simulation.empty() && option.name() != "seconds")

@@ -255,7 +255,7 @@ void for_each_subject(const RobotInputs& robots, const Take& take) {
       take(TrajectoryReader(path, shown_work()));
     } else if (is_repro_name(path)) {
       take(load_repro(path), path);
-    } else if (is_run_folder(path)) {
+    } else if (is_run_folder(path) && robots.chosen_of_runs().empty()) {
       take(RunHistory(path));
     } else if (is_scene_name(path)) {
       take(SceneFile(path));

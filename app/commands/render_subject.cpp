@@ -33,7 +33,7 @@ Subject robots_of(const RenderOptions& options) {
   Clip& clip = subject.clips.emplace_back();
   LoadedRobots loaded = options.robots.load(drawn_memory);
   clip.robots = std::move(loaded.robots);
-  subject.configuration = options.simulation.configuration(loaded.environments, subject.notes, loaded.physics);
+  subject.configuration = options.simulation.configuration_of(loaded, subject.notes);
   subject.seconds = options.simulation.seconds();
   return subject;
 }
@@ -121,10 +121,14 @@ std::optional<Subject> side_by_side(const RenderOptions& options, ViewSettings& 
 
 Subject subject_of(RenderOptions& options, ViewSettings& view) {
   options.film.validate();
-  if (std::optional<Subject> sides = side_by_side(options, view)) return *std::move(sides);
-  if (const auto run = options.robots.alone(is_run_folder, "a run is filmed alone; give it without other robots"))
-    return run_of(options, *run, view);
+  const bool are_chosen = !options.robots.chosen_of_runs().empty();
+  if (!are_chosen) {
+    if (std::optional<Subject> sides = side_by_side(options, view)) return *std::move(sides);
+    if (const auto run = options.robots.alone(is_run_folder, "a run is filmed alone; give it without other robots"))
+      return run_of(options, *run, view);
+  }
   if (const std::string option = options.film.given(); !option.empty()) {
+    if (are_chosen) throw InputError("--robot", "not together with " + option);
     const auto files = options.robots.files();
     throw InputError(option, "films a run of mercury evolve" +
                                  (files.empty() ? "; give its folder" : ", and " + files[0].string() + " is none"));

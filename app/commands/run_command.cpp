@@ -48,6 +48,7 @@ struct RunOptions {
   std::optional<double> checkpoint_every;
   bool compress = false;
   bool json = false, strict = false;
+  std::optional<Command> typed;  // the command line
 };
 
 void require_trajectory_name(const char* option, const std::string& name) {
@@ -102,7 +103,7 @@ std::int64_t recorded_every(const RunOptions& options, const Configuration& conf
 RecordingOptions recording_options(const RunOptions& options, const Configuration& configuration) {
   return {.every = recorded_every(options, configuration),
           .rate = options.rate,
-          .last_step = options.simulation.steps(),
+          .last_step = std::llround(options.trials.seconds / configuration.dt),
           .seed = options.robots.seed(),
           .deflate = options.compress ? 1 : 0};
 }
@@ -266,11 +267,11 @@ std::optional<Checkpoints> checkpoints_of(const RunOptions& options, CheckpointN
 
 // A recording and checkpoints need all robots in one simulation.
 int run_in_one(const RunOptions& options, const RobotSequence& robots, const Configuration& configuration,
-               const TrialSettings& trials) {
+               const TrialSettings& trials, std::uint64_t seed) {
   GatheredRobots gathered = gather(robots);
   Simulation simulation(configuration, std::move(gathered.robots), shown_work());
   print_notes(simulation.notes());
-  begin_with_jitter(simulation, trials, options.robots.seed_or_default());
+  begin_with_jitter(simulation, trials, seed);
   std::optional<Checkpoints> checkpoints =
       checkpoints_of(options, notes_of(options, configuration, trials, gathered.identities, gathered.failed));
   return run_watched(options, open_recorder(options, simulation), std::move(checkpoints), std::move(gathered.failed),
@@ -355,6 +356,20 @@ int run_resumed(RunOptions options) {
       });
 }
 
+// Robots of a run are tried as there, unless the command line says otherwise: their hashes are those of lineage.csv. A
+// recording or a checkpoint has the first trial.
+void try_as_in(const RunSettings& run, RunOptions& options, bool in_one) {
+  options.trials = trials_over(run.evolution.trials, *options.typed, options.trials);
+  options.trials.seconds = options.simulation.seconds(options.trials.seconds);
+  if (in_one) {
+    if (options.trials.noise > 0 || options.trials.damage > 0)
+      warn("the run's noise and damage are left out of a recording or checkpoint");
+    options.trials.trials = 1;
+    options.trials.noise = options.trials.damage = 0;
+  }
+  validate(options.trials);
+}
+
 int run(RunOptions& options) {  // its robots count what is left out
   if (options.resume.empty()) prepare_outputs(options);
   if (options.json && is_standard_output(options.csv))
@@ -363,7 +378,7 @@ int run(RunOptions& options) {  // its robots count what is left out
   if (!options.resume.empty()) return run_resumed(options);
   if (const auto file = options.robots.repro()) return run_repro(options, *file);
   options.simulation.check(options.robots.physics());  // errors in options come before those in files
-  TrialSettings trials = options.trials;
+  TrialSettings& trials = options.trials;
   trials.seconds = options.simulation.seconds();
   validate(trials);
   const bool in_one = !options.record.empty() || !options.checkpoint.empty();
@@ -371,15 +386,18 @@ int run(RunOptions& options) {  // its robots count what is left out
     throw InputError("--trials", fmt::format("{} trials have no {}; give one", trials.trials,
                                              options.record.empty() ? "checkpoint" : "recording"));
   const RobotSequence robots = options.robots.sequence();
+  if (robots.run) try_as_in(*robots.run, options, in_one);
+  const std::uint64_t seed =
+      robots.run && !options.typed->is_given("--seed") ? robots.run->evolution.seed : options.robots.seed_or_default();
   std::vector<std::string> notes;
-  const Configuration configuration = options.simulation.configuration(robots.environments, notes, robots.physics);
+  const Configuration configuration = options.simulation.configuration_of(robots, notes);
   print_notes(notes);
   if (options.rate) require_frame_rate("--fps", *options.rate, configuration.dt);
   if (options.output.dry_run())
-    return describe_work(options, configuration, options.simulation.steps(), size_text(robots));
-  if (in_one) return run_in_one(options, robots, configuration, trials);
+    return describe_work(options, configuration, std::llround(trials.seconds / configuration.dt), size_text(robots));
+  if (in_one) return run_in_one(options, robots, configuration, trials, seed);
   UnsavedResults results;
-  const RunReport report = evaluate(robots, configuration, trials, options.robots.seed_or_default(), results);
+  const RunReport report = evaluate(robots, configuration, trials, seed, results);
   print_notes(report.notes);
   return report_results(options, report);
 }
@@ -391,7 +409,9 @@ void add_run_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("run", "Simulate robots and print a table or JSON");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor), folders, samples (sample:eel), or an explosion that the window saved (.repro)");
+      "Robot files (.json, .cbor), folders, samples (sample:eel), a run of mercury evolve, or an explosion that the "
+      "window "
+      "saved (.repro)");
   add_text(command, "--csv", options->csv,
            "Also write one line per robot to this file; - prints it instead of the table", "FILE")
       .on_first_screen();
@@ -426,10 +446,12 @@ void add_run_command(const Command& program, const Choose& choose) {
       "  mercury run eel.json --record eel.h5 --fps 30\n"
       "  mercury run my-robots --seconds 3600 --checkpoint long.h5\n"
       "  mercury run --resume --checkpoint long.h5                (goes on after a crash)\n"
+      "  mercury run swim --robot 57  (an individual of the run swim, tried as there)\n"
       "  mercury run eel.repro        (repeats an explosion that was seen in the window)\n"
       "  mercury run my-robots --environment land --solver xpbd --dt 0.005 --json > land.json");
   command.when_chosen([options, choose, command] {
     choose([options, command] {
+      options->typed = command;
       complete_trials(command, options->trials);
       if (options->goes_on && options->checkpoint.empty())
         throw InputError("--resume", "goes on from the file of --checkpoint; give that, too");

@@ -73,6 +73,8 @@ std::optional<std::filesystem::path> run_in(const RobotOptions& robots) {
   const std::vector<std::filesystem::path> files = robots.files();
   const auto run = std::ranges::find_if(files, is_run_folder);
   if (run == files.end()) return std::nullopt;
+  if (!robots.chosen_of_runs().empty())
+    throw InputError("--robot", "the window opens a whole run; click a robot there");
   if (files.size() > 1 || robots.seed())
     throw InputError(run->string(), "a run is opened alone; give it without other robots");
   return *run;

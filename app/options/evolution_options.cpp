@@ -140,10 +140,7 @@ std::vector<Robot> EvolutionOptions::founders(const std::vector<std::string>& pa
     if (path != standard_input && !std::filesystem::exists(path))
       throw InputError("--from", fmt::format("\"{}\" is neither a file or folder nor a kind of robot ({})",
                                              path.string(), generator_kinds()));
-    const bool is_run = is_run_folder(path);
-    if (is_run && !std::filesystem::exists(path / "best"))
-      throw InputError("--from", fmt::format("{} has no champions in best/; checks.csv in it says why", path.string()));
-    files.push_back(is_run ? path / "best" : path);
+    files.push_back(path);
   }
   std::vector<Robot> founders = robots_of(founder_files_.load(files));
   if (founders.empty() && !files.empty()) throw InputError("--from", "no robot is left: none of the files can be used");

@@ -46,6 +46,16 @@ void complete_trials(const Command& command, TrialSettings& trials) {
   if (!command.is_given("--jitter")) trials.jitter = trials.trials > 1 ? usual_jitter : 0;
 }
 
+TrialSettings trials_over(const TrialSettings& of_run, const Command& command, const TrialSettings& given) {
+  TrialSettings trials = of_run;
+  for_each_parameter(trials, [&](const auto& parameter, auto& value) {
+    if (command.is_given(option_of(parameter.name))) value = given.*parameter.member;
+  });
+  trials.seconds = of_run.seconds;
+  trials.racing = false;
+  return trials;
+}
+
 void add_evolution_trial_options(const Command& command, TrialSettings& trials) {
   add_parameters(command, trials, trials_group, is_of_evolution);
 }

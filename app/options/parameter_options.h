@@ -56,6 +56,9 @@ void add_parameters(const Command& command, Struct& values, const char* group) {
 void add_trial_options(const Command& command, TrialSettings& trials);
 // Sets what the options leave to others: without --jitter, several trials have the usual one, and one trial none.
 void complete_trials(const Command& command, TrialSettings& trials);
+// The trials of a run over which the command line has its say: what it leaves out is as there. No robot is stopped by
+// racing. The time is that of the run, see SimulationOptions::seconds().
+TrialSettings trials_over(const TrialSettings& of_run, const Command& command, const TrialSettings& given);
 // The other parameters of trials, which only evolution has.
 void add_evolution_trial_options(const Command& command, TrialSettings& trials);
 

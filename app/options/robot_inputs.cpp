@@ -15,15 +15,30 @@
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
+#include "app/options/option_values.h"
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/robot_file.h"
+#include "mercury/run_folder.h"
 #include "mercury/samples.h"
 
 namespace mercury {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view best_word = "best", elites_word = "elites", champions_word = "champions";
+
+// The files of best/.
+std::vector<fs::path> champions_of(const fs::path& run, bool recursive) {
+  const fs::path folder = run / "best";
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    throw InputError(run.string(),
+                     "has no champions in best/; checks.csv in it says why, and --robot best takes the "
+                     "best one all the same");
+  return robot_files(std::span(&folder, 1), recursive);
+}
 
 // Everything up to the end of standard input. Throws Interrupted after Ctrl-C.
 std::string read_standard_input() {
@@ -70,6 +85,14 @@ void RobotInputs::add_to(const Command& command, const std::string& description)
 
 void RobotInputs::add_options_to(const Command& command) {
   command.add_flag("--recursive", recursive_, "Also read the folders inside folders").in_group("Robots");
+  command
+      .add_list("--robot", of_runs_,
+                "Of a run folder: the individual of this number, the best one, the elites (all that live), or the "
+                "champions in best/ (the default); may be given several times")
+      .one_value_each()
+      .offering({std::string(best_word), std::string(elites_word), std::string(champions_word)})
+      .with_form("ID|best|elites|champions")
+      .in_group("Robots");
   command.add_flag("--keep-going", keep_going_, "Report files that cannot be used, and go on (exit status 1)")
       .in_group("Robots");
 }
@@ -93,13 +116,49 @@ void RobotInputs::keep_going_after(const std::string& error) const {
 std::vector<fs::path> RobotInputs::listed(const std::vector<fs::path>& paths) const {
   std::vector<fs::path> files;
   for (const fs::path& path : paths) try {
-      const std::vector<fs::path> found =
-          path == standard_input ? std::vector{path} : robot_files(std::span(&path, 1), recursive_);
+      const bool is_run = is_run_folder(path);
+      const std::vector<fs::path> found = path == standard_input || (is_run && !of_runs_.empty()) ? std::vector{path}
+                                          : is_run ? champions_of(path, recursive_)
+                                                   : robot_files(std::span(&path, 1), recursive_);
       files.insert(files.end(), found.begin(), found.end());
     } catch (const InputError& error) {
       keep_going_after(error.what());
     }
   return files;
+}
+
+void RobotInputs::load_run(const fs::path& folder, std::vector<RobotFromFile>& robots,
+                           const std::function<void(const Robot&)>& accept) const {
+  const RunHistory run(folder);
+  const auto add = [&](const fs::path& file, Robot robot) {
+    if (accept) accept(robot);
+    robots.push_back({file, std::move(robot)});
+  };
+  const auto add_individual = [&](std::uint64_t id) {
+    throw_if_interrupted();
+    try {
+      add(folder, run.grow(id));
+    } catch (const InputError& error) {
+      keep_going_after(fmt::format("{}: robot {}: {}", folder.string(), id, error.what()));
+    }
+  };
+  for (const std::string& choice : of_runs_) {
+    const std::span<const std::uint64_t> living = run.living();
+    if (choice == champions_word) {
+      for (const fs::path& file : champions_of(folder, false)) add(file, load_robot(file));
+    } else if (choice == elites_word) {
+      for (const std::uint64_t id : living) add_individual(id);
+    } else if (choice == best_word) {
+      if (living.empty()) throw InputError(folder.string(), "has no robots yet");
+      add_individual(living.front());
+    } else {
+      const auto id = number_from<std::uint64_t>("--robot", choice);
+      if (id >= run.individuals().size())
+        throw InputError("--robot", fmt::format("{} is not accepted; {} has robots 0 to {}", id, folder.string(),
+                                                static_cast<std::int64_t>(run.individuals().size()) - 1));
+      add_individual(id);
+    }
+  }
 }
 
 void RobotInputs::load_standard_input(std::vector<RobotFromFile>& robots,
@@ -123,6 +182,8 @@ void RobotInputs::load_standard_input(std::vector<RobotFromFile>& robots,
 
 std::vector<RobotFromFile> RobotInputs::load(const std::vector<fs::path>& paths,
                                              const std::function<void(const Robot&)>& accept) const {
+  if (!of_runs_.empty() && std::ranges::none_of(paths, is_run_folder))
+    throw InputError("--robot", "chooses robots of a run of mercury evolve; give its folder");
   const std::vector<fs::path> files = listed(paths);
   std::vector<RobotFromFile> robots;
   robots.reserve(files.size());
@@ -132,6 +193,8 @@ std::vector<RobotFromFile> RobotInputs::load(const std::vector<fs::path>& paths,
     try {
       if (files[i] == standard_input) {
         load_standard_input(robots, accept);
+      } else if (is_run_folder(files[i])) {
+        load_run(files[i], robots, accept);
       } else {
         for (Robot& robot : robots_in(files[i])) {
           if (accept) accept(robot);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/options/command.h"
@@ -26,16 +27,20 @@ class RobotInputs {
   // Adds the argument ROBOTS and the options below to a command. The object must outlive it.
   void add_to(const Command& command,
               const std::string& description = "Robot files (.json, .cbor), folders, samples (sample:eel)");
-  // Adds --recursive and --keep-going alone.
+  // Adds --recursive, --keep-going and --robot alone.
   void add_options_to(const Command& command);
 
   // As the user gave them, and the files of sample robots. Throws InputError for an unknown sample.
   std::vector<std::filesystem::path> paths() const;
   bool empty() const { return paths_.empty(); }
+  // What --robot says; it is forgotten by taking it. load() refuses it unless one of the paths is a run folder.
+  const std::vector<std::string>& chosen_of_runs() const { return of_runs_; }
+  std::vector<std::string> take_chosen_of_runs() { return std::exchange(of_runs_, {}); }
 
   // Reads the robots of files and folders, and of standard input for "-". Shows the progress, and throws Interrupted
   // after Ctrl-C. Throws InputError for a file that cannot be used; with --keep-going, reports it and goes on. `accept`
-  // may throw InputError for a robot that the command cannot use.
+  // may throw InputError for a robot that the command cannot use. A run folder stands for the robots in its best/, or
+  // for those that --robot chooses.
   std::vector<RobotFromFile> load(const std::vector<std::filesystem::path>& paths,
                                   const std::function<void(const Robot&)>& accept = {}) const;
   // The same of all paths. Throws InputError as well if there are paths, but no robot is left.
@@ -49,9 +54,11 @@ class RobotInputs {
  private:
   void keep_going_after(const std::string& error) const;
   std::vector<std::filesystem::path> listed(const std::vector<std::filesystem::path>& paths) const;
+  void load_run(const std::filesystem::path& folder, std::vector<RobotFromFile>& robots,
+                const std::function<void(const Robot&)>& accept) const;
   void load_standard_input(std::vector<RobotFromFile>& robots, const std::function<void(const Robot&)>& accept) const;
 
-  std::vector<std::string> paths_;
+  std::vector<std::string> paths_, of_runs_;
   bool recursive_ = false, keep_going_ = false;
   mutable std::size_t left_out_ = 0;
 };

@@ -75,6 +75,12 @@ std::optional<std::filesystem::path> RobotOptions::repro() const {
   return alone(is_repro_name, "a repro has a time of its own; give it without other robots");
 }
 
+std::optional<RunSettings> RobotOptions::settings_of_run() const {
+  const std::vector<std::filesystem::path> paths = files();
+  if (paths.size() != 1 || has_random() || !is_run_folder(paths.front())) return std::nullopt;
+  return RunHistory(paths.front()).settings();
+}
+
 void RobotOptions::require_robots() const {
   if (empty())
     throw InputError("no robots given; name files, folders or samples (sample:eel), or use --random " +
@@ -106,6 +112,7 @@ LoadedRobots RobotOptions::load(const MemoryUse& use) const {
     for (Robot& robot : random_robots(request)) add(robot);
   }
   all.physics = physics_of(all.robots);
+  all.run = settings_of_run();
   return all;
 }
 
@@ -127,6 +134,7 @@ RobotSequence RobotOptions::sequence() const {
   std::vector<const Robot*> pointers;
   for (const auto& file : files) pointers.push_back(file.get());
   sequence.physics = physics_with(pointers);
+  sequence.run = settings_of_run();
   sequence.source = [files = std::move(files), requests = sequence.random,
                      first = std::move(first)](std::size_t index) -> std::shared_ptr<const Robot> {
     if (index < files.size()) return files[index];

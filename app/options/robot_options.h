@@ -17,6 +17,7 @@
 #include "mercury/configuration.h"
 #include "mercury/evaluator.h"
 #include "mercury/robot.h"
+#include "mercury/run_folder.h"
 
 namespace mercury {
 
@@ -29,6 +30,7 @@ struct RobotSequence {
   // The environments that the robots are made for, see environment_of().
   std::vector<std::string> environments;
   Physics physics = Physics::paper;
+  std::optional<RunSettings> run;  // if all robots are of one run folder
 };
 
 // Robots that are there.
@@ -37,6 +39,7 @@ struct LoadedRobots {
   std::vector<std::filesystem::path> files;  // of the first robots, one each
   std::vector<std::string> environments;     // as in RobotSequence
   Physics physics = Physics::paper;
+  std::optional<RunSettings> run;  // as in RobotSequence
 };
 
 inline constexpr const char* lively_help =
@@ -71,6 +74,9 @@ class RobotOptions {
   std::vector<RobotFromFile> load_files() const;
   std::vector<std::filesystem::path> files() const { return files_.paths(); }
   bool has_random() const { return !random_.empty(); }
+  // See RobotInputs.
+  const std::vector<std::string>& chosen_of_runs() const { return files_.chosen_of_runs(); }
+  std::vector<std::string> take_chosen_of_runs() { return files_.take_chosen_of_runs(); }
   std::vector<RandomRobots> random() const;  // with --lively, after their trials
 
   // What the options say that bodies are to be; robots of files may have real ones without a word.
@@ -91,6 +97,7 @@ class RobotOptions {
   std::uint64_t seed_or_default() const { return seed_; }
 
  private:
+  std::optional<RunSettings> settings_of_run() const;
   void require_robots() const;
   void require_robot_files() const;
   std::vector<Robot> random_robots(const RandomRobots& request) const;

@@ -196,6 +196,8 @@ Configuration SimulationOptions::configuration_over(const Configuration& base) c
     if (command_->is_given(option_of(parameter.name))) value = given_.*parameter.member;
   };
   for_each_parameter(configuration, take_given);
+  dt();  // throws for a number of substeps that is none
+  configuration.dt /= substeps_;
   if (environment_ && *environment_ != name_of(base.environment))
     configuration.environment = environment_named(*environment_);
   set_parameters(configuration.environment);

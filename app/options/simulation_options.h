@@ -43,6 +43,13 @@ class SimulationOptions {
   Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes,
                               Physics physics = Physics::paper) const;
 
+  // Of robots that were loaded (robot_options.h): over the configuration of their run, if they are all of one.
+  template <class Robots>
+  Configuration configuration_of(const Robots& robots, std::vector<std::string>& notes) const {
+    return robots.run ? configuration_over(robots.run->evolution.configuration)
+                      : configuration(robots.environments, notes, robots.physics);
+  }
+
   // The same over the configuration of a run: what the command line does not say is as there, except for the device.
   Configuration configuration_over(const Configuration& base) const;
 

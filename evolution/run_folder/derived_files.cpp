@@ -5,8 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "evolution/run_folder/champion_checks.h"
 #include "evolution/run_folder/journal.h"
@@ -59,9 +62,50 @@ std::optional<Robot> grown(const RunHistory& run, std::uint64_t id) {
   }
 }
 
+bool has_map(const RunHistory& run) { return run.settings().evolution.algorithm.name == "map-elites"; }
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail(folder, error.value());
+}
+
+// Whether file_name() gives that name to a robot of the run.
+bool is_file_of(const RunHistory& run, const std::string& name) {
+  int generation = 0;
+  unsigned long long id = 0;
+  return std::sscanf(name.c_str(), "%d-%llu.json", &generation, &id) == 2 && id < run.individuals().size() &&
+         name == file_name(generation, id);
+}
+
 }  // namespace
 
+void write_elites(const RunHistory& run) {
+  if (!has_map(run)) return;
+  const std::filesystem::path folder = run.folder() / champions_name;
+  std::map<std::string, std::uint64_t> elites;
+  for (const std::uint64_t id : run.living()) {
+    const Individual& individual = run.individuals()[id];
+    if (individual.score() > worst_score) elites.emplace(file_name(individual.generation, id), id);
+  }
+  std::error_code error;
+  std::vector<std::filesystem::path> replaced;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!elites.contains(name) && is_file_of(run, name)) replaced.push_back(entry->path());
+  }
+  for (const std::filesystem::path& path : replaced) std::filesystem::remove(path, error);
+  for (const auto& [name, id] : elites) {
+    if (std::filesystem::exists(folder / name, error)) continue;
+    const std::optional<Robot> robot = grown(run, id);
+    if (!robot) continue;
+    make_folder(folder);
+    save_robot(folder / name, *robot);
+  }
+}
+
 void write_champions(const RunHistory& run) {
+  if (has_map(run)) return;
   const std::filesystem::path folder = run.folder() / champions_name;
   const bool only_confirmed = run.settings().evolution.confirm;
   const Checks checks = only_confirmed ? read_checks(run.folder()) : Checks{};
@@ -76,8 +120,7 @@ void write_champions(const RunHistory& run) {
     if (std::filesystem::exists(path, error)) continue;
     const std::optional<Robot> robot = grown(run, generation.best);
     if (!robot) continue;
-    std::filesystem::create_directories(folder, error);
-    if (error) fail(folder, error.value());
+    make_folder(folder);
     save_robot(path, *robot);
   }
 }
@@ -89,11 +132,10 @@ std::string score_name(std::size_t objective, std::size_t objectives) {
   return objectives == 1 ? "score" : "score_" + std::to_string(objective + 1);
 }
 
-std::string ancestor_list(const Individual& individual) {
-  if (individual.parents.empty()) return "[none]";
+std::string ancestor_list(std::span<const std::uint64_t> parents) {
+  if (parents.empty()) return "[none]";
   std::string list = "[";
-  for (const std::uint64_t parent : individual.parents)
-    list.append(list.size() > 1 ? "," : "").append(std::to_string(parent));
+  for (const std::uint64_t parent : parents) list.append(list.size() > 1 ? "," : "").append(std::to_string(parent));
   return list + "]";
 }
 
@@ -141,7 +183,7 @@ void write_lineage(const RunHistory& run) {
   for (const Individual& individual : run.individuals()) {
     const Assessment& assessment = individual.assessment;
     const std::optional<int> died = run.died(individual.id);
-    csv.cell(individual.id).cell(ancestor_list(individual)).cell(individual.generation);
+    csv.cell(individual.id).cell(ancestor_list(individual.parents)).cell(individual.generation);
     csv.cell(died ? std::to_string(*died) : "inf").cell(individual.generation).cell(individual.line_began);
     csv.cell(individual.seed).cell(name_of(assessment.fate));
     add_cells(csv, assessment.scores, objectives);
@@ -153,6 +195,23 @@ void write_lineage(const RunHistory& run) {
     csv.end_line();
   }
   write_whole_file(run.folder() / lineage_name, csv.text());
+}
+
+void write_first_parents(const RunHistory& run) {
+  const std::size_t objectives = run.settings().evolution.objectives.size();
+  CsvLines csv;
+  for (const char* name : {"id", "ancestor_list", "origin_time", "destruction_time", "generation"}) csv.cell(name);
+  for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
+  csv.end_line();
+  for (const Individual& individual : run.individuals()) {
+    const std::span<const std::uint64_t> parents = individual.parents;
+    const std::optional<int> died = run.died(individual.id);
+    csv.cell(individual.id).cell(ancestor_list(parents.first(std::min<std::size_t>(1, parents.size()))));
+    csv.cell(individual.generation).cell(died ? std::to_string(*died) : "inf").cell(individual.generation);
+    add_cells(csv, individual.assessment.scores, objectives);
+    csv.end_line();
+  }
+  write_whole_file(run.folder() / first_parents_name, csv.text());
 }
 
 void write_generations(const RunHistory& run) {
@@ -197,7 +256,9 @@ void DerivedFiles::write(const RunHistory& run) {
   constexpr int pauses = 20;  // as long as the writing, so that it takes at most a 21st part of the time
   const Clock::time_point start = Clock::now();
   write_champions(run);
+  write_elites(run);
   write_lineage(run);
+  write_first_parents(run);
   write_generations(run);
   write_whole_file(run.folder() / progress_name, progress_plot(run));
   const Clock::time_point end = Clock::now();

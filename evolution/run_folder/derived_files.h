@@ -13,9 +13,10 @@
 
 namespace mercury {
 
-inline constexpr std::string_view lineage_name = "lineage.csv", generations_name = "generations.csv",
-                                  progress_name = "progress.svg", champions_name = "best";
-inline constexpr std::array derived_file_names{lineage_name, generations_name, progress_name};
+inline constexpr std::string_view lineage_name = "lineage.csv", first_parents_name = "first_parents.csv",
+                                  generations_name = "generations.csv", progress_name = "progress.svg",
+                                  champions_name = "best";
+inline constexpr std::array derived_file_names{lineage_name, first_parents_name, generations_name, progress_name};
 
 class DerivedFiles {
  public:
@@ -31,8 +32,12 @@ class DerivedFiles {
 
 // Writes the champion of each generation that has another one than the previous generation, unless its file is there:
 // best/GENERATION-ID.json. A champion that cannot be grown has none, and one that is not confirmed, if the run wants
-// that.
+// that. Nothing for runs of map-elites, whose best/ holds the map.
 void write_champions(const RunHistory& run);
+
+// Of a run of map-elites: writes the robots of all cells that have a score, and removes those that are there no more:
+// best/GENERATION-ID.json, the generation in which it was born. Nothing for other runs.
+void write_elites(const RunHistory& run);
 
 // The robot of an individual, "RUN-ID", with its ancestry in the origin. Throws InputError if it cannot be grown.
 Robot run_robot(const RunHistory& run, std::uint64_t id);
@@ -43,6 +48,10 @@ Robot run_robot(const RunHistory& run, std::uint64_t id);
 // score per objective with its quartiles, hash, and one column per quantity ("robot_length" for the quantity length,
 // since tools take a column of that name for the length of a branch).
 void write_lineage(const RunHistory& run);
+
+// first_parents.csv: the same individuals with the first of their parents alone, for tools that read trees: id,
+// ancestor_list, origin_time, destruction_time, generation and the scores.
+void write_first_parents(const RunHistory& run);
 
 // generations.csv: one line per generation. All columns but the last three are the same in every repetition.
 void write_generations(const RunHistory& run);

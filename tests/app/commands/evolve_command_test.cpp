@@ -14,6 +14,7 @@
 
 #include "app/base/child_process.h"
 #include "evolution/distribution/ranks.h"
+#include "evolution/run_folder/champion_checks.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/quantity.h"
 #include "mercury/robot_file.h"
@@ -155,6 +156,107 @@ TEST_F(EvolveCommand, GoesOnToNoFewerGenerationsThanThereAre) {
   EXPECT_EQ(lineage("run"), before);
   EXPECT_EQ(evolve("run", {"--resume", "--generations", "4", "--quiet"}).status, 0);
   EXPECT_EQ(generations_in("run"), 5u);  // generation 0 included
+}
+
+// Robots of a run are tried as there: lineage.csv and `mercury run` have the same hashes and distances.
+TEST_F(EvolveCommand, RunTriesAnyIndividualAsInTheRun) {
+  for (const Arguments& trials :
+       {Arguments{}, {"--trials", "1"}, {"--noise", "0.2", "--damage", "0.1", "--settle", "0.1"}}) {
+    ASSERT_EQ(evolve("run", joined(joined(small("2"), trials), {"--dt", "0.002", "--force"})).status, 0);
+    const auto rows = rows_of(lineage("run"));
+    for (const std::size_t id : {0, 9, 23}) {
+      const Outcome outcome =
+          mercury({"run", path("run"), "--robot", std::to_string(id), "--csv", "-", "--device", "cpu"});
+      ASSERT_EQ(outcome.status, 0) << outcome.messages;
+      const auto results = rows_of(outcome.output);
+      ASSERT_EQ(results.size(), 1u);
+      EXPECT_EQ(results[0].at("name"), "run-" + std::to_string(id));
+      EXPECT_EQ(results[0].at("hash"), rows[id].at("hash"));
+      EXPECT_EQ(results[0].at("fate"), rows[id].at("fate"));
+      EXPECT_DOUBLE_EQ(std::stod(results[0].at("distance")), std::stod(rows[id].at("distance")));
+    }
+  }
+  const auto longer = rows_of(mercury({"run", path("run"), "--robot", "0", "--seconds", "0.4", "--csv", "-"}).output);
+  EXPECT_NE(longer.at(0).at("hash"), rows_of(lineage("run")).at(0).at("hash"));
+}
+
+TEST_F(EvolveCommand, ARunStandsForItsChampionsItsElitesOrAnyIndividual) {
+  ASSERT_EQ(evolve("run", joined(small("3"), {"--no-confirm"})).status, 0);
+  const RunHistory history(path("run"));
+  const auto names = [&](const Arguments& chosen) {
+    const Outcome outcome = mercury(joined({"run", path("run"), "--seconds", "0.3", "--csv", "-"}, chosen));
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    std::vector<std::string> found;
+    for (const auto& row : rows_of(outcome.output)) found.push_back(row.at("name"));
+    return found;
+  };
+  std::vector<std::string> champions, elites;
+  for (const auto& [id, generation] : champions_of(history)) champions.push_back("run-" + std::to_string(id));
+  for (const std::uint64_t id : history.living()) elites.push_back("run-" + std::to_string(id));
+  EXPECT_EQ(names({}), champions);
+  EXPECT_EQ(names({"--robot", "champions"}), champions);
+  EXPECT_EQ(names({"--robot", "elites"}), elites);
+  EXPECT_EQ(names({"--robot", "best", "--robot", "5"}), (std::vector<std::string>{elites.front(), "run-5"}));
+
+  ASSERT_EQ(mercury({"export", path("run"), "--robot", "5", "-o", path("a.stl")}).status, 0);
+  save_robot(path("five.json"), history.grow(5));
+  ASSERT_EQ(mercury({"export", path("five.json"), "-o", path("b.stl")}).status, 0);
+  EXPECT_EQ(read("a.stl"), read("b.stl"));
+
+  ASSERT_EQ(evolve("on", {"--from", path("run"), "--robot", "5", "--robot", "9", "--population", "2", "--generations",
+                          "0", "--seconds", "0.1", "--quiet", "--no-confirm"})
+                .status,
+            0);
+  EXPECT_EQ(load_robot(path("on/founders/0000.json")), history.grow(5));
+  EXPECT_EQ(load_robot(path("on/founders/0001.json")), history.grow(9));
+
+  std::filesystem::remove_all(path("run/best"));
+  for (const auto& [arguments, message] : std::vector<std::pair<Arguments, std::string>>{
+           {{path("run"), "--robot", "32"}, "--robot: 32 is not accepted; " + path("run") + " has robots 0 to 31"},
+           {{path("run"), "--robot", "worst"}, "--robot: \"worst\" is not accepted"},
+           {{"sample:eel", "--robot", "3"}, "--robot: chooses robots of a run of mercury evolve; give its folder"},
+           {{path("run")}, path("run") + ": has no champions in best/; checks.csv in it says why, and --robot best"}}) {
+    const Outcome outcome = mercury(joined({"run"}, arguments));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + message));
+  }
+}
+
+// With the same jitters: the figures are those of checks.csv.
+TEST_F(EvolveCommand, CheckRepeatsTheCheckOfAChampion) {
+  ASSERT_EQ(evolve("run", joined(small("1"), {"--objective", "path"})).status, 0);
+  const auto checks = rows_of(read("run/checks.csv"));
+  const Outcome outcome =
+      mercury({"check", path("run"), "--robot", checks.at(0).at("id"), "--csv", "-", "--device", "cpu"});
+  const auto again = rows_of(outcome.output);
+  ASSERT_EQ(again.size(), 1u) << outcome.messages;
+  EXPECT_EQ(again[0].at("objective"), "path");
+  for (const auto& [column, value] : checks[0])
+    if (again[0].contains(column) && value.find_first_not_of("0123456789.e-") == std::string::npos && !value.empty())
+      EXPECT_DOUBLE_EQ(std::stod(again[0].at(column)), std::stod(value)) << column;
+  EXPECT_EQ(again[0].at("verdict"), checks[0].at("verdict"));
+}
+
+TEST_F(EvolveCommand, BestOfMapElitesIsTheMap) {
+  const Arguments map{"--axis", "masses:8:36:4", "--axis", "muscle_share:0:1:3"};
+  ASSERT_EQ(evolve("run", joined(small("1"), map)).status, 0);
+  write("run/best/mine.json", "{}");
+  for (const char* generations : {"1", "6"}) {
+    const Outcome outcome = evolve("run", {"--resume", "--generations", generations, "--quiet"});
+    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    EXPECT_THAT(outcome.output, testing::HasSubstr(path("run/best") + " holds the map"));
+    const RunHistory history(path("run"));
+    std::set<std::string> elites{"mine.json"}, files;
+    for (const std::uint64_t id : history.living()) {
+      char name[40];
+      std::snprintf(name, sizeof name, "%05d-%07d.json", history.individuals()[id].generation, static_cast<int>(id));
+      elites.insert(name);
+      EXPECT_EQ(load_robot(path(std::string("run/best/") + name)), history.grow(id));
+    }
+    for (const auto& file : std::filesystem::directory_iterator(path("run/best"))) files.insert(file.path().filename());
+    EXPECT_EQ(files, elites);
+    EXPECT_GT(files.size(), 3u);
+  }
 }
 
 // All champions are checked, beside the search; those whose results hold are in best/, and no others.

@@ -51,6 +51,12 @@ def check_standard(run):
     for row in generations:
         fates = sum(int(row[name]) for name in ("sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed"))
         assert fates == int(row["born"])
+    trees = rows_of(run / "first_parents.csv")
+    scores = [name for name in rows[0] if re.fullmatch(r"score(_\d+)?", name)]
+    assert list(trees[0]) == ["id", "ancestor_list", "origin_time", "destruction_time", "generation", *scores]
+    for row, tree in zip(rows, trees, strict=True):
+        assert ancestors_of(tree) == ancestors_of(row)[:1]
+        assert all(tree[name] == row[name] for name in tree if name != "ancestor_list")
     picture = ElementTree.parse(run / "progress.svg")
     assert picture.getroot().tag == "{http://www.w3.org/2000/svg}svg"
     if run.name == "afpo":
@@ -72,11 +78,25 @@ def check_tools(run):
     assert set(graph.edges) == edges
     assert graph.number_of_nodes() == len(rows)
     assert all(length["length"] >= 1 for _, _, length in graph.edges(data=True))
-    if run.name == "one-parent":
-        trees = tools.alife_dataframe_to_dendropy_trees(table, setup_edge_lengths=True)
-        assert sum(len(tree.nodes()) for tree in trees) == len(rows)
-        roots = [row for row in rows if row["ancestor_list"] == "[none]"]
-        assert len(trees) == len(roots)
+    table = pandas.read_csv(run / "first_parents.csv")
+    trees = tools.alife_dataframe_to_dendropy_trees(table, setup_edge_lengths=True)
+    assert sum(len(tree.nodes()) for tree in trees) == len(rows)
+    roots = [row for row in rows if row["ancestor_list"] == "[none]"]
+    assert len(trees) == len(roots)
+    check_phylotrack(run, rows, roots)
+
+
+def check_phylotrack(run, rows, roots):
+    try:
+        from phylotrackpy import systematics
+    except ImportError:
+        print("phylotrackpy is not installed")
+        return
+    phylogeny = systematics.Systematics(lambda individual: individual, True, True, False, False)
+    phylogeny.load_from_file(str(run / "first_parents.csv"), "id", assume_leaves_extant=False)
+    assert phylogeny.get_num_active() == sum(row["destruction_time"] == "inf" for row in rows)
+    assert phylogeny.get_num_taxa() == len(rows)
+    assert phylogeny.get_num_roots() == len(roots)
 
 
 def main():
