@@ -15,30 +15,17 @@
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
-#include "app/options/option_values.h"
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/robot_file.h"
 #include "mercury/run_folder.h"
+#include "mercury/run_robots.h"
 #include "mercury/samples.h"
 
 namespace mercury {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::string_view best_word = "best", elites_word = "elites", champions_word = "champions";
-
-// The files of best/.
-std::vector<fs::path> champions_of(const fs::path& run, bool recursive) {
-  const fs::path folder = run / "best";
-  std::error_code error;
-  if (!fs::is_directory(folder, error))
-    throw InputError(run.string(),
-                     "has no champions in best/; checks.csv in it says why, and --robot best takes the "
-                     "best one all the same");
-  return robot_files(std::span(&folder, 1), recursive);
-}
 
 // Everything up to the end of standard input. Throws Interrupted after Ctrl-C.
 std::string read_standard_input() {
@@ -90,7 +77,7 @@ void RobotInputs::add_options_to(const Command& command) {
                 "Of a run folder: the individual of this number, the best one, the elites (all that live), or the "
                 "champions in best/ (the default); may be given several times")
       .one_value_each()
-      .offering({std::string(best_word), std::string(elites_word), std::string(champions_word)})
+      .offering({std::string(best_of_run), std::string(elites_of_run), std::string(champions_of_run)})
       .with_form("ID|best|elites|champions")
       .in_group("Robots");
   command.add_flag("--keep-going", keep_going_, "Report files that cannot be used, and go on (exit status 1)")
@@ -118,7 +105,7 @@ std::vector<fs::path> RobotInputs::listed(const std::vector<fs::path>& paths) co
   for (const fs::path& path : paths) try {
       const bool is_run = is_run_folder(path);
       const std::vector<fs::path> found = path == standard_input || (is_run && !of_runs_.empty()) ? std::vector{path}
-                                          : is_run ? champions_of(path, recursive_)
+                                          : is_run                                                ? champion_files(path)
                                                    : robot_files(std::span(&path, 1), recursive_);
       files.insert(files.end(), found.begin(), found.end());
     } catch (const InputError& error) {
@@ -142,23 +129,11 @@ void RobotInputs::load_run(const fs::path& folder, std::vector<RobotFromFile>& r
       keep_going_after(fmt::format("{}: robot {}: {}", folder.string(), id, error.what()));
     }
   };
-  for (const std::string& choice : of_runs_) {
-    const std::span<const std::uint64_t> living = run.living();
-    if (choice == champions_word) {
-      for (const fs::path& file : champions_of(folder, false)) add(file, load_robot(file));
-    } else if (choice == elites_word) {
-      for (const std::uint64_t id : living) add_individual(id);
-    } else if (choice == best_word) {
-      if (living.empty()) throw InputError(folder.string(), "has no robots yet");
-      add_individual(living.front());
-    } else {
-      const auto id = number_from<std::uint64_t>("--robot", choice);
-      if (id >= run.individuals().size())
-        throw InputError("--robot", fmt::format("{} is not accepted; {} has robots 0 to {}", id, folder.string(),
-                                                static_cast<std::int64_t>(run.individuals().size()) - 1));
-      add_individual(id);
-    }
-  }
+  for (const std::string& choice : of_runs_)
+    if (choice == champions_of_run)
+      for (const fs::path& file : champion_files(folder)) add(file, load_robot(file));
+    else
+      for (const std::uint64_t id : individuals_named(run, choice)) add_individual(id);
 }
 
 void RobotInputs::load_standard_input(std::vector<RobotFromFile>& robots,

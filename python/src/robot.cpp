@@ -16,6 +16,7 @@
 #include "mercury/physics.h"
 #include "mercury/real_body.h"
 #include "mercury/robot_file.h"
+#include "mercury/run_robots.h"
 #include "python/src/bindings.h"
 #include "python/src/gil.h"
 #include "python/src/robot_arrays.h"
@@ -42,15 +43,43 @@ Robot robot_from(nb::handle masses, nb::handle springs, nb::handle faces, nb::ha
   return robot;
 }
 
-nb::object load(nb::handle given) {
+// Of a run of mercury evolve: champions, elites, the best one, or individuals by their numbers.
+std::vector<Robot> robots_of_run(const std::filesystem::path& folder, const std::vector<std::string>& choices) {
+  const RunHistory run(folder);
+  std::vector<Robot> robots;
+  for (const std::string& choice : choices)
+    if (choice == champions_of_run)
+      for (const std::filesystem::path& file : champion_files(folder)) robots.push_back(load_robot(file));
+    else
+      for (const std::uint64_t id : individuals_named(run, choice)) robots.push_back(run.grow(id));
+  return robots;
+}
+
+// A number, a word, or several of them; empty = none was given.
+std::vector<std::string> choices_from(nb::handle given) {
+  if (given.is_none()) return {};
+  if (nb::isinstance<nb::str>(given) || nb::hasattr(given, "__index__")) return {nb::cast<std::string>(nb::str(given))};
+  std::vector<std::string> choices;
+  for (const nb::handle one : nb::iter(given)) choices.push_back(nb::cast<std::string>(nb::str(one)));
+  return choices;
+}
+
+nb::object load(nb::handle given, nb::handle robot) {
   const std::filesystem::path path = path_from("path", given);
+  const std::vector<std::string> choices = choices_from(robot);
+  const bool is_one = choices.size() == 1 && (nb::hasattr(robot, "__index__") || choices.front() == best_of_run);
   std::vector<Robot> robots;
   bool is_folder = false;
   {
     const ReleasedGil released;
     std::error_code ignored;
     is_folder = std::filesystem::is_directory(path, ignored);
-    if (is_folder)
+    const bool is_run = is_run_folder(path);
+    if (!robot.is_none() && !is_run)
+      throw InputError(path.string(), "robot chooses robots of a run of mercury evolve, and this is none");
+    if (is_run)
+      robots = robots_of_run(path, robot.is_none() ? std::vector{std::string(champions_of_run)} : choices);
+    else if (is_folder)
       robots = load_robots(std::span(&path, 1));
     else if (const ImportFormat* format = import_format_of(path))
       robots = import_file(path, *format).robots;
@@ -58,7 +87,7 @@ nb::object load(nb::handle given) {
       robots.push_back(load_robot(path));
   }
   if (!is_folder && robots.empty()) throw InputError(path.string(), "holds no robot, only what cannot move");
-  if (!is_folder && robots.size() == 1) return nb::cast(shared(std::move(robots.front())));
+  if ((!is_folder || is_one) && robots.size() == 1) return nb::cast(shared(std::move(robots.front())));
   nb::list list;
   for (Robot& robot : robots) list.append(shared(std::move(robot)));
   return list;
@@ -370,9 +399,15 @@ void bind_robot(nb::module_& module) {
       "Files of " +
       import_sources() +
       " are imported without their worlds; one that holds several robots gives a list. "
+      "The folder of a run of `mercury evolve` gives the list of its champions, and with `robot` others: \"elites\", "
+      "all "
+      "that live, the best first; \"best\" or a number, one Robot; or several of them, a list. "
       "Raises InputError with the place: \"eel.json: /springs/7: mass 912 is out of range, the robot has 300\".";
-  module.def("load", &load, nb::arg("path").none(), nb::sig("def load(path: str | os.PathLike[str]) -> typing.Any"),
-             documentation.c_str());
+  module.def(
+      "load", &load, nb::arg("path").none(), nb::arg("robot").none() = nb::none(),
+      nb::sig("def load(path: str | os.PathLike[str], robot: int | str | typing.Iterable[int | str] | None = None) "
+              "-> typing.Any"),
+      documentation.c_str());
 }
 
 }  // namespace mercury::python

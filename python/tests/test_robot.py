@@ -4,6 +4,7 @@ import gc
 import json
 import pickle
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -597,3 +598,22 @@ def test_members_of_a_file_that_this_version_does_not_know_are_kept(tmp_path):
     assert last["lab"] == document["lab"] and last["weight"] == 3
     robot.save(tmp_path / "plain.json")
     assert noted != robot and set(json.loads((tmp_path / "plain.json").read_text())) == set(document) - {"lab", "weight"}
+
+
+def test_robots_of_a_run():
+    run = Path(__file__).parents[2] / "tests/data/run-of-version-0.2"
+    second = mercurysim.load(run, robot=1)
+    assert second.name == "run-of-version-0.2-1"
+    best = mercurysim.load(run, robot="best")
+    elites = mercurysim.load(run, robot="elites")
+    assert elites[0] == best and len(elites) == 4  # its population
+    assert mercurysim.load(run, robot=[1, "best"]) == [second, best]
+    assert [robot.name for robot in mercurysim.load(run)] == ["run-of-version-0.2-3"]  # what is in best/
+    for choice, message in [
+        (99, '^robot: "99" is not accepted; give best, elites, champions, or one of the 12 robots of'),
+        ("worst", '^robot: "worst" is not accepted'),
+    ]:
+        with pytest.raises(InputError, match=message):
+            mercurysim.load(run, robot=choice)
+    with pytest.raises(InputError, match="this is none$"):
+        mercurysim.load(run.parent, robot=1)

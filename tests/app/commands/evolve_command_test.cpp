@@ -212,10 +212,12 @@ TEST_F(EvolveCommand, ARunStandsForItsChampionsItsElitesOrAnyIndividual) {
 
   std::filesystem::remove_all(path("run/best"));
   for (const auto& [arguments, message] : std::vector<std::pair<Arguments, std::string>>{
-           {{path("run"), "--robot", "32"}, "--robot: 32 is not accepted; " + path("run") + " has robots 0 to 31"},
+           {{path("run"), "--robot", "32"},
+            "--robot: \"32\" is not accepted; give best, elites, champions, or one of the 32 robots of " + path("run")},
            {{path("run"), "--robot", "worst"}, "--robot: \"worst\" is not accepted"},
            {{"sample:eel", "--robot", "3"}, "--robot: chooses robots of a run of mercury evolve; give its folder"},
-           {{path("run")}, path("run") + ": has no champions in best/; checks.csv in it says why, and --robot best"}}) {
+           {{path("run")},
+            path("run") + ": has no champions in best/; checks.csv in it says why, and the robot \"best\" is"}}) {
     const Outcome outcome = mercury(joined({"run"}, arguments));
     EXPECT_EQ(outcome.status, 2);
     EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + message));
