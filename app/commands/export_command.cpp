@@ -432,11 +432,8 @@ void add_export_command(const Command& program, const Choose& choose) {
   add_choice(command, "--format", options->format, format_words(), "The format (default: that of the file's extension)")
       .on_first_screen();
   command.find_option("--robot")
-      ->with_help(
-          "One robot of several: its name, or its number from 0; of a run folder, the individual of this number, the "
-          "best "
-          "one, the elites (all that live), or the champions in best/ (the default)")
-      .with_form("NAME|N|best|elites|champions")
+      ->with_help("One robot, by name or number from 0, or ID in a run")
+      .with_form("NAME|N")
       .on_first_screen();
   add_number(command, "--from", options->range.from, "Where to begin in a recording (default: its start)", "S")
       .on_first_screen();
@@ -476,6 +473,7 @@ void add_export_command(const Command& program, const Choose& choose) {
       "  mercury export sample:eel -o eel.glb\n"
       "  mercury export my-robots --format stl -o printed/\n"
       "  mercury export run.h5 --robot 0 -o swim.pvd          for ParaView\n"
+      "  mercury export RUN --robot 57 -o 57.stl              an individual; also best, elites and champions\n"
       "  mercury export run.h5 --still 2 --format vtu -o moments/",
       format_list()));
   command.when_chosen([options, choose, command, of_simulation] {

@@ -27,6 +27,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::vector<std::uint64_t> individuals(const RunHistory& run, const std::string& choice) {
+  try {
+    return individuals_named(run, choice);
+  } catch (const ParameterError& error) {
+    throw InputError("--robot", error.problem());
+  }
+}
+
 // Everything up to the end of standard input. Throws Interrupted after Ctrl-C.
 std::string read_standard_input() {
   constexpr int period = 100;  // between two looks at interrupted() [ms]
@@ -133,7 +141,7 @@ void RobotInputs::load_run(const fs::path& folder, std::vector<RobotFromFile>& r
     if (choice == champions_of_run)
       for (const fs::path& file : champion_files(folder)) add(file, load_robot(file));
     else
-      for (const std::uint64_t id : individuals_named(run, choice)) add_individual(id);
+      for (const std::uint64_t id : individuals(run, choice)) add_individual(id);
 }
 
 void RobotInputs::load_standard_input(std::vector<RobotFromFile>& robots,

@@ -121,10 +121,11 @@ TEST_F(EvolveCommand, RobotsWhoseObjectiveIsNotANumberAreUnsound) {
     const double speed = std::stod(speeds[i].at("score"));
     undefined += speed < 0;
     EXPECT_EQ(roots[i].at("fate"), speed < 0 ? "undefined" : "sound");
-    if (speed < 0)
+    if (speed < 0) {
       EXPECT_EQ(roots[i].at("score"), "-inf");
-    else
+    } else {
       EXPECT_NEAR(std::stod(roots[i].at("score")), std::sqrt(speed), 1e-12);
+    }
   }
   EXPECT_GT(undefined, 0);
   EXPECT_LT(undefined, 8);
@@ -234,8 +235,9 @@ TEST_F(EvolveCommand, CheckRepeatsTheCheckOfAChampion) {
   ASSERT_EQ(again.size(), 1u) << outcome.messages;
   EXPECT_EQ(again[0].at("objective"), "path");
   for (const auto& [column, value] : checks[0])
-    if (again[0].contains(column) && value.find_first_not_of("0123456789.e-") == std::string::npos && !value.empty())
+    if (again[0].contains(column) && value.find_first_not_of("0123456789.e-") == std::string::npos && !value.empty()) {
       EXPECT_DOUBLE_EQ(std::stod(again[0].at(column)), std::stod(value)) << column;
+    }
   EXPECT_EQ(again[0].at("verdict"), checks[0].at("verdict"));
 }
 
