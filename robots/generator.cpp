@@ -228,6 +228,12 @@ void validate(const MutationRequest& request) {
 // A robot as messages name it.
 static std::string shown_name(const Robot& robot) { return robot.name.empty() ? "a robot without a name" : robot.name; }
 
+static bool has_muscles(const Robot& robot) {
+  const std::span<const Material> materials = materials_of(robot);
+  return std::ranges::any_of(robot.springs,
+                             [&](const Spring& spring) { return materials[spring.material].amplitude != 0; });
+}
+
 Robot mutate_robot(const Robot& parent, const MutationRequest& request, const std::string& name) {
   const Generator* generator = generator_of(parent);
   if (generator) return generator->mutate(parent, request, name);
@@ -235,8 +241,8 @@ Robot mutate_robot(const Robot& parent, const MutationRequest& request, const st
   if (request.muscles == 0)
     throw InputError(shown_name(parent), "cannot be mutated; only " + generator_kinds() +
                                              " robots know how they were made, but --muscles 1 changes its muscles");
+  if (!has_muscles(parent)) throw InputError(shown_name(parent), "cannot be mutated; it has no muscles");
   Robot child = with_mutated_muscles(parent, request.muscles, request.seed);
-  if (child == parent) throw InputError(shown_name(parent), "cannot be mutated; it has no muscles");
   child.name = name;
   child.origin = with_ancestry(child.origin,
                                {.parents = {parent.name}, .mutation_seed = request.seed, .muscles = request.muscles});

@@ -67,7 +67,8 @@ std::vector<std::string> choices_from(nb::handle given) {
 nb::object load(nb::handle given, nb::handle robot) {
   const std::filesystem::path path = path_from("path", given);
   const std::vector<std::string> choices = choices_from(robot);
-  const bool is_one = choices.size() == 1 && (nb::hasattr(robot, "__index__") || choices.front() == best_of_run);
+  const bool is_one =
+      nb::hasattr(robot, "__index__") || (nb::isinstance<nb::str>(robot) && choices.front() == best_of_run);
   std::vector<Robot> robots;
   bool is_folder = false;
   {
@@ -89,7 +90,7 @@ nb::object load(nb::handle given, nb::handle robot) {
   if (!is_folder && robots.empty()) throw InputError(path.string(), "holds no robot, only what cannot move");
   if ((!is_folder || is_one) && robots.size() == 1) return nb::cast(shared(std::move(robots.front())));
   nb::list list;
-  for (Robot& robot : robots) list.append(shared(std::move(robot)));
+  for (Robot& one : robots) list.append(shared(std::move(one)));
   return list;
 }
 

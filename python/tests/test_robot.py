@@ -608,7 +608,7 @@ def test_robots_of_a_run():
     elites = mercurysim.load(run, robot="elites")
     assert elites[0] == best and len(elites) == 4  # its population
     assert mercurysim.load(run, robot=[1, "best"]) == [second, best]
-    assert [robot.name for robot in mercurysim.load(run)] == ["run-of-version-0.2-3"]  # what is in best/
+    assert [robot.name for robot in mercurysim.load(run)] == ["two-3"]  # as its file in best/ names it
     for choice, message in [
         (99, '^robot: "99" is not accepted; give best, elites, champions, or one of the 12 robots of'),
         ("worst", '^robot: "worst" is not accepted'),
