@@ -9,7 +9,7 @@ packages_to_build=(
   cmake ninja-build g++ pkg-config
   libtbb-dev libhwy-dev                                                  # sim
   nlohmann-json3-dev libcgal-dev libeigen3-dev libpugixml-dev zlib1g-dev # robots
-  libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev fonts-lato   # render
+  libepoxy-dev libegl-dev libgl-dev libglfw3-dev libpng-dev libstb-dev fonts-lato fonts-font-awesome   # render
   libmuparser-dev                                                        # evolution
   libcli11-dev libfmt-dev libhdf5-dev libimgui-dev libtomlplusplus-dev   # app
 )

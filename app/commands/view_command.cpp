@@ -109,6 +109,7 @@ int view(const ViewCommandOptions& options) {
     viewer.robots = window::sample_robots(name_of(viewer.configuration.environment));
     // There are no samples for the simple ocean; use those of the ocean.
     if (viewer.robots.empty()) viewer.robots = window::sample_robots("ocean");
+    viewer.welcome = true;
     return window::run_viewer(std::move(viewer));
   }
   if (const auto run = run_in(options.robots)) {

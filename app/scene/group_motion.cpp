@@ -64,12 +64,13 @@ float GroupMotion::progress_of(const Trail& trail) const {
 
 render::Bounds GroupMotion::camera_box(const render::Bounds& box, const Vector3& offset, const Room& room) const {
   if (layout_ == Layout::grid || box.empty()) return box;
-  // A ball's box would leave much room at its corners, where the robot comes only if it lies along a diagonal.
+  // A cylinder's box would leave much room at its corners, where the robot comes only if it lies along a diagonal.
   constexpr float share = 0.75f;
   render::Bounds all = box, cell;
   const Vector3 middle = offset + room.center;
-  cell.extend(middle - Vector3::all(share * room.radius));
-  cell.extend(middle + Vector3::all(share * room.radius));
+  const Vector3 half(share * room.radius, share * room.radius, room.half_height);
+  cell.extend(middle - half);
+  cell.extend(middle + half);
   if (on_land_) {
     cell.low.z = std::min(box.low.z, 0.0f);
     cell.high.z = box.high.z;

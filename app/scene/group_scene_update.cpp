@@ -240,8 +240,8 @@ void GroupScene::color(double time, SceneDetails details) {
   scene_.caption = settings_.caption;
   if (!scene_.caption.empty() && !details_.arrow_key.empty()) scene_.caption += "\n";
   scene_.caption += details_.arrow_key;
-  const std::string note = motion_.layout() == Layout::cells && settings_.shown.path
-                               ? fmt::format("a mark every {:g} m of a trail", mark_distance_)
+  const bool marked = motion_.layout() == Layout::cells && settings_.shown.path && settings_.shown.scale_bar;
+  const std::string note = marked ? fmt::format("a mark every {:g} m of a trail", mark_distance_)
                                : order_;
   if (!scene_.caption.empty() && !note.empty()) scene_.caption += "\n";
   scene_.caption += note;

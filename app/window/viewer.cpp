@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -61,6 +62,7 @@ class Viewer {
   void use_mouse();
   void draw_handles();
   void update_renderer();
+  void begin_close();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
   void draw_picture(double dt);
   void present();
@@ -102,6 +104,7 @@ class Viewer {
   std::uint64_t bodies_revision_ = 0;         // of the bodies that the renderer has
   bool camera_moved_ = false;                 // between the last two frames
   bool camera_placed_ = false;                // the camera has been placed before the first robots
+  bool begins_close_ = false;                 // it shows one robot before the group
   int redraws_ = 3;                           // frames to draw even if nothing changes
 
   // The last frame.
@@ -134,6 +137,7 @@ Viewer::Viewer(ViewerOptions options)
 Viewer::~Viewer() { save_session(context_, folder_); }
 
 void Viewer::fill_scene() {
+  begins_close_ = options_.welcome && options_.playing;
   if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
   if (!options_.files.empty()) scene_.open(options_.files);
   for (const RandomRobots& generation : options_.generations) scene_.generate(generation);
@@ -323,8 +327,21 @@ void Viewer::update_renderer() {
     camera_.set_orbit(direction_of(plan, has_ground(scene_.configuration().environment)));
     camera_.start(live.camera_boxes(), area_.aspect());
     camera_.begin(plan, robot ? robot : camera_.followed());
+    if (std::exchange(begins_close_, false)) begin_close();
     camera_placed_ = true;
   }
+}
+
+// The samples are many and small: one of them shows first what moves here.
+void Viewer::begin_close() {
+  const std::span<const render::Bounds> boxes = scene_.drawn().camera_boxes();
+  render::Bounds all;
+  for (const render::Bounds& box : boxes)
+    if (!box.empty()) all.extend(box);
+  const auto middle = std::ranges::min_element(boxes, {}, [&](const render::Bounds& box) {
+    return box.empty() ? std::numeric_limits<float>::max() : (box.center() - all.center()).norm();
+  });
+  camera_.begin_close(static_cast<std::size_t>(middle - boxes.begin()));
 }
 
 bool Viewer::leaves_gpu_to_steps() const {

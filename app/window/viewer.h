@@ -17,6 +17,7 @@ namespace mercury::window {
 
 struct ViewerOptions {
   std::vector<Robot> robots;                 // that do not come from files
+  bool welcome = false;                      // they are the samples: the camera shows one of them, then all
   std::vector<std::filesystem::path> files;  // read once the window is open
   std::vector<RandomRobots> generations;     // made once the window is open
   std::vector<AttachedMass> attached;        // pins and springs

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A panel: a tab in one of the two columns of the window, and the table of all panels.
+// A panel: the content of one of the two columns of the window, and the table of all panels.
 //
 // To add a panel, write a class that derives from Panel and a function that makes it in a new file x_panel.cpp, and add
-// a row to the table in panel_table.cpp. The tab, its tooltip, the entry in the View menu and the setting that keeps
+// a row to the table in panel_table.cpp. The icon in the rail, its tooltip, the entry in the View menu and the setting that keeps
 // the panel open derive from the row; CMake finds every *_panel.cpp in this folder.
 #pragma once
 
@@ -106,13 +106,14 @@ class Panel {
 enum class Side { left, right };
 
 struct PanelEntry {
-  const char* title;    // on the tab; also the panel's name in settings and in the event log
-  const char* tooltip;  // of the tab; the View menu shows it beside the title
+  const char* title;    // also the panel's name in settings and in the event log
+  const char* icon;     // in the rail, a letter of Font Awesome 4
+  const char* tooltip;  // of the icon; the View menu shows it beside the title
   Side side;
   std::unique_ptr<Panel> (*make)(PanelContext& context);
 };
 
-// All panels, in the order of their tabs.
+// All panels, in the order of their icons.
 std::span<const PanelEntry> panel_table();
 
 }  // namespace mercury::window

@@ -12,18 +12,18 @@ MakePanel make_robots_panel, make_browser_panel, make_ranking_panel, make_evolut
 namespace {
 
 constexpr PanelEntry table[] = {
-    {"Robots", "the robots of the scene", Side::left, make_robots_panel},
-    {"Browser", "folders of robots, with pictures", Side::left, make_browser_panel},
-    {"Ranking", "which robot went farthest", Side::left, make_ranking_panel},
-    {"Evolution", "runs of an evolution: scores, champions, families", Side::left, make_evolution_panel},
-    {"Compare", "two views, and ghosts of robots as they were", Side::left, make_compare_panel},
-    {"View", "colors, arrows, camera, appearance", Side::right, make_view_panel},
-    {"Tune", "solver, environment, materials", Side::right, make_tune_panel},
-    {"Measure", "plots over time", Side::right, make_measure_panel},
-    {"Brain", "senses, neurons and muscles of a robot that thinks", Side::right, make_brain_panel},
-    {"Video", "videos and screenshots", Side::right, make_video_panel},
-    {"Messages", "everything that the window has reported", Side::right, make_messages_panel},
-    {"Stats", "speed of the physics and of drawing", Side::right, make_stats_panel},
+    {"Robots", "\uf1b3", "the robots of the scene", Side::left, make_robots_panel},
+    {"Browser", "\uf07c", "folders of robots, with pictures", Side::left, make_browser_panel},
+    {"Ranking", "\uf091", "which robot went farthest", Side::left, make_ranking_panel},
+    {"Evolution", "\uf0e8", "runs of an evolution: scores, champions, families", Side::left, make_evolution_panel},
+    {"Compare", "\uf0db", "two views, and ghosts of robots as they were", Side::left, make_compare_panel},
+    {"View", "\uf06e", "colors, arrows, camera, appearance", Side::right, make_view_panel},
+    {"Tune", "\uf1de", "solver, environment, materials", Side::right, make_tune_panel},
+    {"Measure", "\uf201", "plots over time", Side::right, make_measure_panel},
+    {"Brain", "\uf1e0", "senses, neurons and muscles of a robot that thinks", Side::right, make_brain_panel},
+    {"Video", "\uf03d", "videos and screenshots", Side::right, make_video_panel},
+    {"Messages", "\uf0f3", "everything that the window has reported", Side::right, make_messages_panel},
+    {"Stats", "\uf0e4", "speed of the physics and of drawing", Side::right, make_stats_panel},
 };
 
 }  // namespace

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/panels.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/window/panels/commands.h"
 #include "app/window/panels/help_window.h"
@@ -38,6 +40,8 @@ bool PanelColumn::busy() const {
   return std::ranges::any_of(tabs_, [](const Tab& tab) { return tab.panel->busy(); });
 }
 
+float PanelColumn::rail_pixels() { return std::round(2.6f * ImGui::GetFontSize()); }
+
 float PanelColumn::pixels(float width, bool narrow) {
   const float text = ImGui::GetFontSize(), screen = ImGui::GetIO().DisplaySize.x;
   const float lines = width > 0 ? width : std::clamp(0.16f * screen / text, 18.0f, 30.0f);
@@ -50,15 +54,15 @@ bool PanelColumn::has(const std::string& title) const {
 
 void PanelColumn::draw(PanelContext& context, float top, float bottom, float size, std::string& open, float& width) {
   if (!has(open)) open = tabs_.front().entry->title;
-  const float screen = ImGui::GetIO().DisplaySize.x;
-  ImGui::SetNextWindowPos({right_ ? screen - size : 0, top});
+  const float screen = ImGui::GetIO().DisplaySize.x, rail = rail_pixels();
+  ImGui::SetNextWindowPos({right_ ? screen - rail - size : rail, top});
   ImGui::SetNextWindowSize({size, bottom - top});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   ImGui::Begin(id_, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  draw_tabs(context, open);
+  ImGui::TextUnformatted(open.c_str());
   ImGui::Separator();
   const auto tab = std::ranges::find_if(tabs_, [&](const Tab& other) { return other.entry->title == open; });
   // Each panel has an ImGui child of its own, which keeps its scroll position.
@@ -69,75 +73,42 @@ void PanelColumn::draw(PanelContext& context, float top, float bottom, float siz
   draw_edge(top, bottom, size, width);
 }
 
-namespace {
-
-float tab_width(const char* text) { return ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x; }
-
-}  // namespace
-
-// The tabs that have room in one row, the open one among them.
-std::vector<const PanelEntry*> PanelColumn::tabs_in_row(const std::string& open, float room, float spacing) const {
-  const auto width = [&](const PanelEntry& entry) { return tab_width(entry.title) + spacing; };
-  float used = 0;
-  for (const Tab& tab : tabs_) used += width(*tab.entry);
-  float left = room + spacing - (used > room + spacing ? tab_width(more_tabs) + spacing : 0);
-  for (const Tab& tab : tabs_)
-    if (tab.entry->title == open) left -= width(*tab.entry);
-  std::vector<const PanelEntry*> row;
+const PanelEntry* PanelColumn::draw_rail(EventLog& log, float top, float bottom, const std::string* open) {
+  const float text = ImGui::GetFontSize(), width = rail_pixels(), side = 2.1f * text;
+  ImGui::SetNextWindowPos({right_ ? ImGui::GetIO().DisplaySize.x - width : 0, top});
+  ImGui::SetNextWindowSize({width, bottom - top});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {(width - side) / 2, 0.5f * text});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0.25f * text});
+  ImGui::Begin((std::string(id_) + "rail").c_str(), nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PopStyleVar(2);
+  const PanelEntry* clicked = nullptr;
   for (const Tab& tab : tabs_) {
-    const bool is_open = tab.entry->title == open;
-    if (!is_open && width(*tab.entry) > left) left = 0;  // so that those after it wait, too
-    if (!is_open && left <= 0) continue;
-    if (!is_open) left -= width(*tab.entry);
-    row.push_back(tab.entry);
-  }
-  return row;
-}
-
-void PanelColumn::draw_tabs(PanelContext& context, std::string& open) {
-  const float spacing = 0.25f * ImGui::GetFontSize();
-  const auto choose = [&](const PanelEntry& entry) {
-    if (open == entry.title) return;
-    open = entry.title;
-    context.log.write("panel", {{"name", open}});
-  };
-  const std::vector<const PanelEntry*> row = tabs_in_row(open, ImGui::GetContentRegionAvail().x, spacing);
-  for (const PanelEntry* entry : row) {
-    if (entry != row.front()) ImGui::SameLine(0, spacing);
-    const bool on = open == entry->title;
+    const bool on = open && *open == tab.entry->title;
     ImGui::PushStyleColor(ImGuiCol_Button, on ? ImGui::GetColorU32(ImGuiCol_Header) : IM_COL32_BLACK_TRANS);
-    const bool clicked = ImGui::Button(entry->title);
-    ImGui::PopStyleColor();
-    // The tooltip appears below the tabs, so that it covers none.
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(on ? ImGuiCol_Text : ImGuiCol_TextDisabled));
+    if (ImGui::Button(fmt::format("{}##{}", tab.entry->icon, tab.entry->title).c_str(), {side, side}))
+      clicked = tab.entry;
+    ImGui::PopStyleColor(2);
+    log.item(std::string("tab.") + tab.entry->title);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    if (!on && ImGui::IsItemHovered()) {
-      ImGui::SetNextWindowPos({right_ ? high.x : low.x, high.y + 0.6f * ImGui::GetFontSize()}, ImGuiCond_Always,
-                              {right_ ? 1.0f : 0.0f, 0});
-      tooltip(entry->tooltip);
+    if (ImGui::IsItemHovered()) {  // beside the rail, so that it covers no icon
+      ImGui::SetNextWindowPos({right_ ? low.x - 0.6f * text : high.x + 0.6f * text, (low.y + high.y) / 2},
+                              ImGuiCond_Always, {right_ ? 1.0f : 0.0f, 0.5f});
+      ImGui::SetTooltip("%s: %s", tab.entry->title, tab.entry->tooltip);
     }
-    context.log.item(std::string("tab.") + entry->title);
-    if (clicked) choose(*entry);
   }
-  if (row.size() == tabs_.size()) return;
-  ImGui::SameLine(0, spacing);
-  ImGui::PushStyleColor(ImGuiCol_Button, IM_COL32_BLACK_TRANS);
-  if (ImGui::Button(more_tabs)) ImGui::OpenPopup("more");
-  ImGui::PopStyleColor();
-  context.log.item(right_ ? "tabs.right" : "tabs.left");
-  tooltip("more panels");
-  if (!ImGui::BeginPopup("more")) return;
-  for (const Tab& tab : tabs_) {
-    if (std::ranges::find(row, tab.entry) != row.end()) continue;
-    if (ImGui::MenuItem(tab.entry->title, tab.entry->tooltip)) choose(*tab.entry);
-    context.log.item(std::string("tab.") + tab.entry->title);
-  }
-  ImGui::EndPopup();
+  ImGui::End();
+  ImGui::PopStyleVar();
+  return clicked;
 }
 
 // The user drags the inner edge to change the width.
 void PanelColumn::draw_edge(float top, float bottom, float size, float& width) {
   const float grip = 0.4f * ImGui::GetFontSize(), screen = ImGui::GetIO().DisplaySize.x;
-  const float edge = right_ ? screen - size : size;
+  const float edge = right_ ? screen - rail_pixels() - size : rail_pixels() + size;
   ImGui::SetNextWindowPos({edge - grip / 2, top});
   ImGui::SetNextWindowSize({grip, bottom - top});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
@@ -153,39 +124,10 @@ void PanelColumn::draw_edge(float top, float bottom, float size, float& width) {
   }
   if (item_dragged()) {
     const float x = ImGui::GetIO().MousePos.x;
-    width = std::clamp((right_ ? screen - x : x) / ImGui::GetFontSize(), 14.0f, 60.0f);
+    width = std::clamp(((right_ ? screen - x : x) - rail_pixels()) / ImGui::GetFontSize(), 14.0f, 60.0f);
   }
   ImGui::End();
   ImGui::PopStyleVar(3);
-}
-
-bool PanelColumn::draw_handle(EventLog& log, float middle, float size, bool open) {
-  const float text = ImGui::GetFontSize(), width = 0.8f * text, height = 3.4f * text;
-  const float from = size > 0 ? size + 0.2f * text : 0;  // leaves the edge free to be dragged
-  const float left = right_ ? ImGui::GetIO().DisplaySize.x - from - width : from;
-  ImGui::SetNextWindowPos({left, middle - height / 2});
-  ImGui::SetNextWindowSize({width, height});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
-  ImGui::Begin((std::string(id_) + "handle").c_str(), nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus);
-  ImGui::PopStyleVar(3);
-  const bool clicked = ImGui::InvisibleButton("handle", {width, height}), hovered = ImGui::IsItemHovered();
-  log.item(right_ ? "handle.right" : "handle.left");
-  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(low, high, hovered ? palette().accent : palette().on_view, 0.35f * text,
-                     right_ ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersRight);
-  const float x = (low.x + high.x) / 2, y = (low.y + high.y) / 2, side = 0.22f * text,
-              tip = right_ == open ? side : -side;
-  list.AddTriangleFilled({x + tip, y}, {x - tip, y + 1.4f * tip}, {x - tip, y - 1.4f * tip},
-                         hovered ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text));
-  tooltip(open ? "collapse these panels" : "open these panels");
-  ImGui::End();
-  return clicked;
 }
 
 ViewportArea Panels::draw_frame() {
@@ -227,13 +169,17 @@ void Panels::open_column(Side side, bool open) {
 float Panels::draw_column(PanelColumn& column, Side side, float top, float bottom) {
   Preferences& preferences = context_.preferences;
   float& width = side == Side::left ? preferences.left_width : preferences.right_width;
+  std::string& panel = side == Side::left ? preferences.left_panel : preferences.right_panel;
   const bool open = column_open(side);
   const float pixels = open ? PanelColumn::pixels(width, is_narrow()) : 0;
-  if (open)
-    column.draw(context_, top, bottom, pixels, side == Side::left ? preferences.left_panel : preferences.right_panel,
-                width);
-  if (column.draw_handle(context_.log, (top + bottom) / 2, pixels, open)) open_column(side, !open);
-  return pixels;
+  if (open) column.draw(context_, top, bottom, pixels, panel, width);
+  if (const PanelEntry* clicked = column.draw_rail(context_.log, top, bottom, open ? &panel : nullptr)) {
+    if (open && panel == clicked->title)
+      open_column(side, false);
+    else
+      show(clicked->title);
+  }
+  return PanelColumn::rail_pixels() + pixels;
 }
 
 void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, double dt) {

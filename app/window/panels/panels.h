@@ -26,8 +26,8 @@
 
 namespace mercury::window {
 
-// A column of panels at one side of the window: a row of tabs at the top, with a menu of those that have no room, one
-// panel open below, an edge that can be dragged.
+// The panels at one side of the window: a rail with an icon per panel, which is always there, and beside it a column
+// with the open panel, whose edge can be dragged.
 class PanelColumn {
  public:
   // Makes the panels of panel_table() that belong to this side.
@@ -36,9 +36,10 @@ class PanelColumn {
   // Draws the column between two heights of the window, `size` pixels wide. The user changes `open`, the title of the
   // open panel, and `width` [lines of text].
   void draw(PanelContext& context, float top, float bottom, float size, std::string& open, float& width);
-  // Draws the handle at the inner edge of the column that collapses or opens it. Returns true when it was clicked.
-  // `size`: width of the column, 0 if it is collapsed [pixels].
-  bool draw_handle(EventLog& log, float middle, float size, bool open);
+  // Draws the rail between two heights of the window; `open` is the title of the open panel, if the column is open.
+  // Returns the panel whose icon was clicked.
+  const PanelEntry* draw_rail(EventLog& log, float top, float bottom, const std::string* open);
+  static float rail_pixels();
   // Converts a width to pixels; 0 lines = automatic. `narrow`: the window has room for one column only.
   static float pixels(float width, bool narrow);
   bool has(const std::string& title) const;
@@ -48,16 +49,12 @@ class PanelColumn {
   bool busy() const;
 
  private:
-  std::vector<const PanelEntry*> tabs_in_row(const std::string& open, float room, float spacing) const;
-  void draw_tabs(PanelContext& context, std::string& open);
   void draw_edge(float top, float bottom, float size, float& width);
 
   struct Tab {
     const PanelEntry* entry;
     std::unique_ptr<Panel> panel;
   };
-
-  static constexpr const char* more_tabs = "...";
 
   const char* id_;
   bool right_;

@@ -29,15 +29,24 @@ const ImWchar* glyphs() {
   return ranges;
 }
 
-void add_font(float size) {
-  const std::string_view file = embedded_file("Lato-Medium.ttf");
+void add_font(std::string_view file, float size, const ImWchar* ranges, const ImFontConfig& config) {
+  // ImGui does not write to it.
+  ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<char*>(file.data()), static_cast<int>(file.size()),
+                                             std::round(size), &config, ranges);
+}
+
+void add_text_font(float size, bool with_icons) {
+  static constexpr ImWchar icons[] = {0xf000, 0xf2e0, 0};
   ImFontConfig config;
   config.FontDataOwnedByAtlas = false;
   config.OversampleH = 2;
   config.PixelSnapH = false;
-  // ImGui does not write to it.
-  ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<char*>(file.data()), static_cast<int>(file.size()),
-                                             std::round(size), &config, glyphs());
+  add_font(embedded_file("Lato-Medium.ttf"), size, glyphs(), config);
+  if (!with_icons) return;
+  config.OversampleH = 1;
+  config.MergeMode = true;
+  config.GlyphOffset.y = std::round(0.04f * size);
+  add_font(embedded_file("fontawesome-webfont.ttf"), size, icons, config);
 }
 
 }  // namespace
@@ -71,8 +80,8 @@ void ImGuiLayer::set_appearance(render::Theme theme, float text_scale) {
 void ImGuiLayer::build_fonts() {
   const float scale = screen_scale_ * text_scale_;
   ImGui::GetIO().Fonts->Clear();
-  add_font(text_height * scale);
-  add_font(1.5f * text_height * scale);
+  add_text_font(text_height * scale, true);
+  add_text_font(1.5f * text_height * scale, false);
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
   apply_theme(theme_, scale);

@@ -16,7 +16,7 @@ struct Preferences {
   static constexpr float least_text = 0.7f, most_text = 2.5f;
   float text_scale = 1;
   bool panels = true;                        // false = hidden
-  bool left_open = true, right_open = true;  // the panel columns; false = collapsed
+  bool left_open = true, right_open = false;  // the panel columns; false = collapsed
   float left_width = 0, right_width = 0;     // of the panel columns, in lines of text; 0 = automatic
   std::string left_panel = "Robots", right_panel = "View";
   render::Quality quality = render::Quality::automatic;

@@ -36,6 +36,7 @@ void OrbitController::set_mode(CameraMode mode) {
   if (mode == CameraMode::top || mode == CameraMode::turntable) facing_.reset();
   mode_ = mode;
   glide_ = 0;
+  close_.reset();
 }
 
 // Lets go of the camera where it is.
@@ -55,6 +56,7 @@ void OrbitController::set_orbit(const render::Orbit& orbit) {
 }
 
 void OrbitController::turn(float right, float up) {
+  close_.reset();
   if (mode_ == CameraMode::top || mode_ == CameraMode::turntable) release();
   orbit_.turn(-turn_speed * right, -turn_speed * up);
   aim_.azimuth = orbit_.azimuth;
@@ -94,6 +96,11 @@ void OrbitController::begin(const CameraPlan& plan, std::optional<std::size_t> r
   robot_ = robot;
   set_mode(plan.mode);
   facing_.reset();
+}
+
+void OrbitController::begin_close(std::size_t robot) {
+  close_ = robot;
+  close_time_ = 1.2;
 }
 
 void OrbitController::look_from(float azimuth, float elevation) {
@@ -166,6 +173,12 @@ render::Camera OrbitController::at(std::span<const render::Bounds> robots, float
       [[fallthrough]];
     case CameraMode::group:
       if (all.empty()) break;
+      if (close_ && *close_ < robots.size() && close_time_ > 0) {
+        close_time_ -= dt;
+        wanted.frame(robots.subspan(*close_, 1), aspect, margin);
+        glide_to(wanted, 1e9, lag);
+        break;
+      }
       wanted.frame(robots, aspect, margin);
       glide_to(wanted, dt, lag);
       break;

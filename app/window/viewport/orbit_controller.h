@@ -35,6 +35,9 @@ class OrbitController {
   // The same without a glide.
   void start(std::span<const render::Bounds> robots, float aspect);
 
+  // After start(), in mode group: shows this robot alone for a moment, then glides to the group.
+  void begin_close(std::size_t robot);
+
   // Glides to where the eye is in this direction from the target. A camera that moves by itself then keeps the group in
   // view, and a grid should face it (facing()).
   void look_from(float azimuth, float elevation);
@@ -75,6 +78,8 @@ class OrbitController {
   render::Orbit before_;  // its angles were those of the camera before it looked down
   render::Orbit aim_;     // the end of the glide
   double glide_ = 0;      // remaining time of the glide [s]
+  std::optional<std::size_t> close_;  // the robot that is shown alone
+  double close_time_ = 0;             // remaining [s]
 };
 
 }  // namespace mercury::window

@@ -88,6 +88,52 @@ TEST(GridLayout, GridThatIsTooSmallThrows) {
   EXPECT_NO_THROW(grid_layout(robots(6), {.grid = Grid{3, 2}}));
 }
 
+// Upright cylinders, long and flat ones among them.
+std::vector<Room> rooms(int count) {
+  std::vector<Room> all;
+  for (int i = 0; i < count; ++i)
+    all.push_back({{0.3f * static_cast<float>(i), 0, 1}, 0.2f + 0.3f * static_cast<float>(i * 5 % 7), 0.2f});
+  return all;
+}
+
+TEST(CellLayout, CellsInRowsAreApartInOrderAndFillThePicture) {
+  const render::Orbit view{.azimuth = -1.3f, .elevation = 0.5f};
+  for (const float aspect : {0.6f, 1.0f, 1.8f})
+    for (const int count : {1, 2, 7, 12, 30}) {
+      const std::vector<Room> all = rooms(count);
+      std::vector<Bounds> boxes;
+      std::vector<Rectangle> cells;
+      float covered = 0;
+      for (const Room& room : all) {
+        const render::Vector3 half(room.radius, room.radius, room.half_height);
+        boxes.push_back(box(room.center - half, room.center + half));
+      }
+      const auto offsets =
+          grid_layout(boxes, {.layout = mercury::Layout::cells, .aspect = aspect, .view = view, .rooms = all});
+      Rectangle whole{1e9f, -1e9f, 1e9f, -1e9f};
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const render::Camera camera = view.camera();
+        const render::Vector3 middle = offsets[i] + all[i].center;
+        const render::Vector4 seen_middle = camera.view() * render::Vector4(middle.x, middle.y, middle.z, 1);
+        const float right = all[i].radius, up = all[i].radius * std::sin(0.5f) + all[i].half_height * std::cos(0.5f);
+        cells.push_back({seen_middle.x - right, seen_middle.x + right, seen_middle.y - up, seen_middle.y + up});
+        whole = {std::min(whole.left, cells[i].left), std::max(whole.right, cells[i].right),
+                 std::min(whole.bottom, cells[i].bottom), std::max(whole.top, cells[i].top)};
+        covered += 4 * right * up;
+        for (std::size_t j = 0; j < i; ++j) {
+          const Rectangle &p = cells[i], &q = cells[j];
+          EXPECT_TRUE(p.right < q.left || q.right < p.left || p.top < q.bottom || q.top < p.bottom);
+          EXPECT_TRUE(q.top > p.bottom) << j << " is below " << i;
+          EXPECT_TRUE(q.right < p.left || q.bottom > p.top) << j << " is neither left of " << i << " nor above";
+        }
+      }
+      // Of the smallest picture of this aspect that holds them all.
+      const float width = std::max(whole.right - whole.left, aspect * (whole.top - whole.bottom));
+      if (count < 12) continue;
+      EXPECT_GT(covered / (width * width / aspect), 0.45f) << count << " at " << aspect;
+    }
+}
+
 TEST(RaceLayout, HasOneLanePerRobotFromOneStartLine) {
   const auto boxes = robots(5);
   const auto offsets = grid_layout(

@@ -46,6 +46,10 @@ class Window:
         self.environment = dict(os.environ, DISPLAY=display.name, HOME=str(self.folder),
                                 XDG_CONFIG_HOME=str(self.folder / "config"), LIBGL_ALWAYS_SOFTWARE="1")
         self.environment.pop("WAYLAND_DISPLAY", None)
+        settings = self.folder / "config" / "mercury" / "window.json"
+        if not settings.exists():  # both columns open
+            settings.parent.mkdir(parents=True)
+            settings.write_text('{"right_open": true}')
         self.messages = open(self.folder / "messages", "w+")
         self.process = subprocess.Popen(
             [program, "view", "--device", "cpu", "--quality", "low", "--size", size, "--report", str(self.report), *arguments],
@@ -124,16 +128,10 @@ class Window:
         return round(self.items[item]["x"]), round(self.items[item]["y"])
 
     def open(self, panel):
-        """Opens a panel by its tab, or by the menu of the tabs that have no room."""
+        """Opens a panel by its icon, which would close an open one."""
         self.frame()
-        for menu in ("tabs.left", "tabs.right"):
-            if f"tab.{panel}" not in self.items and menu in self.items:
-                self.click(menu)
-                self.frame()
-                if f"tab.{panel}" not in self.items:
-                    self.key("Escape")
-                    self.frame()
-        self.click(f"tab.{panel}")
+        if f"panel.{panel}" not in self.items:
+            self.click(f"tab.{panel}")
 
     def click(self, item):
         # An item that has just opened may still move.

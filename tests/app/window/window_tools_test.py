@@ -55,12 +55,13 @@ class ToolsTest(WindowCase):
         def width():
             return window.items["view"]["width"]
 
+        rails = 4 * window.items["tab.Robots"]["x"]  # of two, in whose middles the icons are
         both = width()
         window.key("bracketleft")
         window.until("wider picture", lambda: width() > both + 200)
         one = width()
-        window.click("handle.right")
-        window.until("whole width", lambda: width() == SIZE[0])
+        window.click("tab.View")
+        window.until("whole width", lambda: width() == SIZE[0] - rails)
         window.key("bracketleft")
         window.until("left column", lambda: width() == both + SIZE[0] - one)
         self.finish(window)
@@ -70,14 +71,14 @@ class ToolsTest(WindowCase):
         self.finish(window)
         window = Window(PROGRAM, self.display, scratch(), str(SAMPLES / "eel.json"), "--paused", size="640x400")
         self.addCleanup(window.close)
-        self.assertEqual(width(), 640)
+        self.assertEqual(width(), 640 - rails)
         window.key("bracketleft")
         window.place("panel.Robots")
-        window.click("handle.right")
+        window.click("tab.View")
         window.place("panel.View")
         window.until("one column", lambda: "panel.Robots" not in window.items)
         window.key("bracketright")
-        window.until("no column", lambda: width() == 640)
+        window.until("no column", lambda: width() == 640 - rails)
         self.finish(window)
 
     def test_the_ranking_holds_still_under_the_mouse(self):
