@@ -88,6 +88,7 @@ struct Text {
   std::string text;
   float align_x = 0.5f, align_y = 0.5f;  // where the point is in the line: 0 = left and upper end, 1 = right and lower
   float size = 1;                        // of the picture's usual size of text
+  bool free = false;                     // it may move into the picture, and below other free texts
 };
 
 // Explains the colors, at the right edge of the picture: a bar for a scale, or swatches with names.

@@ -85,8 +85,22 @@ struct DrawnScene::Parts {
   std::shared_ptr<const Snapshot> snapshot;
   ViewSettings settings;  // of the last update()
   std::optional<GroupScene> scene;
+  std::optional<std::pair<render::Camera, float>> seen;
   double wall = 0;  // of the last update() [s]
   std::uint64_t revision = 0;
+  // Of the last update(), to see whether the next one changes the view.
+  struct Look {
+    std::shared_ptr<const Snapshot> snapshot;
+    ViewSettings settings;
+    std::set<RobotId> selected, hidden;
+    std::vector<render::Vector3> offsets;
+    std::pair<float, float> scale;
+    double time = 0;
+
+    friend bool operator==(const Look&, const Look&) = default;
+  };
+  Look look;
+  std::uint64_t changes = 0;
   SlowMotion slow_motion;
   SlowMotion::Shown shown;
   std::shared_ptr<PositionBridge> bridge;  // or null
@@ -154,6 +168,7 @@ void DrawnScene::update(std::shared_ptr<const Snapshot> snapshot, const ViewSett
     const RobotId id = snapshot->robots->robots[i].id;
     parts.scene->mark(i, selected.contains(id), hidden.contains(id));
   }
+  if (parts.seen) parts.scene->see(parts.seen->first, parts.seen->second);
   if (before != snapshot) parts.slow_motion.take(snapshot);
   parts.shown = parts.slow_motion.at(wall);
   parts.scene->hold(held ? snapshot->robots->index_of(*held) : std::nullopt, wall - std::exchange(parts.wall, wall));
@@ -165,7 +180,18 @@ void DrawnScene::update(std::shared_ptr<const Snapshot> snapshot, const ViewSett
   const auto positions = parts.shown.positions;
   parts.scene->scene().positions = {positions.empty() ? nullptr : &positions.data()->x, 3 * positions.size()};
   parts.show_ghosts(hidden, wall);
+  const std::span<const render::Vector3> offsets = parts.scene->offsets();
+  const render::Scale& scale = parts.scene->scene().scale;
+  Parts::Look look{std::move(snapshot),     settings,        selected, hidden, {offsets.begin(), offsets.end()},
+                   {scale.low, scale.high}, parts.shown.time};
+  if (look == parts.look) return;
+  parts.look = std::move(look);
+  ++parts.changes;
 }
+
+std::uint64_t DrawnScene::changes() const { return parts_->changes; }
+
+void DrawnScene::see(const render::Camera& camera, float aspect) { parts_->seen = {camera, aspect}; }
 
 void DrawnScene::lay_out(float aspect) {
   Parts& parts = *parts_;

@@ -30,6 +30,8 @@ class DrawnScene {
   void update(std::shared_ptr<const Snapshot> snapshot, const ViewSettings& settings, float aspect,
               const std::set<RobotId>& selected, const std::set<RobotId>& hidden, std::optional<RobotId> held,
               double wall);
+  // The camera of the view, for the next update() (GroupScene::see).
+  void see(const render::Camera& camera, float aspect);
   // Arranges the robots again in rows that suit the view's aspect ratio and the camera angles of the settings.
   void lay_out(float aspect);
 
@@ -42,6 +44,8 @@ class DrawnScene {
   // Hands positions that are on the GPU to the renderer, which has these bodies. Call it before drawing.
   void show_positions(render::Renderer& renderer);
   bool positions_on_device() const;  // of the snapshot
+  // Counts updates that changed the view.
+  std::uint64_t changes() const;
   // The scene with positions. The caller may change texts such as caption, clock and labels until the next update.
   render::Scene& scene();
   // Bounds per robot of the snapshot, with offsets. Those of exploded robots are empty unless all robots have exploded.

@@ -244,6 +244,8 @@ std::vector<ExplodedRobot> LiveScene::exploded() const {
   return robots;
 }
 std::vector<Explosion> LiveScene::take_explosions() { return parts_->physics.take_explosions(); }
-void LiveScene::pause_on_explosion(bool pause) { parts_->physics.pause_on_explosion(pause); }
+void LiveScene::pause_on_explosion(bool pause) {
+  if (std::exchange(parts_->pauses_on_explosion, pause) != pause) parts_->physics.pause_on_explosion(pause);
+}
 
 }  // namespace mercury

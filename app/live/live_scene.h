@@ -185,6 +185,7 @@ class LiveScene {
   void undo();
   void redo();
   void end_edit();
+  void forget_edits();  // there is nothing to undo or redo then
 
   // Parameters. An invalid value changes nothing: it is reported and the result is false. A change of the environment
   // is an edit of its own. Robots that come to land are set down at rest; undo takes every robot back to where and how
@@ -242,6 +243,8 @@ class LiveScene {
   // Writes the scene as a file (docs/formats.md): robots, configuration and looks. Robots that no file or seed has are
   // written beside it, into the folder NAME-robots.
   SaveResult save_scene(const std::filesystem::path& path, bool overwrite = false);
+  // The scene that was opened or saved last; empty if there was none.
+  const std::filesystem::path& scene_file() const;
   // The camera of a scene that was opened since the last call.
   std::optional<CameraPlan> take_camera();
   // Writes a robot's current pose for other programs; the file's extension says the format (app/export).

@@ -127,6 +127,7 @@ bool LiveScene::can_undo() const { return parts_->history.can_undo(); }
 bool LiveScene::can_redo() const { return parts_->history.can_redo(); }
 std::string LiveScene::undo_name() const { return parts_->history.undo_name(); }
 std::string LiveScene::redo_name() const { return parts_->history.redo_name(); }
+void LiveScene::forget_edits() { parts_->history.clear(); }
 void LiveScene::end_edit() { parts_->history.end_edit(); }
 
 void LiveScene::undo() {

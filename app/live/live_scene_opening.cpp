@@ -249,7 +249,10 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
   parts.background.begin(name, 0, [this, &parts, paths](WorkControl& control) -> Background::Finish {
     auto opened = std::make_shared<Opened>(read_robots(files_of(paths, parts.messages), control, parts.messages));
     return [this, &parts, opened] {
-      if (opened->repro) parts.replay(opened->repro, opened->file);
+      if (opened->repro) {
+        parts.replay(opened->repro, opened->file);
+        pause();  // before the explosion, so that the user sees it come
+      }
       if (opened->recording) parts.play_recording(opened->recording, opened->file);
       if (opened->scene) {
         parts.open_scene(*opened->scene, pointers_to(opened->robots));
@@ -279,6 +282,7 @@ void LiveScene::Parts::let_travel() {
 
 void LiveScene::Parts::open_scene(const SceneFile& scene, std::span<const Robot* const> robots) {
   edit("open " + scene.path().filename().string());
+  scene_file = scene.path();
   document.robots.clear();
   std::vector<std::string> notes;
   const Device device = document.configuration.device;
@@ -294,16 +298,16 @@ void LiveScene::Parts::open_scene(const SceneFile& scene, std::span<const Robot*
 void LiveScene::Parts::replay(const std::shared_ptr<const Repro>& repro, const fs::path& file) {
   edit("open " + file.filename().string());
   document.robots.clear();
+  document.surroundings = ++last_surroundings;  // undo brings back the clock and the states of now
   const Device device = document.configuration.device;
   document.configuration = repro->configuration;
   document.configuration.device = device;
   append(repro->robot, {});
   saved.note(document.robots.back().body, "");
-  physics.set_repro(document.robots.back().body, document.configuration, repro);
-  report(Severity::note,
-         fmt::format("{} explodes at {:.4g} s; it is {:.4g} s now. Changes that were made on the way are "
-                     "repeated until you change something.",
-                     document.robots.back().body.name, repro->exploded_at, time_of(repro->clock)));
+  physics.set_repro(document.robots.back().body, document.configuration, document.surroundings, repro);
+  report(Severity::note, fmt::format("{} explodes at {:.4g} s; it is {:.4g} s now: play to see it. Changes that were "
+                                     "made on the way are repeated until you change something.",
+                                     document.robots.back().body.name, repro->exploded_at, time_of(repro->clock)));
   if (repro->device_name != physics.device_name())
     report(Severity::warning,
            fmt::format("the explosion was seen on {}; this device may give another result", repro->device_name));

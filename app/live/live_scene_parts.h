@@ -137,7 +137,7 @@ struct LiveScene::Parts {
   std::optional<render::Orbit> facing;
   SceneSelection selection;
   std::set<RobotId> hidden;
-  bool playing = false;
+  bool playing = false, pauses_on_explosion = false;
   std::uint64_t stops = 0, failed_seconds = 0, failed_ghosts = 0;  // of the last snapshot
   double speed = 1;
   std::optional<CameraPlan> camera;  // of a scene that was opened
@@ -145,6 +145,7 @@ struct LiveScene::Parts {
   TimelineMarks marks;
   bool goes_on = false;  // the moment shown becomes the present; physics has not done so yet
   std::uint64_t last_surroundings = 0;
+  std::filesystem::path scene_file;  // opened or saved last
   RobotId watched_brain = 0;
   int brain_frames = 0;       // until snapshots stop reading it
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()

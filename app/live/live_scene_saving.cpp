@@ -155,11 +155,14 @@ SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
     for (std::size_t i = 0; i < wanted.beside.size() && result.ok(); ++i) {
       parts.saved.note(robots[wanted.beside[i]].robot->body, wanted.files[i].path.string());
     }
+    if (result.ok()) parts.scene_file = path;
     return result;
   } catch (const std::exception& error) {
     return not_saved(error.what());
   }
 }
+
+const fs::path& LiveScene::scene_file() const { return parts_->scene_file; }
 
 std::optional<CameraPlan> LiveScene::take_camera() { return std::exchange(parts_->camera, std::nullopt); }
 

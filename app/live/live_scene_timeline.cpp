@@ -150,6 +150,7 @@ void LiveScene::Parts::play_recording(const std::shared_ptr<TrajectoryReader>& r
   edit("open " + file.filename().string());
   marks = {};
   document.robots.clear();
+  document.surroundings = ++last_surroundings;  // undo brings back the clock and the states of now
   const Device device = document.configuration.device;
   document.configuration = recording->configuration();
   document.configuration.device = device;
@@ -159,7 +160,7 @@ void LiveScene::Parts::play_recording(const std::shared_ptr<TrajectoryReader>& r
     saved.note(document.robots.back().body, "");
     bodies.push_back(document.robots.back().body);
   }
-  physics.set_recording(std::move(bodies), document.configuration, recording);
+  physics.set_recording(std::move(bodies), document.configuration, document.surroundings, recording);
   report(Severity::note,
          fmt::format("{}: {:.4g} s of {}, recorded on {}; any change goes on simulating from there",
                      file.filename().string(), recording->time(recording->frames() - 1) - recording->time(0),

@@ -200,18 +200,18 @@ void PhysicsThread::set_scene(std::vector<LiveRobot> robots, const Configuration
     pending.scene = {std::move(robots), configuration, nullptr, nullptr, surroundings};
   });
 }
-void PhysicsThread::set_repro(const LiveRobot& robot, const Configuration& configuration,
+void PhysicsThread::set_repro(const LiveRobot& robot, const Configuration& configuration, std::uint64_t surroundings,
                               std::shared_ptr<const Repro> repro) {
   parts_->exchange.request([&](PendingCommands& pending) {
-    pending.scene = {std::vector{robot}, configuration, std::move(repro), nullptr};
+    pending.scene = {std::vector{robot}, configuration, std::move(repro), nullptr, surroundings};
     pending.steps = 0;
     pending.drop_timeline();
   });
 }
 void PhysicsThread::set_recording(std::vector<LiveRobot> robots, const Configuration& configuration,
-                                  std::shared_ptr<TrajectoryReader> recording) {
+                                  std::uint64_t surroundings, std::shared_ptr<TrajectoryReader> recording) {
   parts_->exchange.request([&](PendingCommands& pending) {
-    pending.scene = {std::move(robots), configuration, nullptr, std::move(recording)};
+    pending.scene = {std::move(robots), configuration, nullptr, std::move(recording), surroundings};
     pending.steps = 0;
     pending.drop_timeline();
   });
@@ -402,7 +402,8 @@ void PhysicsThread::Parts::prepare_changes(const PendingCommands& taken) {
 bool PhysicsThread::Parts::set_scene(const PendingCommands::Scene& scene) {
   repro.set(scene.repro);
   const Configuration before = batch.configuration();
-  const bool at_start = batch.steps() == 0, first = batch.empty() && at_start;
+  const std::int64_t steps = batch.steps();
+  const bool at_start = steps == 0, first = batch.empty() && at_start;
   const bool moves = scene.surroundings != batch.surroundings();
   bool changed = false;
   try {
@@ -412,7 +413,12 @@ bool PhysicsThread::Parts::set_scene(const PendingCommands::Scene& scene) {
     throw;
   }
   if (moves) {
-    timeline.forget_states();
+    if (batch.steps() == steps) {
+      timeline.forget_states();
+    } else {  // undo or redo
+      timeline.restart();
+      batch.cut_measures(batch.steps());
+    }
     stepping.forget_cost();
     explosions.forget_whole(*batch.robots(), batch.telemetry());
   }

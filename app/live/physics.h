@@ -66,15 +66,16 @@ class PhysicsThread {
   // robots cannot be simulated, for example for lack of memory, a message says so and no robot is simulated until the
   // next call.
   // `surroundings` names what the robots live in. With a new number, robots that come to land are set down at rest;
-  // with a number that was in use before, they continue from the states that they had when it changed.
+  // with a number that was in use before, clock and robots continue from where they were when it changed.
   void set_scene(std::vector<LiveRobot> robots, const Configuration& configuration, std::uint64_t surroundings = 0);
   // Replays a repro: simulates its robot from its start and applies its changes at their steps. reset() returns to the
   // start. Pending steps are dropped. The next set_scene() ends the replay, and later changes of the repro are not
   // applied. `configuration` is the repro's.
-  void set_repro(const LiveRobot& robot, const Configuration& configuration, std::shared_ptr<const Repro> repro);
+  void set_repro(const LiveRobot& robot, const Configuration& configuration, std::uint64_t surroundings,
+                 std::shared_ptr<const Repro> repro);
   // Plays a recording of these robots: its frames, and straight lines between them. reset() returns to its first frame.
   // go_on() ends it, and so does the next set_scene().
-  void set_recording(std::vector<LiveRobot> robots, const Configuration& configuration,
+  void set_recording(std::vector<LiveRobot> robots, const Configuration& configuration, std::uint64_t surroundings,
                      std::shared_ptr<TrajectoryReader> recording);
   void set_view(const ViewSettings& settings);  // selects the details that snapshots hold
   // Replaces all perturbations. Those on missing robots or masses are ignored.

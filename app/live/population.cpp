@@ -96,14 +96,14 @@ void Population::forget_departed() {
 
 void Population::keep_surroundings(std::uint64_t number) {
   constexpr std::size_t most = 8;  // numbers
-  std::map<RobotId, Departed>& states = surroundings_[number];
-  states.clear();
+  std::map<RobotId, Departed> states;
   std::size_t masses = 0;
   for (std::size_t i = 0; i < robots_->size(); ++i) {
     const LiveRobot& robot = robots_->robots[i];
     states[robot.id] = {robot.robot, simulation_.state(i)};
     masses += robot.robot->masses.size();
   }
+  surroundings_[number] = {simulation_.clock(), std::move(states)};
   const std::size_t fitting = masses > 0 ? std::max<std::size_t>(1, most_departed / masses) : most;
   while (surroundings_.size() > std::min(most, fitting))
     surroundings_.erase(surroundings_.begin()->first == number ? std::next(surroundings_.begin())
@@ -113,7 +113,8 @@ void Population::keep_surroundings(std::uint64_t number) {
 bool Population::restore_surroundings(std::uint64_t number) {
   const auto found = surroundings_.find(number);
   if (found == surroundings_.end()) return false;
-  for (const auto& [id, kept] : found->second)
+  simulation_.set_clock(found->second.clock);
+  for (const auto& [id, kept] : found->second.states)
     if (const auto index = robots_->index_of(id); index && robots_->robots[*index].robot == kept.robot)
       simulation_.set_state(*index, kept.state);
   surroundings_.erase(found);

@@ -26,11 +26,11 @@ class Population {
   // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials. Returns whether the
   // list changed; materials alone do not count.
   bool follow(const std::vector<LiveRobot>& wanted);
-  // Keeps the states of all robots under a number, in place of those that it had. The oldest numbers are forgotten if
-  // the states fill the memory.
+  // Keeps the clock and the states of all robots under a number, in place of those that it had. The oldest numbers are
+  // forgotten if the states fill the memory.
   void keep_surroundings(std::uint64_t number);
-  // Gives robots the states kept under a number, and forgets the number. Robots without one stay as they are. Returns
-  // whether there were any.
+  // Goes back to the clock and the states kept under a number, and forgets the number. Robots without one stay as they
+  // are. Returns whether there were any.
   bool restore_surroundings(std::uint64_t number);
   // Stops all robots that have not exploded where they are.
   void settle();
@@ -58,7 +58,11 @@ class Population {
   Simulation& simulation_;
   std::shared_ptr<const LiveRobots> robots_;
   std::map<RobotId, Departed> departed_;
-  std::map<std::uint64_t, std::map<RobotId, Departed>> surroundings_;
+  struct Surroundings {
+    Clock clock;
+    std::map<RobotId, Departed> states;
+  };
+  std::map<std::uint64_t, Surroundings> surroundings_;
   std::size_t departed_masses_ = 0;
 };
 

@@ -59,6 +59,12 @@ void EditHistory::forget_oldest(const SceneDocument& document) {
   }
 }
 
+void EditHistory::clear() {
+  past_.clear();
+  future_.clear();
+  open_key_.clear();
+}
+
 void EditHistory::undo(SceneDocument& document) {
   if (past_.empty()) return;
   Edit edit = std::move(past_.back());

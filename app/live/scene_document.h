@@ -66,6 +66,7 @@ class EditHistory {
   // An empty key always begins a new edit.
   void before_change(const SceneDocument& document, std::string name, std::string key = {});
   void end_edit() { open_key_.clear(); }
+  void clear();
   bool can_undo() const { return !past_.empty(); }
   bool can_redo() const { return !future_.empty(); }
   std::string undo_name() const { return past_.empty() ? "" : past_.back().name; }

@@ -32,6 +32,8 @@ struct CameraPlan {
   double period = 20;                     // turntable: of a turn [s of video]
   std::optional<render::Vector3> target;  // still: what it looks at, in the picture's coordinates [m]; else all robots
   std::optional<float> distance;          // still: from the target [m]
+
+  friend bool operator==(const CameraPlan&, const CameraPlan&) = default;
 };
 
 // "group", "follow", "turntable", "top", "still".

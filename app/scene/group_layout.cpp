@@ -206,8 +206,7 @@ std::vector<render::Vector3> grid_layout(std::span<const render::Bounds> robots,
     sizes.push_back({std::max(1e-3f, cell_along(robots, i, options, axes.right)),
                      std::max(1e-3f, cell_along(robots, i, options, axes.up))});
   const bool in_rows = options.layout == Layout::cells && !options.grid;
-  const std::vector<Place> places =
-      in_rows ? places_in_rows(sizes, options.aspect) : places_in_grid(sizes, options);
+  const std::vector<Place> places = in_rows ? places_in_rows(sizes, options.aspect) : places_in_grid(sizes, options);
   render::Vector3 up = axes.up;
   if (options.on_ground) {
     // On the ground, a row lies behind the previous one, at the distance at which it appears one row higher.

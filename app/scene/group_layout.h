@@ -19,7 +19,7 @@ render::Bounds rest_bounds(const Robot& robot);
 // The upright cylinder that a robot does not leave while it bends, and turns about the vertical through its center of
 // mass.
 struct Room {
-  render::Vector3 center{0, 0, 0};     // of mass, at rest [m]
+  render::Vector3 center{0, 0, 0};    // of mass, at rest [m]
   float radius = 0, half_height = 0;  // [m]
 };
 Room room_of(const Robot& robot);
@@ -35,6 +35,8 @@ float extent_along(const render::Bounds& box, const render::Vector3& direction);
 
 struct Grid {
   int columns = 1, rows = 1;
+
+  friend bool operator==(const Grid&, const Grid&) = default;
 };
 
 // The number of columns and rows with which `count` cells fill a picture best. Aspects are width / height.
@@ -59,9 +61,9 @@ struct LayoutOptions {
   bool on_ground = false;       // the grid lies on the ground and does not face the eye; heights do not change
 };
 
-// The offset of each robot. Seen from the view's direction, the robots then form a grid, or rows of cells, the first one
-// at the upper left, and none hides another while it stays in its cell. With rooms, no two of them overlap. The middle
-// is at the origin. Throws ParameterError("grid", ...) if the robots do not fit into the grid.
+// The offset of each robot. Seen from the view's direction, the robots then form a grid, or rows of cells, the first
+// one at the upper left, and none hides another while it stays in its cell. With rooms, no two of them overlap. The
+// middle is at the origin. Throws ParameterError("grid", ...) if the robots do not fit into the grid.
 std::vector<render::Vector3> grid_layout(std::span<const render::Bounds> robots, const LayoutOptions& options);
 
 }  // namespace mercury

@@ -62,6 +62,10 @@ class GroupScene {
   // The mouse pulls at this robot; `elapsed` since the last call [s]. See HeldRobot.
   void hold(std::optional<std::size_t> robot, double elapsed) { held_.hold(robot, elapsed); }
 
+  // The camera of a window, in which the scale counts the robots in view (ViewSettings::scale_all). Without a camera it
+  // counts all.
+  void see(const render::Camera& camera, float aspect) { seen_ = {camera, aspect}; }
+
   // Gives the robots to a renderer. Call it once, and again when the robots change.
   void set_bodies(render::Renderer& renderer) const;
 
@@ -108,11 +112,13 @@ class GroupScene {
   void race(double time);
   void mark_targets();
   void write_labels(std::span<const Telemetry> telemetry);
+  std::vector<bool> in_view() const;
   void fit_scale(double time);
   void color(double time, SceneDetails details);
 
   ViewSettings settings_;
   ColorScale scale_;
+  std::optional<std::pair<render::Camera, float>> seen_;
   std::vector<std::size_t> face_counts_, spring_counts_, mass_counts_;  // one per robot
   // The robots that the scale counts, and what is shown of them, at the last update().
   std::vector<bool> counted_;

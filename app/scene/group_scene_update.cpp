@@ -101,7 +101,8 @@ void GroupScene::hide_wrecks(std::span<const Telemetry> telemetry) {
     placements_[i].hidden = hidden_[i] || (torn_[i] && !placements_[i].selected);
     if (torn_[i] && placements_[i].hidden && !hidden_[i])
       shown_texts_.push_back({.at = render::Vector3(trails_[i].last()) + shown_offsets_[i],
-                              .text = fmt::format("{} exploded at {:.4g} s", names_[i], telemetry[i].exploded_at)});
+                              .text = fmt::format("{} exploded at {:.4g} s", names_[i], telemetry[i].exploded_at),
+                              .free = true});
   }
   scene_.texts = shown_texts_;
 }
@@ -204,6 +205,22 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
   scene_.labels = labels_;
 }
 
+// The robots whose values count for the scale, among those that are drawn.
+std::vector<bool> GroupScene::in_view() const {
+  std::vector<bool> all(placements_.size(), true);
+  if (!seen_ || settings_.scale_all) return all;
+  constexpr int size = 1000;  // pixels of a picture's height
+  const auto& [camera, aspect] = *seen_;
+  const int width = static_cast<int>(aspect * size);
+  std::vector<bool> seen(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const render::Vector3 middle = last_boxes_[i].center(), at = camera.project(middle, width, size);
+    seen[i] = at.z > camera.near && at.x >= 0 && at.x <= static_cast<float>(width) && at.y >= 0 &&
+              at.y <= static_cast<float>(size);
+  }
+  return std::ranges::find(seen, true) == seen.end() ? all : seen;
+}
+
 // Fits the scale to the values that are visible: those of robots that are neither hidden nor have exploded, and of what
 // is shown of them.
 void GroupScene::fit_scale(double time) {
@@ -214,12 +231,12 @@ void GroupScene::fit_scale(double time) {
   const bool on_masses = !values.mass.empty() && !on_springs && !on_faces;
   const std::vector<float>& all = on_faces ? values.face : on_masses ? values.mass : values.spring;
   const std::vector<std::size_t>& counts = on_faces ? face_counts_ : on_masses ? mass_counts_ : spring_counts_;
-  std::vector<bool> counted;
+  std::vector<bool> counted = in_view();
   std::vector<ValueRange> ranges;
   std::size_t first = 0;
   for (std::size_t i = 0; i < placements_.size(); ++i) {
-    counted.push_back(!placements_[i].hidden && !placements_[i].faulty);
-    if (counted.back() && counts[i] > 0) ranges.push_back({first, counts[i]});
+    counted[i] = counted[i] && !placements_[i].hidden && !placements_[i].faulty;
+    if (counted[i] && counts[i] > 0) ranges.push_back({first, counts[i]});
     first += counts[i];
   }
   if (all.size() != first) ranges.clear();
@@ -241,8 +258,7 @@ void GroupScene::color(double time, SceneDetails details) {
   if (!scene_.caption.empty() && !details_.arrow_key.empty()) scene_.caption += "\n";
   scene_.caption += details_.arrow_key;
   const bool marked = motion_.layout() == Layout::cells && settings_.shown.path && settings_.shown.scale_bar;
-  const std::string note = marked ? fmt::format("a mark every {:g} m of a trail", mark_distance_)
-                               : order_;
+  const std::string note = marked ? fmt::format("a mark every {:g} m of a trail", mark_distance_) : order_;
   if (!scene_.caption.empty() && !note.empty()) scene_.caption += "\n";
   scene_.caption += note;
   if (settings_.board) scene_.legend = settings_.board->legend;

@@ -26,6 +26,8 @@ struct Shown {
   bool clock = true;
   bool scale_bar = false;
   ArrowKinds arrows;
+
+  friend bool operator==(const Shown&, const Shown&) = default;
 };
 
 struct ViewSettings {
@@ -33,6 +35,7 @@ struct ViewSettings {
   std::optional<std::pair<float, float>> scale;  // of the colors; absent = fits what is visible (ColorScale)
   std::optional<render::Colormap> colormap;      // absent = that of the quantity
   bool log_scale = false;
+  bool scale_all = false;  // of a window: it counts robots outside the view, too
   Shown shown;
   render::Theme theme = render::Theme::dark;
   bool plain = false;                       // a plain backdrop rather than water or land
@@ -51,6 +54,8 @@ struct ViewSettings {
   std::shared_ptr<const Board> board;     // the robots are drawn in its cells; nullptr = no board
   bool interop = true;                    // let CUDA write into OpenGL's memory if possible
   double speed = 1;                       // simulated seconds per second of the video, for the clock
+
+  friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };
 
 // Changes the layout and shows what it needs: trails, without which nobody sees that a robot in its cell moves, and the

@@ -13,7 +13,7 @@
 namespace mercury::window {
 namespace {
 
-constexpr double interval = 0.2;        // between frames that are written [s]
+constexpr double interval = 0.05;       // between frames that are written [s]
 constexpr std::size_t max_robots = 20;  // whose positions are written
 
 // The centers of the robots, in window coordinates.

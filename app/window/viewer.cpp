@@ -37,13 +37,20 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double idle_time = 0.2;  // between frames while nothing moves [s]
+// Between frames while nothing moves [s]. Whoever reads a report waits for frames.
+constexpr double idle_time = 0.2, reported_idle_time = 0.03;
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 // True for key presses that a text field handles while the user types in it.
 bool is_text_edit(const KeyPress& press, Action action) {
   if (action == Action::help) return false;
   return !press.control || action == Action::undo || action == Action::redo || action == Action::select_all;
+}
+
+// Of both sides.
+std::uint64_t changes_of(LiveScene& scene) {
+  const DrawnScene* second = scene.second_drawn();
+  return scene.drawn().changes() + (second ? second->changes() : 0);
 }
 
 class Viewer {
@@ -104,8 +111,11 @@ class Viewer {
   std::uint64_t bodies_revision_ = 0;         // of the bodies that the renderer has
   bool camera_moved_ = false;                 // between the last two frames
   bool camera_placed_ = false;                // the camera has been placed before the first robots
+  bool began_ = false;                        // what the window was started with is there
   bool begins_close_ = false;                 // it shows one robot before the group
-  int redraws_ = 3;                           // frames to draw even if nothing changes
+  int frames_due_ = 3;                        // frames of the panels to draw even if nothing changes
+  int redraws_ = 3;                           // of the robots
+  std::uint64_t shown_changes_ = 0;           // of the scene, in the last frame of the robots
 
   // The last frame.
   std::int64_t shown_steps_ = -1;
@@ -159,19 +169,21 @@ int Viewer::run() {
     const double spent = since(last);
     window_.poll(window_.input().has_backlog() ? 0
                  : anything_moves()            ? pacing_.wait(spent, leaves_gpu_to_steps())
+                 : log_                        ? reported_idle_time
                                                : idle_time);
     const double dt = since(last);
     last = Clock::now();
-    if (window_.take_activity()) redraws_ = std::max(redraws_, 3);
+    if (window_.take_activity()) frames_due_ = 3;
     frame(std::min(dt, 0.5));
   }
   return 0;
 }
 
 bool Viewer::anything_moves() const {
-  return redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking || camera_.gliding() ||
-         camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() || recorder_.busy() ||
-         screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse() || second_.coarse();
+  return frames_due_ > 0 || redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking ||
+         camera_.gliding() || camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() ||
+         recorder_.busy() || screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse() ||
+         second_.coarse();
 }
 
 void Viewer::handle_input(const std::vector<InputEvent>& events) {
@@ -201,12 +213,18 @@ void Viewer::frame(double dt) {
   handle_input(events);
   const auto scene_begin = Clock::now();
   if (camera_placed_) scene_.face(camera_.from_above(), camera_.facing());
+  if (drawn_ > 0) scene_.drawn().see(shown_camera_, area_.aspect());
+  if (DrawnScene* second = scene_.second_drawn(); second && drawn_ > 0) second->see(shown_camera_, area_.aspect());
   scene_.frame(area_.aspect());
   run_.frame();
   if (const auto plan = scene_.take_camera()) {
     camera_.follow(std::nullopt);
     camera_.set_mode(plan->mode);
     camera_placed_ = false;
+  }
+  if (!began_ && scene_.work().empty()) {
+    scene_.forget_edits();  // undo does not go back to a window without robots
+    began_ = true;
   }
   show_messages(toasts_, scene_.take_messages());
   show_messages(toasts_, run_.take_messages());
@@ -217,6 +235,7 @@ void Viewer::frame(double dt) {
   draw_frame(events, dt);
   times_.whole = dt;
   frame_history_.add(times_);
+  frames_due_ = std::max(0, frames_due_ - 1);
   report_.write(context_, {area_, shown_camera_, shown_time_, drawn_}, times_, dt);
 }
 
@@ -247,7 +266,10 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
 
 // Two sides have a half each, and frames of the same size.
 void Viewer::split_area(const ViewportArea& whole) {
-  whole_area_ = whole;
+  const ViewportArea before = std::exchange(whole_area_, whole);
+  if (before.low.x != whole.low.x || before.low.y != whole.low.y || before.high.x != whole.high.x ||
+      before.high.y != whole.high.y)
+    redraws_ = 3;
   area_ = second_.split(scene_, whole);
   context_.aspect = area_.aspect();
   if (second_.changed()) {
@@ -292,6 +314,8 @@ void Viewer::draw_handles() {
   context_.legend = legend_.box();
   changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
   target_handle_.draw(scene_, area_, shown_camera_, log_);
+  if (mouse_.hovered_hit() && !scene_.points_at_second())
+    draw_voxel_outline(context_, *mouse_.hovered_hit(), area_, shown_camera_);
   if (changed) scene_.set_view(view);
 }
 
@@ -354,6 +378,10 @@ void Viewer::draw_picture(double dt) {
   DrawnScene& live = scene_.drawn();
   camera_.floor =
       live.scene().surroundings == render::Surroundings::none ? std::nullopt : std::optional(live.scene().floor);
+  const auto share = [](float covered, float whole) { return std::clamp(covered / std::max(1.0f, whole), 0.0f, 0.4f); };
+  const Box &legend = context_.legend, &steps = context_.first_steps;
+  camera_.free.right = legend.high.x > legend.low.x ? share(area_.high.x - legend.low.x, area_.width()) : 0;
+  camera_.free.bottom = steps.high.y > steps.low.y ? share(area_.high.y - steps.low.y, area_.height()) : 0;
   const render::Camera camera = camera_.at(live.camera_boxes(), area_.aspect(), dt);
   // A glide ends with moves too small to see, which must not keep the view coarse.
   const float least = 2e-4f * (camera.eye - camera.target).norm();
@@ -361,8 +389,9 @@ void Viewer::draw_picture(double dt) {
                   (camera.target - shown_camera_.target).norm() > least ||
                   camera.field_of_view != shown_camera_.field_of_view;
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
+  const bool changed = shown_changes_ != changes_of(scene_);
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
-  if (!moving && !stepped && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
+  if (!moving && !stepped && !changed && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
   if (pacing_.keeps_robots(leaves_gpu_to_steps(), viewport_.draw_seconds())) return;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
@@ -374,6 +403,7 @@ void Viewer::draw_picture(double dt) {
   times_.drawn = since(begin);
   shown_camera_ = camera;
   shown_steps_ = scene_.snapshot().steps;
+  shown_changes_ = changes_of(scene_);
   shown_time_ = live.scene().time;
   redraws_ = std::max(0, redraws_ - 1);
 }

@@ -124,10 +124,29 @@ void Overlay::labels(std::span<const Label> labels, std::span<const Bounds> bodi
 }
 
 void Overlay::texts(std::span<const Text> texts, const Camera& camera) {
+  std::vector<Rectangle> taken;  // by free texts
   for (const Text& t : texts) {
     const Vector3 at = camera.project(t.at, int(width_), int(height_));
     const float size = t.size * text_size_;
-    if (at.z > camera.near) text(t.text, at.x, at.y - t.align_y * size, size, t.align_x);
+    if (at.z <= camera.near) continue;
+    if (!t.free) {
+      text(t.text, at.x, at.y - t.align_y * size, size, t.align_x);
+      continue;
+    }
+    const float width = text_width(t.text, size), line = 1.2f * size;
+    Rectangle area{std::clamp(at.x - t.align_x * width, 0.0f, std::max(0.0f, width_ - width)),
+                   std::clamp(at.y - t.align_y * size, 0.0f, std::max(0.0f, height_ - line)), width, line};
+    const auto covers = [&](const Rectangle& other) {
+      return area.x < other.x + other.width && other.x < area.x + area.width && area.y < other.y + other.height &&
+             other.y < area.y + area.height;
+    };
+    // Below those that are there, or not at all.
+    for (auto other = std::ranges::find_if(taken, covers); other != taken.end();
+         other = std::ranges::find_if(taken, covers))
+      area.y = other->y + other->height;
+    if (area.y + area.height > height_) continue;
+    taken.push_back(area);
+    text(t.text, area.x, area.y, size);
   }
 }
 
@@ -148,7 +167,9 @@ void Overlay::draw_scale(const Legend& legend, std::span<const Tick> ticks, floa
   scale_bar(area, legend.scale->map);
   for (const Tick& tick : ticks) {
     const float line = area.y + (1 - tick.position) * height;
-    box({area.x + area.width, line - 0.04f * size, 0.35f * size, std::max(1.0f, 0.08f * size)}, 0, style_.text, 0.9f);
+    // Inside the bar: beside it, it would read as a second minus.
+    box({area.x + 0.7f * area.width, line - 0.04f * size, 0.3f * area.width, std::max(1.0f, 0.08f * size)}, 0,
+        style_.text, 0.9f);
     text(tick.text, area.x + area.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
   }
 }

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "app/window/panels/commands.h"
+#include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/material.h"
 
@@ -100,6 +104,50 @@ void draw_body_editor(PanelContext& context, const ViewportArea& area) {
       "panel.BodyEdit", ImGui::GetWindowPos(),
       {ImGui::GetWindowPos().x + ImGui::GetWindowWidth(), ImGui::GetWindowPos().y + ImGui::GetWindowHeight()});
   ImGui::End();
+}
+
+void draw_voxel_outline(PanelContext& context, const Hit& hit, const ViewportArea& area, const render::Camera& camera) {
+  const BodyEdit& body = context.body_edit;
+  if (body.robot == 0 || body.robot != hit.robot || !context.scene.voxel_side(hit)) return;
+  const DrawnScene& drawn = context.scene.drawn();
+  const Robot& robot = *context.scene.snapshot().robots->robots[hit.index].robot;
+  const std::span<const Vec3> positions = drawn.positions_of(hit.index);
+  // The side's corners: the triangle's, its right angle in the middle, and the one across from it.
+  std::array<std::uint16_t, 3> corners{robot.faces[*hit.face].a, robot.faces[*hit.face].b, robot.faces[*hit.face].c};
+  const auto length = [&](std::size_t i) {
+    return (render::Vector3(robot.masses[corners[(i + 1) % 3]]) - render::Vector3(robot.masses[corners[(i + 2) % 3]]))
+        .norm();
+  };
+  std::size_t middle = 0;
+  for (std::size_t i = 1; i < 3; ++i)
+    if (length(i) > length(middle)) middle = i;
+  const auto place = [&](std::size_t i) {
+    return render::Vector3(positions[corners[(middle + i) % 3]]) + drawn.offsets()[hit.index];
+  };
+  const render::Vector3 b = place(0), c = place(1), a = place(2), d = a + c - b;
+  const render::Vector3 out = (c - b).cross(a - b);  // faces turn counter-clockwise, seen from outside
+  const float edge = ((c - b).norm() + (a - b).norm()) / 2;
+  const render::Vector3 depth = (body.edit.tool == VoxelTool::add ? edge : -edge) / std::max(1e-12f, out.norm()) * out;
+  const std::array<render::Vector3, 4> side{a, b, c, d};
+  std::array<ImVec2, 8> seen;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const render::Vector3 corner = side[i % 4] + (i < 4 ? 0.0f : 1.0f) * depth;
+    const render::Vector3 at = camera.project(corner, static_cast<int>(area.width()), static_cast<int>(area.height()));
+    if (at.z <= camera.near) return;
+    seen[i] = {area.low.x + at.x, area.low.y + at.y};
+  }
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect(area.low, area.high);
+  const ImU32 color = body.edit.tool == VoxelTool::remove ? palette().bad : palette().mark;
+  for (const auto& [width, line] : {std::pair{0.28f, palette().mark_outline}, std::pair{0.14f, color}})
+    for (std::size_t i = 0; i < 4; ++i) {
+      const float thick = width * ImGui::GetFontSize();
+      list.AddLine(seen[i], seen[(i + 1) % 4], line, thick);
+      list.AddLine(seen[4 + i], seen[4 + (i + 1) % 4], line, thick);
+      list.AddLine(seen[i], seen[4 + i], line, thick);
+    }
+  list.PopClipRect();
+  context.log.item("voxel_outline", seen[0], seen[6]);
 }
 
 bool edit_body_at(PanelContext& context, const Hit& hit) {

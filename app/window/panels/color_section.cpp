@@ -27,6 +27,12 @@ bool draw_scale(ViewSettings& view, std::pair<float, float> shown, EventLog& log
     changed = true;
   }
   tooltip("on: the scale stays as it is now; off: it fits the visible values (2nd to 98th percentile)");
+  if (!view.scale) {
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("All robots", &view.scale_all);
+    log.item("color.all");
+    tooltip("on: the scale counts all robots; off: those in view");
+  }
   if (view.scale) {
     float ends[2] = {view.scale->first, view.scale->second};
     row("from, to", "the values at the ends of the color map");
@@ -40,11 +46,11 @@ bool draw_scale(ViewSettings& view, std::pair<float, float> shown, EventLog& log
 }
 
 bool draw_map(ViewSettings& view, EventLog& log) {
-  std::vector<const char*> names{"usual"};
+  std::vector<const char*> names{"automatic"};
   for (int i = 0; i < render::colormap_count; ++i)
     names.push_back(render::name_of(static_cast<render::Colormap>(i)).data());  // literals
   int index = view.colormap ? 1 + static_cast<int>(*view.colormap) : 0;
-  bool changed = combo("colors", "the color map; usual: the one that suits the quantity", index, names);
+  bool changed = combo("colors", "the color map; automatic: the one that suits the quantity", index, names);
   log.item("color.map");
   if (changed) view.colormap = index > 0 ? std::optional(static_cast<render::Colormap>(index - 1)) : std::nullopt;
   changed |= ImGui::Checkbox("Log scale", &view.log_scale);

@@ -42,6 +42,7 @@ constexpr Switch switches[] = {
     {"gravity arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.gravity; }},
     {"contact arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.contact; }},
     {"logarithmic color scale", [](ViewSettings& view) -> bool& { return view.log_scale; }},
+    {"color scale of all robots", [](ViewSettings& view) -> bool& { return view.scale_all; }},
 };
 
 // A value of a list of the view.

@@ -143,6 +143,8 @@ void toggle_body_editor(PanelContext& context);
 
 // Draws the tools at the top of the view while a body is edited, and stops when its robot is gone.
 void draw_body_editor(PanelContext& context, const ViewportArea& area);
+// Outlines the voxel that a click there would add, take away or paint.
+void draw_voxel_outline(PanelContext& context, const Hit& hit, const ViewportArea& area, const render::Camera& camera);
 
 // Applies the tool to what was clicked. Returns false if no body is edited, or the click was beside it.
 bool edit_body_at(PanelContext& context, const Hit& hit);

@@ -25,7 +25,7 @@ std::string advice_for(const ExplodedRobot& robot) {
 
 void ask_for_repro(PanelContext& context, const ExplodedRobot& robot) {
   context.dialogs.ask_files({.kind = FileRequest::Kind::folder,
-                             .title = "Save a file that reproduces the explosion",
+                             .title = "Save the explosion into a folder",
                              .button = "Save here",
                              .extensions = {".repro"},
                              .folder = context.preferences.save_folder,

@@ -184,7 +184,6 @@ void open_robots(PanelContext& context) {
                             [&context](const FileChoice& answer) {
                               const fs::path& first = answer.paths.front();
                               context.preferences.open_folder = first.parent_path().string();
-                              if (first.extension() == ".toml") context.preferences.scene = first.string();
                               open_paths(context, answer.paths);
                             });
 }
@@ -208,7 +207,7 @@ void save_scene(PanelContext& context) {
     context.toasts.show(Tone::info, "there are no robots to save in a scene");
     return;
   }
-  const fs::path last = context.preferences.scene;
+  const fs::path last = context.scene.scene_file();
   context.dialogs.ask_files({.kind = FileRequest::Kind::save,
                              .title = "Save the scene",
                              .button = "Save",
@@ -222,7 +221,6 @@ void save_scene(PanelContext& context) {
                                 SaveResult result;
                                 with_window_camera(context,
                                                    [&] { result = context.scene.save_scene(path, overwrite); });
-                                if (result.ok()) context.preferences.scene = path.string();
                                 return result;
                               });
                             });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/panels/help_window.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -88,6 +89,29 @@ ViewportArea free_part(ViewportArea area, std::initializer_list<Box> taken) {
   return area;
 }
 
+// What to do where there are no robots.
+void draw_empty_hint(PanelContext& context, const ViewportArea& view) {
+  const std::string lines[] = {
+      "No robots",
+      fmt::format("Open files ({}), or drop them here", context.keys.keys_of(Action::open)),
+      fmt::format("Make random robots ({})", context.keys.keys_of(Action::new_random)),
+  };
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float text = ImGui::GetFontSize();
+  float y = (view.low.y + view.high.y) / 2 - 2.2f * text, widest = 0;
+  for (const std::string& line : lines) widest = std::max(widest, ImGui::CalcTextSize(line.c_str()).x);
+  const float middle = (view.low.x + view.high.x) / 2;
+  const ImVec2 low{middle - widest / 2 - text, y - 0.8f * text}, high{middle + widest / 2 + text, y + 5 * text};
+  list.AddRectFilled(low, high, palette().on_view, 0.5f * text);
+  context.log.item("empty_hint", low, high);
+  for (const std::string& line : lines) {
+    const bool first = &line == lines;
+    list.AddText({middle - ImGui::CalcTextSize(line.c_str()).x / 2, y},
+                 first ? ImGui::GetColorU32(ImGuiCol_Text) : palette().faint, line.c_str());
+    y += first ? 1.9f * text : 1.4f * text;
+  }
+}
+
 }  // namespace
 
 void draw_help(bool& open, const KeyMap& keys, EventLog& log) {
@@ -125,6 +149,7 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& view, std::init
   const std::array now{used.turned, used.moved, used.zoomed, used.pulled};
   std::vector<std::size_t> shown;
   fading_ = false;
+  context.first_steps = {};
   for (std::size_t i = 0; i < gestures.size(); ++i) {
     preferences.gestures_used[i] = preferences.gestures_used[i] || now[i];
     if (preferences.gestures_used[i]) opacity_[i] -= static_cast<float>(dt) / fade_time;
@@ -132,6 +157,10 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& view, std::init
     if (preferences.gestures_used[i] && !now[i]) opacity_[i] = 0;
     fading_ = fading_ || (preferences.gestures_used[i] && opacity_[i] > 0);
     if (opacity_[i] > 0) shown.push_back(i);
+  }
+  if (context.scene.robot_count() == 0 && context.scene.work().empty()) {
+    draw_empty_hint(context, view);
+    return;
   }
   if (!context.preferences.panels) return;
   const ViewportArea area = free_part(view, taken);
@@ -152,6 +181,7 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& view, std::init
   // A narrow side has other texts there.
   if (rows.size() > 1 && (context.scene.second() || !context.scene.ghosts().empty())) return;
   float y = area.high.y - (2.1f * static_cast<float>(rows.size()) + 0.5f) * text;
+  if (!rows.empty()) context.first_steps = {{area.low.x, y}, area.high};
   for (const std::vector<std::size_t>& row : rows) {
     float width = -spacing;
     for (const std::size_t i : row) width += spacing + width_of(gestures[i]);

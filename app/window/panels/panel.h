@@ -2,8 +2,8 @@
 // A panel: the content of one of the two columns of the window, and the table of all panels.
 //
 // To add a panel, write a class that derives from Panel and a function that makes it in a new file x_panel.cpp, and add
-// a row to the table in panel_table.cpp. The icon in the rail, its tooltip, the entry in the View menu and the setting that keeps
-// the panel open derive from the row; CMake finds every *_panel.cpp in this folder.
+// a row to the table in panel_table.cpp. The icon in the rail, its tooltip, the entry in the View menu and the setting
+// that keeps the panel open derive from the row; CMake finds every *_panel.cpp in this folder.
 #pragma once
 
 #include <memory>
@@ -83,10 +83,10 @@ struct PanelContext {
   TimeCursor cursor = {};
   BodyEdit body_edit = {};
   RobotMenu robot_menu = {};
-  UsedGestures gestures = {};         // of this session
-  Box legend = {}, caption = {};      // over the viewport, in the last frame
-  float aspect = 16.0f / 9;           // width / height of the viewport in this frame
-  bool screenshot_requested = false;  // set it to take one at the end of the frame
+  UsedGestures gestures = {};                       // of this session
+  Box legend = {}, caption = {}, first_steps = {};  // over the viewport, in the last frame
+  float aspect = 16.0f / 9;                         // width / height of the viewport in this frame
+  bool screenshot_requested = false;                // set it to take one at the end of the frame
 };
 
 class Panel {

@@ -175,8 +175,7 @@ void RandomSection::draw(PanelContext& context) {
   ImGui::Checkbox("More", &advanced_);
   context.log.item("generate.more");
   tooltip("show all settings of these robots");
-  ImGui::SameLine();
-  if (ImGui::Button("Generate", {-1, 0})) generate_robots(context);
+  if (primary_button("Generate", {-1, 0})) generate_robots(context);
   context.log.item("generate");
   tooltip(with_keys(context.keys, "make the robots, and increment the seed", Action::new_random).c_str());
   for (const GeneratorParameter& parameter : generator_in(generation).parameters) {
@@ -187,7 +186,7 @@ void RandomSection::draw(PanelContext& context) {
 }
 
 float RandomSection::height(const PanelContext& context) const {
-  int rows = 4;  // kind, count, seed, buttons
+  int rows = 5;  // kind, count, seed, switches, button
   for (const GeneratorParameter& parameter : generator_in(context.creation.generation).parameters)
     if (advanced_ || !parameter.advanced) rows += rows_of(parameter);
   return static_cast<float>(rows) * ImGui::GetFrameHeightWithSpacing() + 2.2f * ImGui::GetFontSize();
@@ -206,10 +205,10 @@ void RobotsPanel::draw(PanelContext& context) {
 void RobotsPanel::draw_strengths(PanelContext& context) {
   MutationRequest& mutation = context.creation.mutation;
   auto body = static_cast<float>(mutation.strength), muscles = static_cast<float>(mutation.muscles);
-  if (slider("mutation", "how much mutants differ in their bodies; 1 = a little", body, 1, {0, 10, "%.1f"}))
+  if (slider("body mutation", "how much mutants differ in their bodies; 1 = a little", body, 1, {0, 10, "%.1f"}))
     mutation.strength = std::max(0.0, static_cast<double>(body));
   context.log.item("mutation.strength");
-  if (slider("of muscles", "how much mutants differ in their muscles", muscles, 0, {0, 10, "%.1f"}))
+  if (slider("muscle mutation", "how much mutants differ in their muscles", muscles, 0, {0, 10, "%.1f"}))
     mutation.muscles = std::max(0.0, static_cast<double>(muscles));
 }
 
@@ -237,7 +236,7 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   context.log.item("breed");
   explain("add a child of the two selected robots", Action::breed);
   ImGui::SameLine();
-  if (ImGui::Button("Evolve these...", {half, 0})) evolve_selected(context);
+  if (primary_button("Evolve these...", {half, 0})) evolve_selected(context);
   context.log.item("evolve");
   explain("let the selected robots evolve, in the background", Action::evolve);
   ImGui::EndDisabled();
@@ -247,7 +246,7 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   explain("open robot files, or drop files and folders on the window", Action::open);
   ImGui::SameLine();
   ImGui::BeginDisabled(scene.robot_count() == 0);
-  if (ImGui::Button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
+  if (primary_button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
   context.log.item("save");
   explain("save the selected robots, or all if none is selected", Action::save);
   ImGui::SameLine();

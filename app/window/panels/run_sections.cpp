@@ -162,14 +162,19 @@ class Tree {
     draw_text({corner.x + columns_.robot, top}, 1, color, std::to_string(row.individual->id));
     draw_text({corner.x + columns_.right, top}, 1, color, score_text(score));
     const float left = corner.x + columns_.bar, most = columns_.right - columns_.number() - columns_.bar;
-    if (most > columns_.text)
-      ImGui::GetWindowDrawList()->AddRectFilled(
-          {left, middle - 0.22f * columns_.text},
-          {left + std::max(2.0f, most * range_.share(score)), middle + 0.22f * columns_.text}, range_.color(score),
-          0.12f * columns_.text);
+    if (most > columns_.text) draw_bar(left, most, middle, score);
   }
 
  private:
+  // From 0 to the score.
+  void draw_bar(float left, float most, float middle, double score) const {
+    ScoreRange range = range_;
+    range.add(0);
+    const auto [from, to] = std::minmax({range.share(0), range.share(score)});
+    ImGui::GetWindowDrawList()->AddRectFilled({left + most * from, middle - 0.22f * columns_.text},
+                                              {left + std::max(2.0f, most * to), middle + 0.22f * columns_.text},
+                                              range_.color(score), 0.12f * columns_.text);
+  }
   void draw_lines(std::size_t index, float left, float middle) const {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const Row& row = rows_[index];

@@ -332,7 +332,7 @@ bool EnvironmentChoice::draw_list(PanelContext& context, Configuration& configur
   std::string help;
   for (const EnvironmentPreset& preset : environment_presets)
     help.append(help.empty() ? "" : ". ").append(preset.name).append(": ").append(preset.help);
-  row("where", help.c_str());
+  row("environment", help.c_str());
   const std::string now(name_of(configuration.environment));
   const bool open = ImGui::BeginCombo("##environment", now.c_str());
   if (!open) context.log.item("tune.environment");

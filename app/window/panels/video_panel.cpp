@@ -165,7 +165,9 @@ void draw_recording_sign(ImDrawList& list, PanelContext& context, const Viewport
   const auto seconds = static_cast<long>(context.recorder.seconds());
   const std::string time = fmt::format("{}:{:02}", seconds / 60, seconds % 60);
   const float text = ImGui::GetFontSize();
-  const ImVec2 low{area.low.x + 1.2f * text, area.low.y + 0.8f * text};
+  // Below the caption.
+  const float top = std::max(area.low.y, context.caption.high.y);
+  const ImVec2 low{area.low.x + 0.6f * text, top + 0.8f * text};
   const ImVec2 high{low.x + 1.9f * text + ImGui::CalcTextSize(time.c_str()).x, low.y + 1.5f * text};
   const float middle = (low.y + high.y) / 2;
   list.AddRectFilled(low, high, palette().on_view, 0.4f * text);

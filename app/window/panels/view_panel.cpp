@@ -113,7 +113,7 @@ bool draw_arrow_section(ViewSettings& view, const Environment& environment, cons
     changed = true;
   }
   log.item("arrows.density");
-  if (slider("threshold", "arrows weaker than this share of the usual strongest are left out", threshold, 0,
+  if (slider("threshold", "arrows weaker than this share of the strongest are left out", threshold, 0,
              {0, 100, "%.0f %%"})) {
     shown.arrows.threshold = std::clamp(threshold / 100, 0.0f, 1.0f);
     changed = true;
@@ -175,12 +175,14 @@ void draw_camera_section(OrbitController& camera, const KeyMap& keys, EventLog& 
       {CameraMode::follow, "Follow", "follows the selected robot, or the group", Action::follow},
       {CameraMode::turntable, "Circle", "circles the group", Action::turntable},
       {CameraMode::top, "Top", "looks straight down", Action::top_view}};
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0.25f * ImGui::GetFontSize(), ImGui::GetStyle().FramePadding.y});
   for (const Mode& mode : modes) {
     if (mode.mode != CameraMode::still) ImGui::SameLine(0, 0.3f * ImGui::GetFontSize());
     if (toggle_button(mode.name, camera.mode() == mode.mode)) camera.set_mode(mode.mode);
     log.item(std::string("camera.") + mode.name);
     tooltip((mode.action ? with_keys(keys, mode.meaning, *mode.action) : mode.meaning).c_str());
   }
+  ImGui::PopStyleVar();
   float degrees = camera.field_of_view * 57.29578f;
   if (slider("field of view", "vertical; a small angle acts like a telescope", degrees, 0.6f * 57.29578f,
              {5, 90, "%.0f\xc2\xb0"}))
@@ -199,8 +201,8 @@ bool draw_layout(ViewSettings& view, int robots, EventLog& log) {
   log.item("layout");
   if (view.layout != Layout::race) {
     int columns = view.grid ? static_cast<int>(view.grid->columns) : 0;
-    row("columns", "of the grid; 0 = automatic");
-    if (ImGui::InputInt("##columns", &columns)) {
+    row("columns", "of the grid");
+    if (number_slider("##columns", columns, 0, std::clamp(robots, 1, 1000), columns > 0 ? "%d" : "automatic")) {
       columns = std::clamp(columns, 0, 1000);
       view.grid =
           columns > 0 ? std::optional(Grid{columns, std::max(1, (robots + columns - 1) / columns)}) : std::nullopt;

@@ -138,10 +138,10 @@ std::string load_keys(KeyMap& keys, const std::filesystem::path& file) {
   std::string text(most_bytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad() || (stream.gcount() == 0 && !stream.eof()))
-    return fmt::format("{}: cannot be read; all keys are the usual ones", file.string());
+    return fmt::format("{}: cannot be read; all keys are the default ones", file.string());
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > most_bytes)
-    return fmt::format("{}: is longer than 64 KiB; all keys are the usual ones", file.string());
+    return fmt::format("{}: is longer than 64 KiB; all keys are the default ones", file.string());
   const std::string problem = keys.read(text);
   return problem.empty() ? problem : fmt::format("{}:{}", file.string(), problem);
 }

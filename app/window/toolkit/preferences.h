@@ -15,14 +15,13 @@ struct Preferences {
   WindowSize size;
   static constexpr float least_text = 0.7f, most_text = 2.5f;
   float text_scale = 1;
-  bool panels = true;                        // false = hidden
+  bool panels = true;                         // false = hidden
   bool left_open = true, right_open = false;  // the panel columns; false = collapsed
-  float left_width = 0, right_width = 0;     // of the panel columns, in lines of text; 0 = automatic
+  float left_width = 0, right_width = 0;      // of the panel columns, in lines of text; 0 = automatic
   std::string left_panel = "Robots", right_panel = "View";
   render::Quality quality = render::Quality::automatic;
   std::string folder;                    // last shown in the browser
   std::string open_folder, save_folder;  // last used in the file dialogs
-  std::string scene;                     // file that was opened or saved last; not kept for the next start
   bool pause_on_explosion = false;
   static constexpr int least_timeline = 16, most_timeline = 16384;
   std::string compared;                 // settings of the second view, as it was last

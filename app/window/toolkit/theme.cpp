@@ -101,6 +101,7 @@ void apply_theme(render::Theme theme, float scale) {
   set_spacing(style, scale);
   set_colors(style, base);
   chosen.accent = ImGui::GetColorU32(hex(base.accent));
+  chosen.accent_hovered = ImGui::GetColorU32(hex(dark ? 0x46b1e6 : 0x2b90c8));
   chosen.good = ImGui::GetColorU32(hex(dark ? 0x4cc38a : 0x1c7f4d));
   chosen.warning = ImGui::GetColorU32(hex(dark ? 0xe9b44c : 0x9a6700));
   chosen.bad = ImGui::GetColorU32(hex(dark ? 0xf0705f : 0xc2301f));

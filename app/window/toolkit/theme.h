@@ -14,7 +14,7 @@ void apply_theme(render::Theme theme, float scale);
 
 // Colors in addition to ImGui's own, from the theme that was applied last.
 struct Palette {
-  ImU32 accent, good, warning, bad, faint, grid, panel, on_view;
+  ImU32 accent, accent_hovered, good, warning, bad, faint, grid, panel, on_view;
   ImU32 mark, mark_outline;  // contrast with everything in the view
 };
 const Palette& palette();

@@ -188,14 +188,15 @@ void note(const char* text) {
   ImGui::PopStyleColor();
 }
 
-bool toggle_button(const char* text, bool on) {
-  if (on) {
-    ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
-    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, palette().accent);
-    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_WHITE);
-  }
-  const bool clicked = ImGui::Button(text);
-  if (on) ImGui::PopStyleColor(3);
+bool toggle_button(const char* text, bool on) { return on ? primary_button(text) : ImGui::Button(text); }
+
+bool primary_button(const char* text, ImVec2 size) {
+  ImGui::PushStyleColor(ImGuiCol_Button, palette().accent);
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, palette().accent_hovered);
+  ImGui::PushStyleColor(ImGuiCol_ButtonActive, palette().accent);
+  ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32_WHITE);
+  const bool clicked = ImGui::Button(text, size);
+  ImGui::PopStyleColor(4);
   return clicked;
 }
 

@@ -37,6 +37,9 @@ void right_aligned(const std::string& text);
 // A button that is highlighted while `on`. Returns true when it was clicked.
 bool toggle_button(const char* text, bool on);
 
+// The button of what a panel is for, in the accent color while it is enabled.
+bool primary_button(const char* text, ImVec2 size = {0, 0});
+
 // Sliders as ImGui's, whose number steps aside when the knob reaches it. Ctrl-click types a value. They return true
 // when the value changed.
 bool number_slider(const char* id, float& value, float low, float high, const char* format, bool logarithmic = false);

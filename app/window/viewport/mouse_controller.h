@@ -38,6 +38,8 @@ class MouseController {
   void draw(const ViewportArea& area, const render::Camera& camera, const Box& legend);
   // The robot under the pointer, by its index in the snapshot.
   std::optional<std::size_t> hovered() const;
+  // What it is over there.
+  const std::optional<Hit>& hovered_hit() const { return hovered_; }
   // True while a button is held.
   bool busy() const { return drag_ != Drag::none; }
   const UsedGestures& used() const { return used_; }

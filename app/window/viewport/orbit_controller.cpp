@@ -78,14 +78,14 @@ void OrbitController::zoom(float factor) {
 void OrbitController::frame(std::span<const render::Bounds> robots, float aspect) {
   if (all_of(robots).empty()) return;
   aim_ = orbit_;
-  aim_.frame(robots, aspect, margin);
+  aim_.frame(robots, aspect, margin, free);
   if (mode_ != CameraMode::still && mode_ != CameraMode::follow) release();
   glide_ = glide_time;
 }
 
 void OrbitController::start(std::span<const render::Bounds> robots, float aspect) {
   field_of_view = orbit_.field_of_view;
-  if (!all_of(robots).empty()) orbit_.frame(robots, aspect, margin);
+  if (!all_of(robots).empty()) orbit_.frame(robots, aspect, margin, free);
   glide_ = 0;
 }
 
@@ -179,14 +179,14 @@ render::Camera OrbitController::at(std::span<const render::Bounds> robots, float
         glide_to(wanted, 1e9, lag);
         break;
       }
-      wanted.frame(robots, aspect, margin);
+      wanted.frame(robots, aspect, margin, free);
       glide_to(wanted, dt, lag);
       break;
     case CameraMode::top:
       orbit_.azimuth = wanted.azimuth = -std::numbers::pi_v<float> / 2;
       orbit_.elevation = wanted.elevation = std::numbers::pi_v<float> / 2;
       if (all.empty()) break;
-      wanted.frame(robots, aspect, margin);
+      wanted.frame(robots, aspect, margin, free);
       glide_to(wanted, dt, lag);
       break;
   }

@@ -60,6 +60,8 @@ class OrbitController {
 
   float turn_period = 20;      // of mode turntable [s]
   float field_of_view = 0.6f;  // [rad]
+  // Edges of the view that a legend or other text covers; framed robots stay clear of them.
+  render::Insets free;
   // Height of the floor, above which the camera stays [m]; none = it goes everywhere.
   std::optional<float> floor;
   // True during a glide.
@@ -75,9 +77,9 @@ class OrbitController {
   bool from_above_ = false;
   std::optional<render::Orbit> facing_;  // its angles
   render::Orbit orbit_;
-  render::Orbit before_;  // its angles were those of the camera before it looked down
-  render::Orbit aim_;     // the end of the glide
-  double glide_ = 0;      // remaining time of the glide [s]
+  render::Orbit before_;              // its angles were those of the camera before it looked down
+  render::Orbit aim_;                 // the end of the glide
+  double glide_ = 0;                  // remaining time of the glide [s]
   std::optional<std::size_t> close_;  // the robot that is shown alone
   double close_time_ = 0;             // remaining [s]
 };

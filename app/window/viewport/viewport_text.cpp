@@ -257,7 +257,8 @@ bool LegendView::draw_scale(const render::Legend& legend, const Bar& bar, ViewSe
   }
   for (const render::Tick& tick : render::ticks_of(bar.axis)) {
     const float y = bar.bottom - tick.position * (bar.bottom - bar.top);
-    list.AddLine({bar.right, y}, {bar.right + 0.25f * text, y}, text_color());
+    // Inside the bar: beside it, it would read as a second minus.
+    list.AddLine({bar.right - 0.3f * text, y}, {bar.right, y}, text_color());
     list.AddText({bar.right + 0.4f * text, y - 0.5f * text}, text_color(), tick.text.c_str());
   }
   const bool high = drag_end(true, legend, bar, view, log);

@@ -101,8 +101,10 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
     LiveScene again(test::on_cpu());
     test::make_robots(again, 1);
     again.step(10);
+    again.play();
     again.open({file});
     again.wait_until_done();
+    EXPECT_FALSE(again.playing()) << "it waits before the explosion";
     EXPECT_EQ(test::names_of(again), std::vector<std::string>{"voxel-9-0"});
     EXPECT_NEAR(again.snapshot().time, 0.025, 1e-12);
     for (int round = 0; round < 2; ++round) {

@@ -386,6 +386,25 @@ TEST_P(PlayedRecording, GoesOnFromAFrameAsTheRobotsDid) {
   EXPECT_EQ(scene.snapshot().steps, 40) << "the live run has a timeline of its own";
 }
 
+TEST_P(PlayedRecording, UndoBringsBackTheSceneAndItsClock) {
+  const LiveSceneOptions options{.configuration = {.device = {.kind = GetParam()}}};
+  LiveScene scene(options), uninterrupted(options);
+  for (LiveScene* one : {&scene, &uninterrupted}) {
+    test::make_robots(*one, 2);
+    make_steps(*one, 70);
+  }
+  open(scene);
+  scene.seek(0.045);
+  scene.wait_until_done();
+  scene.undo();
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().timeline.recording);
+  EXPECT_EQ(scene.snapshot().steps, 70);
+  EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), uninterrupted.snapshot().positions.host()));
+  for (LiveScene* one : {&scene, &uninterrupted}) make_steps(*one, 30);
+  EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), uninterrupted.snapshot().positions.host()));
+}
+
 TEST_P(PlayedRecording, PlaysToItsEndAndPausesThere) {
   LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
   open(scene);

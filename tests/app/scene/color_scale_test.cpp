@@ -184,8 +184,16 @@ TEST(GroupScene, TheScaleFitsRobotsThatAreVisible) {
   EXPECT_EQ(high(1), 1);
   scene.mark(1, true, false);
   EXPECT_EQ(high(1), 100);
+  scene.mark(1, false, false);
+  const render::Vector3 middle = scene.bounds()[0].center();
+  scene.see({.eye = middle - render::Vector3(0, 3, 0), .target = middle}, 1);
+  EXPECT_EQ(high(1.01), 1) << "the second robot is outside the view";
+  ViewSettings settings = colored_by("speed");
+  settings.scale_all = true;
+  scene.set_settings(settings);
+  EXPECT_EQ(high(1.03), 100);
   telemetry[1].exploded = true;
-  EXPECT_EQ(high(1.01), 1);
+  EXPECT_EQ(high(1.04), 1);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ class Display:
 
 
 class Window:
-    def __init__(self, program, display, folder, *arguments, size="{}x{}".format(*SIZE)):
+    def __init__(self, program, display, folder, *arguments, size="{}x{}".format(*SIZE), first_start=False):
         self.folder = Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.report = self.folder / "report.jsonl"
@@ -47,8 +47,8 @@ class Window:
                                 XDG_CONFIG_HOME=str(self.folder / "config"), LIBGL_ALWAYS_SOFTWARE="1")
         self.environment.pop("WAYLAND_DISPLAY", None)
         settings = self.folder / "config" / "mercury" / "window.json"
-        if not settings.exists():  # both columns open
-            settings.parent.mkdir(parents=True)
+        if not first_start and not settings.exists():  # both columns open
+            settings.parent.mkdir(parents=True, exist_ok=True)
             settings.write_text('{"right_open": true}')
         self.messages = open(self.folder / "messages", "w+")
         self.process = subprocess.Popen(
@@ -108,6 +108,13 @@ class Window:
     def frame(self, accept=lambda frame: True, since=None):
         """The next frame event that `accept` accepts."""
         return self.wait("frame", self.mark() if since is None else since, accept)
+
+    def standing(self):
+        """The next frame in which the camera is where it was in the frame before."""
+        before = self.frame()
+        while (frame := self.frame())["eye"] != before["eye"]:
+            before = frame
+        return frame
 
     def pressed(self):
         """The number of presses that the window has handled, as of the last frame event."""

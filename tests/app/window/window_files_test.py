@@ -37,6 +37,21 @@ class FilesTest(WindowCase):
         again.wait("robots", since, lambda event: event["names"][-1:] == [saved["name"]])
         self.finish(again)
 
+    def test_a_scene_that_cannot_be_opened_is_not_offered_for_saving(self):
+        window = self.small("--paused")
+        bad = self.folder / "bad.toml"
+        bad.write_text("robots = 1")
+        since = window.mark()
+        window.key("ctrl+o")
+        window.dialog(str(bad))
+        window.wait("message", since, lambda event: "bad.toml" in event["text"])
+        since = window.mark()
+        window.key("ctrl+s")
+        window.dialog("")
+        self.assertEqual([Path(file).name for file in window.wait("saved", since)["files"]], ["scene.toml"])
+        self.assertEqual(bad.read_text(), "robots = 1")
+        self.finish(window)
+
     def test_a_save_that_fails_leaves_the_dialog_as_it_was(self):
         window = self.small("--paused")
         window.click("robot.0")

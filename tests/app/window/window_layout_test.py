@@ -114,6 +114,7 @@ class LayoutTest(WindowCase):
         window = self.open("--random", "voxel:1000", "--paused")
         window.frame()
         window.key("t")
+        window.frame(lambda frame: frame["camera"] == "turntable")
         self.assertEqual(window.frame(lambda frame: frame["where"])["camera"], "turntable")
         self.finish(window)
 

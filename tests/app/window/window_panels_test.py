@@ -21,7 +21,7 @@ RIGHT = ["View", "Tune", "Measure", "Brain", "Video", "Messages", "Stats"]
 
 class PanelsTest(WindowCase):
     def test_every_panel_opens(self):
-        window = self.small()
+        window = self.small("--paused")
         for panel in LEFT[1:] + RIGHT[1:] + [LEFT[0], RIGHT[0]]:
             since = window.mark()
             window.open(panel)
@@ -115,7 +115,8 @@ class PanelsTest(WindowCase):
     def test_a_selected_robot_keeps_its_colors(self):
         window = self.small("--paused", "--color", "strain")
         window.key("f")
-        x, y = map(round, window.frame(lambda frame: len(frame["where"]) == 2)["where"][0])
+        window.frame(lambda frame: len(frame["where"]) == 2)
+        x, y = map(round, window.standing()["where"][1])
         aside = window.place("play.play") if "play.play" in window.items else (SIZE[0] // 2, SIZE[1] - 5)
         window.do("mousemove", *aside)
         window.frame()

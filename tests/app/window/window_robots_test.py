@@ -162,7 +162,9 @@ class RobotsTest(WindowCase):
         for tool in ("Add", "Paint", "Take away"):
             window.click(f"edit.{tool}")
             since = window.mark()
-            window.do("mousemove", x, y, "click", 1)
+            window.do("mousemove", x, y)
+            window.place("voxel_outline")
+            window.do("click", 1)
             if tool != "Paint":  # which may paint what has the material already
                 masses.append(window.wait("edited", since)["masses"])
         self.assertEqual(masses, [31, 27])

@@ -63,11 +63,11 @@ class ToolsTest(WindowCase):
         window.click("tab.View")
         window.until("whole width", lambda: width() == SIZE[0] - rails)
         window.key("bracketleft")
-        window.until("left column", lambda: width() == both + SIZE[0] - one)
+        window.until("left column", lambda: width() == both + SIZE[0] - rails - one)
         self.finish(window)
         # The choice is kept for the next start.
         window = self.window_in(self.folder, "--paused")
-        self.assertEqual(width(), both + SIZE[0] - one)
+        self.assertEqual(width(), both + SIZE[0] - rails - one)
         self.finish(window)
         window = Window(PROGRAM, self.display, scratch(), str(SAMPLES / "eel.json"), "--paused", size="640x400")
         self.addCleanup(window.close)
@@ -79,6 +79,35 @@ class ToolsTest(WindowCase):
         window.until("one column", lambda: "panel.Robots" not in window.items)
         window.key("bracketright")
         window.until("no column", lambda: width() == 640 - rails)
+        self.finish(window)
+
+    def test_the_first_start_shows_one_robot_and_then_all(self):
+        window = Window(PROGRAM, self.display, scratch(), first_start=True)
+        self.addCleanup(window.close)
+        near = window.frame(since=0)
+        self.assertIn("panel.Robots", window.items)
+        self.assertNotIn("panel.View", window.items)
+        self.assertTrue(near["playing"])
+        self.assertEqual(near["camera"], "group")
+        far = window.frame(lambda frame: frame["distance"] > 2 * near["distance"])
+        self.assertLess(far["time"], 15)
+        window.click("tab.View")
+        window.place("panel.View")
+        window.click("tab.View")
+        window.until("closed column", lambda: "panel.View" not in window.items)
+        self.finish(window)
+
+    def test_undo_ends_at_the_first_scene_and_an_empty_one_has_a_hint(self):
+        window = self.small("--paused")
+        window.wait("robots", accept=lambda event: event["count"] == 2)
+        since = window.mark()
+        window.key("ctrl+z")
+        window.click("clear")
+        window.place("empty_hint")
+        self.assertEqual(window.wait("robots", since)["count"], 0, "the undo before changed nothing")
+        window.key("ctrl+z")
+        window.wait("robots", since, lambda event: event["count"] == 2)
+        window.until("no hint", lambda: "empty_hint" not in window.items)
         self.finish(window)
 
     def test_the_ranking_holds_still_under_the_mouse(self):
@@ -137,12 +166,14 @@ class ToolsTest(WindowCase):
     def test_a_recording_shows_a_sign_that_is_not_in_the_film(self):
         if shutil.which("ffmpeg") is None:
             self.skipTest("this machine has no ffmpeg")
-        window = self.small("--paused")
+        window = self.small("--paused", "--caption", "two swimmers")
         window.open("Video")
         since = window.mark()
         window.click("video.record")
         file = window.wait("recording", since)["file"]
         sign = window.until("a sign", lambda: window.items.get("recording.sign"))
+        caption = window.items["caption"]
+        self.assertGreater(sign["y"] - sign["height"] / 2, caption["y"] + caption["height"] / 2)
         rows, columns = (slice(int(sign[at] - sign[size] / 2), int(sign[at] + sign[size] / 2))
                          for at, size in (("y", "height"), ("x", "width")))
 
