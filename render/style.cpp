@@ -77,14 +77,14 @@ Style light_plain() {
 // Evening: a low sun, long shadows, haze.
 Style dark_land() {
   Style s = dark_plain();
-  s.to_key = {-0.72f, -0.40f, 0.62f};
-  s.key_light = {3.05f, 2.62f, 2.10f};
-  s.sky_light = {0.30f, 0.36f, 0.48f};
-  s.ground_light = {0.12f, 0.11f, 0.095f};
+  s.to_key = {-0.76f, -0.42f, 0.50f};
+  s.key_light = {3.75f, 2.85f, 1.95f};
+  s.sky_light = {0.27f, 0.34f, 0.50f};
+  s.ground_light = {0.15f, 0.12f, 0.085f};
   s.key_size = 0.085f;
-  s.backdrop_high = {0.105f, 0.110f, 0.125f};
-  s.backdrop_low = {0.012f, 0.022f, 0.050f};
-  s.floor_color = {0.098f, 0.090f, 0.078f};
+  s.backdrop_high = {0.345f, 0.255f, 0.200f};
+  s.backdrop_low = {0.018f, 0.070f, 0.210f};
+  s.floor_color = {0.150f, 0.122f, 0.088f};
   s.line_color = {0.26f, 0.26f, 0.25f};
   s.fog = {0.10f, 0.11f, 0.13f};
   return s;

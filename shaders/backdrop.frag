@@ -22,7 +22,7 @@ float shafts(vec3 direction) {
 vec3 sky(vec3 direction) {
   float high = max(direction.z, 0.0);
   vec3 haze = frame.backdrop_high.rgb, zenith = frame.backdrop_low.rgb;
-  vec3 light = mix(haze, zenith, 1.0 - exp(-3.2 * high));
+  vec3 light = mix(haze, zenith, 1.0 - exp(-4.2 * high));
   float sun = max(dot(direction, frame.to_key.xyz), 0.0);
   float bright = sun * sun * sun;
   light += haze * (0.28 * bright + 0.5 * pow(sun, 48.0)) * frame.key_light.rgb / frame.key_light.g;

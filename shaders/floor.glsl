@@ -64,7 +64,10 @@ vec3 sand(vec2 point) {
   vec2 slope = (tile.xy - 0.5) * 1.1;
   vec3 normal = normalize(vec3(-slope, 1.0));
   float n_l = max(dot(normal, frame.to_key.xyz), 0.0);
-  vec3 light = frame.key_light.rgb * key * n_l / 1.6 * caustics(surface_point(vec3(point, frame.ground.w)), 0.0, 0.4) +
-               frame.sky_light.rgb * (0.7 + 0.3 * normal.z);
-  return frame.floor_color.rgb * (0.75 + 0.5 * tile.z) * light;
+  // Waves come in groups: the pattern is strong in some places and faint in others.
+  float broad = ground_tile(mat2(0.8, 0.6, -0.6, 0.8) * point, 0.11).a;
+  float focused = caustics(surface_point(vec3(point, frame.ground.w)), 0.0, 0.4);
+  focused = mix(1.0, focused, 0.15 + 1.15 * smoothstep(0.34, 0.64, broad));
+  vec3 light = frame.key_light.rgb * key * n_l / 1.6 * focused + frame.sky_light.rgb * (0.7 + 0.3 * normal.z);
+  return frame.floor_color.rgb * (0.62 + 0.5 * tile.z + 0.28 * broad) * light;
 }

@@ -168,7 +168,7 @@ void Overlay::draw_scale(const Legend& legend, std::span<const Tick> ticks, floa
   for (const Tick& tick : ticks) {
     const float line = area.y + (1 - tick.position) * height;
     // Inside the bar: beside it, it would read as a second minus.
-    box({area.x + 0.7f * area.width, line - 0.04f * size, 0.3f * area.width, std::max(1.0f, 0.08f * size)}, 0,
+    box({area.x + 0.8f * area.width, line - 0.04f * size, 0.2f * area.width, std::max(1.0f, 0.08f * size)}, 0,
         style_.text, 0.9f);
     text(tick.text, area.x + area.width + 0.6f * size, line - 0.47f * size, 0.9f * size);
   }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "app/base/progress.h"
 #include "app/live/robot_saving.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -55,6 +56,19 @@ void parameter_row(const char* name, Struct& values, EventLog& log) {
   });
 }
 
+// What robots are often evolved for. Whoever wants something else writes a formula.
+struct Aim {
+  const char *words, *formula;
+};
+constexpr Aim aims[] = {
+    {"to get far", "distance"},
+    {"to be fast for long", "cruise_speed"},
+    {"to be fast for its length", "cruise_lengths"},
+    {"to get far with little work", "cruise_lengths * min(efficiency, 0.01)"},
+    {"to get far along x", "speed_x"},
+    {"to reach the target", "target_approach"},
+};
+
 class EvolveForm {
  public:
   EvolveForm(PanelContext& context, std::vector<LiveRobot> founders);
@@ -64,6 +78,8 @@ class EvolveForm {
   void accept();
 
  private:
+  void draw_objective(EventLog& log);
+  std::string duration_of(double trials, const EvolveRequest& request) const;
   EvolveRequest request() const;
   std::string problem_of(const EvolveRequest& request) const;
   std::string problem_of_founders(const std::string& genes) const;
@@ -72,6 +88,7 @@ class EvolveForm {
   std::vector<LiveRobot> founders_;
   EvolveRequest values_;  // but the folder
   std::string name_, folder_;
+  bool own_formula_ = false;
   std::vector<std::string> checked_;  // the request that problem_ is about, as words
   std::string problem_ = "?";
 };
@@ -83,6 +100,8 @@ EvolveForm::EvolveForm(PanelContext& context, std::vector<LiveRobot> founders)
   folder_ = folder.string();
   name_ = unused_name(folder / file_name_of(founders_.front().name + "-evolution")).filename().string();
   if (!problem_of_founders(values_.genes).empty()) values_.genes = "muscles";
+  own_formula_ =
+      std::ranges::none_of(aims, [&](const Aim& aim) { return values_.settings.objectives.front() == aim.formula; });
 }
 
 EvolveRequest EvolveForm::request() const {
@@ -124,6 +143,36 @@ std::string EvolveForm::problem_of(const EvolveRequest& request) const {
   return {};
 }
 
+void EvolveForm::draw_objective(EventLog& log) {
+  std::string& formula = values_.settings.objectives.front();
+  std::vector<const char*> words;
+  for (const Aim& aim : aims) words.push_back(aim.words);
+  words.push_back("a formula");
+  const auto custom = static_cast<int>(std::size(aims));
+  int chosen =
+      static_cast<int>(std::ranges::find_if(aims, [&](const Aim& aim) { return formula == aim.formula; }) - aims);
+  if (own_formula_) chosen = custom;
+  if (combo("objective", "what counts: the best in it have children", chosen, words) && chosen < custom)
+    formula = aims[chosen].formula;
+  log.item("evolve.aim");
+  own_formula_ = chosen == custom;
+  if (!own_formula_) return;
+  row("formula", "of quantities; more is better, as in \"distance - 0.1 * strain\"");
+  text_field("##objective", formula);
+  log.item("evolve.objective");
+}
+
+// How long it takes at the speed with which this scene is simulated; empty while that is unknown.
+std::string EvolveForm::duration_of(double trials, const EvolveRequest& request) const {
+  const double rate = context_.scene.snapshot().springs_per_second;
+  if (!(rate > 0)) return "";
+  double springs = 0;
+  for (const LiveRobot& robot : founders_) springs += static_cast<double>(robot.robot->springs.size());
+  springs /= static_cast<double>(founders_.size());
+  const double steps = request.settings.trials.seconds / request.settings.configuration.dt;
+  return "; about " + mercury::clock_text(trials * steps * springs / rate) + " min at the current speed of the scene";
+}
+
 bool EvolveForm::draw(EventLog& log) {
   row("name", "of the new folder");
   text_field("##name", name_);
@@ -147,9 +196,8 @@ bool EvolveForm::draw(EventLog& log) {
         all_genes);
   log.item("evolve.genes");
   values_.genes = all_genes[static_cast<std::size_t>(genes)];
-  row("objective", "a formula; more is better, as in \"distance - 0.1 * strain\"");
-  text_field("##objective", values_.settings.objectives.front());
-  log.item("evolve.objective");
+  note(std::string(algorithms()[static_cast<std::size_t>(algorithm)].help).c_str());
+  draw_objective(log);
   parameter_row("population", values_.settings.algorithm, log);
   parameter_row("generations", values_.settings, log);
   parameter_row("seconds", values_.settings.trials, log);
@@ -162,9 +210,9 @@ bool EvolveForm::draw(EventLog& log) {
   const auto trials = static_cast<double>(now.settings.algorithm.population) * (now.settings.generations + 1.0) *
                       now.settings.trials.trials;
   if (problem_.empty()) {
-    note(
-        fmt::format("{:.0f} trials of {:.3g} s, with the parameters of this scene", trials, now.settings.trials.seconds)
-            .c_str());
+    note(fmt::format("{:.0f} trials of {:.3g} s, with the parameters of this scene{}", trials,
+                     now.settings.trials.seconds, duration_of(trials, now))
+             .c_str());
   } else {
     ImGui::PushStyleColor(ImGuiCol_Text, palette().bad);
     ImGui::TextWrapped("%s", problem_.c_str());

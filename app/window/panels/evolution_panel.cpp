@@ -36,6 +36,9 @@ class EvolutionPanel : public Panel {
   void sort(const RunView& view);
   void draw_family_section(PanelContext& context, const RunView& view);
 
+  void add_champion(PanelContext& context);
+
+  std::filesystem::path evolved_;        // the run that the window evolves or has evolved, until its champion is there
   std::shared_ptr<const RunView> view_;  // of the last frame; shows whether there is a newer one
   std::optional<std::uint64_t> chosen_;  // whose family is shown; none = that of the best champion
   std::vector<std::size_t> order_;       // of the champions in the table
@@ -206,7 +209,19 @@ bool is_usual(std::string_view name, const std::vector<std::string>& objectives)
 
 }  // namespace
 
+// A run of the window that has come to its end brings its best robot into the scene.
+void EvolutionPanel::add_champion(PanelContext& context) {
+  const LiveRun& run = context.run;
+  const std::shared_ptr<const RunView> view = run.view();
+  if (run.activity() != Activity::none) evolved_ = run.evolving();
+  if (run.activity() != Activity::none || evolved_.empty() || evolved_ != run.folder()) return;
+  if (!view || !view->is_over()) return;  // it was stopped, or its last generation has not been read yet
+  evolved_.clear();
+  if (!view->best.empty()) add_individual(context, view->best.front());
+}
+
 void EvolutionPanel::work(PanelContext& context, double) {
+  add_champion(context);
   const std::shared_ptr<const RunView> view = context.run.view();
   if (view == view_) return;
   if (!view || !view_ || view->folder != view_->folder || view->opening != view_->opening) chosen_.reset();

@@ -176,8 +176,12 @@ class Window:
 
     def choose_next(self, combo):
         """Chooses the second entry of a list that a click has opened."""
+        self.choose(combo, 1)
+
+    def choose(self, combo, entry):
+        """Chooses an entry of an open list, 0 being the first."""
         x, y = self.place(combo)
-        self.do("mousemove", x, y + 1.9 * self.items[combo]["height"])
+        self.do("mousemove", x, y + (1.01 + 0.89 * entry) * self.items[combo]["height"])
         self.frame()
         self.do("click", 1)
         self.frame()

@@ -107,6 +107,8 @@ class EvolutionTest(WindowCase):
         window.frame(lambda frame: frame["selected"] == 2)
         window.key("e")
         window.place("evolve.name")
+        window.click("evolve.aim")
+        window.choose("evolve.aim", 6)  # a formula
         for item, text in (("evolve.name", "mine"), ("evolve.objective", "path"), ("evolve.population", "4"),
                            ("evolve.generations", "1000"), ("evolve.seconds", "0.1")):
             window.click(item)
@@ -133,6 +135,27 @@ class EvolutionTest(WindowCase):
         window.key("Return")
         self.assertEqual(window.process.wait(60), 0, window.stderr())
         self.assertGreater(len(individuals(folder)), 8)
+
+    def test_a_run_that_ends_brings_its_champion(self):
+        window = self.small("--paused")
+        window.key("ctrl+a")
+        window.frame(lambda frame: frame["selected"] == 2)
+        window.key("e")
+        window.place("evolve.name")
+        for item, text in (("evolve.name", "short"), ("evolve.population", "4"), ("evolve.generations", "1"),
+                           ("evolve.seconds", "0.1")):
+            window.click(item)
+            window.key("ctrl+a")
+            window.type(text + "\t")
+        window.click("evolve.aim")
+        window.choose("evolve.aim", 1)
+        since = window.mark()
+        window.click("dialog.accept")
+        names = window.wait("robots", since, lambda event: event["count"] == 3)["names"]
+        self.assertEqual(names[:2], ["eel", "fish"])
+        self.assertIn('objectives = ["cruise_speed"]', (self.folder / "short" / "run.toml").read_text())
+        window.frame(lambda frame: frame["selected"] == 1)
+        self.finish(window)
 
     def test_a_run_that_cannot_be_read_is_refused_before_the_window_opens(self):
         folder = scratch() / "swim"
