@@ -9,7 +9,6 @@
 #include <optional>
 #include <set>
 
-#include "app/base/progress.h"
 #include "app/live/robot_saving.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -170,7 +169,9 @@ std::string EvolveForm::duration_of(double trials, const EvolveRequest& request)
   for (const LiveRobot& robot : founders_) springs += static_cast<double>(robot.robot->springs.size());
   springs /= static_cast<double>(founders_.size());
   const double steps = request.settings.trials.seconds / request.settings.configuration.dt;
-  return "; about " + mercury::clock_text(trials * steps * springs / rate) + " min at the current speed of the scene";
+  const double seconds = trials * steps * springs / rate;
+  return fmt::format("; about {} at the current speed of the scene",
+                     seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60));
 }
 
 bool EvolveForm::draw(EventLog& log) {
