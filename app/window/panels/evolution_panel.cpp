@@ -155,12 +155,13 @@ void draw_summary(const RunView& view) {
   note(fmt::format("{}, {} robots, {:.3g} s in {}\n{}", settings.algorithm.name, settings.algorithm.population,
                    settings.trials.seconds, name_of(settings.configuration.environment), objectives)
            .c_str());
-  std::size_t born = 0, exploded = 0, overstretched = 0, too_small = 0, failed = 0;
+  std::size_t born = 0, exploded = 0, overstretched = 0, too_small = 0, undefined = 0, failed = 0;
   for (const GenerationSummary& generation : view.generations) {
     born += generation.born;
     exploded += generation.exploded;
     overstretched += generation.overstretched;
     too_small += generation.too_small;
+    undefined += generation.undefined;
     failed += generation.failed;
   }
   if (born == 0) return;
@@ -171,6 +172,7 @@ void draw_summary(const RunView& view) {
   add(exploded, "exploded");
   add(overstretched, "overstretched");
   add(too_small, "too small");
+  add(undefined, "without a score");
   add(failed, "failed");
   note(text.c_str());
 }

@@ -53,8 +53,8 @@ class CompareTest(WindowCase):
     def test_the_mouse_selects_robots_on_either_side(self):
         window = self.small("--paused")
         window.key("i")
-        frame = window.frame(lambda frame: frame["second"])
-        frame = window.frame()
+        window.frame(lambda frame: frame["second"])
+        frame = window.standing()
         window.place("second")
         distance = window.items["second"]["x"] - window.items["title.first"]["x"]
         x, y = frame["where"][0]
