@@ -297,6 +297,8 @@ void Viewer::draw_text() {
   options.top = titles_;
   context_.caption =
       draw_viewport_text(scene_.drawn().scene(), scene_.drawn().bounds(), area_, shown_camera_, options, log_);
+  if (titles_ > 0)  // they are above the caption
+    context_.caption = {area_.low, {area_.high.x, std::max(context_.caption.high.y, area_.low.y + titles_)}};
   draw_ghost_figures(scene_, area_, shown_camera_, log_);
   DrawnScene* const second = scene_.second_drawn();
   if (!second || !second_.area()) return;

@@ -176,7 +176,8 @@ void ComparePanel::draw_text(PanelContext& context, const SideDifference& differ
 void ComparePanel::draw_ghosts(PanelContext& context) {
   LiveScene& scene = context.scene;
   heading("Ghosts");
-  combo("of", "what the ghost of a robot is", ghost_of_, {"what it was", "itself unchanged", "its parent"});
+  combo("of", "what the ghost of a robot is; automatic: its parent, or itself unchanged if it has none or was changed",
+        ghost_of_, {"automatic", "itself unchanged", "its parent"});
   context.log.item("compare.ghost_of");
   const bool on = !scene.ghosts().empty();
   ImGui::BeginDisabled(!on && scene.selection().empty());
