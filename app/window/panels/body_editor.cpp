@@ -110,8 +110,13 @@ void draw_voxel_outline(PanelContext& context, const Hit& hit, const ViewportAre
   const BodyEdit& body = context.body_edit;
   if (body.robot == 0 || body.robot != hit.robot || !context.scene.voxel_side(hit)) return;
   const DrawnScene& drawn = context.scene.drawn();
-  const Robot& robot = *context.scene.snapshot().robots->robots[hit.index].robot;
-  const std::span<const Vec3> positions = drawn.positions_of(hit.index);
+  const LiveRobots& robots = *context.scene.snapshot().robots;
+  // The hit may be older than the last edit.
+  const auto index = robots.index_of(hit.robot);
+  if (!index || *index >= drawn.offsets().size()) return;
+  const Robot& robot = *robots.robots[*index].robot;
+  const std::span<const Vec3> positions = drawn.positions_of(*index);
+  if (*hit.face >= robot.faces.size() || positions.size() != robot.masses.size()) return;
   // The side's corners: the triangle's, its right angle in the middle, and the one across from it.
   std::array<std::uint16_t, 3> corners{robot.faces[*hit.face].a, robot.faces[*hit.face].b, robot.faces[*hit.face].c};
   const auto length = [&](std::size_t i) {
@@ -122,7 +127,7 @@ void draw_voxel_outline(PanelContext& context, const Hit& hit, const ViewportAre
   for (std::size_t i = 1; i < 3; ++i)
     if (length(i) > length(middle)) middle = i;
   const auto place = [&](std::size_t i) {
-    return render::Vector3(positions[corners[(middle + i) % 3]]) + drawn.offsets()[hit.index];
+    return render::Vector3(positions[corners[(middle + i) % 3]]) + drawn.offsets()[*index];
   };
   const render::Vector3 b = place(0), c = place(1), a = place(2), d = a + c - b;
   const render::Vector3 out = (c - b).cross(a - b);  // faces turn counter-clockwise, seen from outside

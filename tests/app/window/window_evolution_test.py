@@ -101,19 +101,23 @@ class EvolutionTest(WindowCase):
         self.assertNotIn("eel", names)
         self.finish(window)
 
-    def test_selected_robots_evolve_stop_and_go_on(self):
+    def evolve_form(self, aim, **fields):
+        """A window whose two robots are about to evolve for the entry `aim` of the list of objectives."""
         window = self.small("--paused")
         window.key("ctrl+a")
         window.frame(lambda frame: frame["selected"] == 2)
         window.key("e")
         window.place("evolve.name")
         window.click("evolve.aim")
-        window.choose("evolve.aim", 6)  # a formula
-        for item, text in (("evolve.name", "mine"), ("evolve.objective", "path"), ("evolve.population", "4"),
-                           ("evolve.generations", "1000"), ("evolve.seconds", "0.1")):
-            window.click(item)
+        window.choose("evolve.aim", aim)
+        for name, value in fields.items():
+            window.click(f"evolve.{name}")
             window.key("ctrl+a")
-            window.type(text + "\t")
+            window.type(f"{value}\t")
+        return window
+
+    def test_selected_robots_evolve_stop_and_go_on(self):
+        window = self.evolve_form(6, name="mine", objective="path", population=4, generations=1000, seconds=0.1)  # a formula
         since = window.mark()
         window.click("dialog.accept")
         folder = self.folder / "mine"
@@ -137,18 +141,7 @@ class EvolutionTest(WindowCase):
         self.assertGreater(len(individuals(folder)), 8)
 
     def test_a_run_that_ends_brings_its_champion(self):
-        window = self.small("--paused")
-        window.key("ctrl+a")
-        window.frame(lambda frame: frame["selected"] == 2)
-        window.key("e")
-        window.place("evolve.name")
-        for item, text in (("evolve.name", "short"), ("evolve.population", "4"), ("evolve.generations", "1"),
-                           ("evolve.seconds", "0.1")):
-            window.click(item)
-            window.key("ctrl+a")
-            window.type(text + "\t")
-        window.click("evolve.aim")
-        window.choose("evolve.aim", 1)
+        window = self.evolve_form(1, name="short", population=4, generations=1, seconds=0.1)
         since = window.mark()
         window.click("dialog.accept")
         names = window.wait("robots", since, lambda event: event["count"] == 3)["names"]
