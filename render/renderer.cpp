@@ -2,6 +2,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -165,9 +166,12 @@ void Renderer::present(unsigned framebuffer, int x, int y, int width, int height
 }
 
 KeptFrame::KeptFrame(const Renderer& renderer, int width, int height) {
-  Texture texture = make_texture(GL_RGBA8, width, height);
+  const int levels = std::bit_width(static_cast<unsigned>(std::max(width, height)));
+  Texture texture = make_texture(GL_RGBA8, width, height, 0, levels);
   const Framebuffer target = make_framebuffer({texture.get()});
   renderer.present(target.get(), 0, 0, width, height);
+  glGenerateTextureMipmap(texture.get());
+  glTextureParameteri(texture.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   name_ = texture.release();
 }
 

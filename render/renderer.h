@@ -99,7 +99,8 @@ class Renderer {
   std::unique_ptr<Parts> parts_;
 };
 
-// A texture that keeps a frame. Not an sRGB texture, which would look darker when a user interface samples it.
+// A texture that keeps a frame and can be shown smaller. Not an sRGB texture, which would look darker when a user
+// interface samples it.
 class KeptFrame {
  public:
   // Copies what was drawn last, scaled.

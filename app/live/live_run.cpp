@@ -74,7 +74,8 @@ struct LiveRun::Parts {
   std::shared_ptr<const RunView> view;
   std::string problem;
   std::optional<Family> family;
-  Show show;  // to be called once
+  std::optional<std::pair<std::uint64_t, std::shared_ptr<const Robot>>> body;  // asked for last; null while it grows
+  Show show;                                                                   // to be called once
   bool reading = false;
   double read_at = 0;  // [s]
 
@@ -136,6 +137,7 @@ void LiveRun::Parts::open(const fs::path& path) {
   reader = std::make_shared<RunReader>(path);
   view.reset();
   family.reset();
+  body.reset();
   problem.clear();
   show = {};
   reading = false;
@@ -166,6 +168,7 @@ void LiveRun::Parts::take(Reading result) {
   if (!result.problem.empty() && result.problem != problem) messages.add(Severity::error, result.problem);
   problem = std::move(result.problem);
   if (!result.view) return;
+  if (view && view->opening != result.view->opening) body.reset();
   view = std::move(result.view);
   if (show && !view->best.empty()) show_best();
 }
@@ -196,6 +199,25 @@ void LiveRun::grow(std::uint64_t id, std::function<void(Robot robot)> use) {
                              auto robot = std::make_shared<Robot>(reader->grow(id));
                              return [robot, use] { use(std::move(*robot)); };
                            });
+}
+
+std::shared_ptr<const Robot> LiveRun::body_of(std::uint64_t id) {
+  Parts& parts = *parts_;
+  if (!is_open()) return nullptr;
+  if (parts.body && parts.body->first == id) return parts.body->second;
+  if (parts.body && !parts.body->second) return nullptr;  // another one grows
+  parts.body.emplace(id, nullptr);
+  parts.background.begin("growing a robot", 0, [&parts, id, reader = parts.reader](WorkControl&) -> Background::Finish {
+    auto robot = std::make_shared<Robot>();
+    try {
+      *robot = reader->grow(id);
+    } catch (const std::exception&) {  // the run's own problem is reported elsewhere
+    }
+    return [&parts, reader, id, robot] {
+      if (parts.reader == reader) parts.body.emplace(id, robot);
+    };
+  });
+  return nullptr;
 }
 
 void LiveRun::evolve(const EvolveRequest& request, std::vector<LiveRobot> founders) {

@@ -102,6 +102,9 @@ class LiveRun {
   const Family* family() const;
   // Grows the robot of an individual and then calls `use`, in a later frame().
   void grow(std::uint64_t id, std::function<void(Robot robot)> use);
+  // The robot of an individual, for a picture: null until it is grown in the background, one individual at a time; a
+  // robot without masses if it cannot be grown.
+  std::shared_ptr<const Robot> body_of(std::uint64_t id);
 
   // The window's own process. evolve() and resume() do nothing while there is one.
   enum class Activity { none, starting, running, stopping };

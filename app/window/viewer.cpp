@@ -94,9 +94,10 @@ class Viewer {
   Dialogs dialogs_;
   VideoRecorder recorder_;
   FrameHistory frame_history_;
+  Thumbnails thumbnails_{window_.gl_context()};
   KeyMap keys_;
-  PanelContext context_{scene_,  run_,     camera_, preferences_, keys_,     log_,
-                        toasts_, dialogs_, window_, viewport_,    recorder_, frame_history_};
+  PanelContext context_{scene_,   run_,    camera_,   preferences_, keys_,          log_,       toasts_,
+                        dialogs_, window_, viewport_, recorder_,    frame_history_, thumbnails_};
   Panels panels_{context_};
   MouseController mouse_{scene_, camera_, log_, toasts_};
   LegendView legend_;
@@ -182,8 +183,8 @@ int Viewer::run() {
 bool Viewer::anything_moves() const {
   return frames_due_ > 0 || redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking ||
          camera_.gliding() || camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() ||
-         recorder_.busy() || screenshot_.busy() || !scene_.work().empty() || mouse_.busy() || viewport_.coarse() ||
-         second_.coarse();
+         thumbnails_.busy() || recorder_.busy() || screenshot_.busy() || !scene_.work().empty() || mouse_.busy() ||
+         viewport_.coarse() || second_.coarse();
 }
 
 void Viewer::handle_input(const std::vector<InputEvent>& events) {
@@ -230,7 +231,8 @@ void Viewer::frame(double dt) {
   show_messages(toasts_, run_.take_messages());
   times_.scene = since(scene_begin);
   const auto work_begin = Clock::now();
-  panels_.work(0.004);
+  panels_.work();
+  thumbnails_.work(scene_.view().theme, 0.004);
   times_.thumbnails = since(work_begin);
   draw_frame(events, dt);
   times_.whole = dt;

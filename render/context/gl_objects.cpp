@@ -81,7 +81,7 @@ void Buffer::bind(GLenum target, GLuint binding) const {
     glBindBufferBase(target, binding, name_.get());
 }
 
-Texture make_texture(GLenum format, int width, int height, int samples) {
+Texture make_texture(GLenum format, int width, int height, int samples, int levels) {
   GLuint name = 0;
   glCreateTextures(samples ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D, 1, &name);
   Texture texture(name);
@@ -89,7 +89,7 @@ Texture make_texture(GLenum format, int width, int height, int samples) {
     glTextureStorage2DMultisample(name, samples, format, width, height, GL_TRUE);
     return texture;
   }
-  glTextureStorage2D(name, 1, format, width, height);
+  glTextureStorage2D(name, levels, format, width, height);
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);

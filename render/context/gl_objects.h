@@ -113,8 +113,8 @@ class StreamBuffer {
   std::size_t current_ = 0;
 };
 
-// A texture of one level; samples > 0 = multisampled. Others are clamped to the edge and bilinear.
-Texture make_texture(GLenum format, int width, int height, int samples = 0);
+// A texture; samples > 0 = multisampled. Others are clamped to the edge and bilinear.
+Texture make_texture(GLenum format, int width, int height, int samples = 0, int levels = 1);
 
 // A framebuffer with these color textures and an optional depth texture.
 Framebuffer make_framebuffer(std::initializer_list<GLuint> colors, GLuint depth = 0);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -64,21 +63,17 @@ class RobotFolderReader {
 
 class BrowserPanel : public Panel {
  public:
-  explicit BrowserPanel(PanelContext& context) : thumbnails_(context.window.gl_context()) {}
   void draw(PanelContext& context) override;
-  // Draws missing thumbnails of cards on the screen.
-  void work(PanelContext& context, double seconds) override;
-  bool busy() const override { return !wanted_.empty(); }
+  // Takes over what was read.
+  void work(PanelContext& context) override;
 
  private:
   void show_folder(const std::filesystem::path& folder);
   void draw_bar(PanelContext& context);
   void draw_card(PanelContext& context, std::size_t index, float width);
 
-  Thumbnails thumbnails_;
   std::unique_ptr<RobotFolderReader> reader_;
   std::vector<RobotFolderEntry> entries_;
-  std::vector<std::size_t> wanted_;  // entries on the screen that lack a view, the next one last
   std::string folder_text_;
 };
 
@@ -169,8 +164,6 @@ std::vector<RobotFolderEntry> RobotFolderReader::take() {
 
 void BrowserPanel::show_folder(const std::filesystem::path& folder) {
   entries_.clear();
-  thumbnails_.clear();
-  wanted_.clear();
   folder_text_ = folder.string();
   reader_.reset();
   if (!folder.empty()) {
@@ -246,7 +239,6 @@ void BrowserPanel::draw(PanelContext& context) {
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
   const int columns = std::max(1, static_cast<int>((room + spacing) / (7.2f * text + spacing)));
   const float width = (room - static_cast<float>(columns - 1) * spacing) / static_cast<float>(columns);
-  wanted_.clear();
   if (ImGui::BeginChild("cards", {0, 0})) {
     const auto in_row = static_cast<std::size_t>(columns);
     const float height = card_height(width) + ImGui::GetStyle().ItemSpacing.y;
@@ -261,7 +253,6 @@ void BrowserPanel::draw(PanelContext& context) {
         }
   }
   ImGui::EndChild();
-  std::ranges::reverse(wanted_);  // the upper cards come first
 }
 
 void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float width) {
@@ -278,14 +269,12 @@ void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float wid
   const ImVec2 end{corner.x + size.x, corner.y + size.y};
   list.AddRectFilled(corner, end, ImGui::GetColorU32(hovered ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
   const ImVec2 below{corner.x + width, corner.y + image};
-  // OpenGL textures start with the lowest row.
-  if (const ImTextureID texture = thumbnails_.find(entry.path.string()))
-    list.AddImageRounded(texture, corner, below, {0, 1}, {1, 0}, IM_COL32_WHITE, rounding, ImDrawFlags_RoundCornersTop);
-  else {
-    if (entry.robot && ImGui::IsRectVisible(corner, end)) wanted_.push_back(index);
-    list.AddText({corner.x + 0.4f * line, corner.y + 0.4f * line}, entry.robot ? palette().faint : palette().bad,
-                 entry.robot ? "..." : "cannot be read");
-  }
+  if (entry.robot)
+    draw_thumbnail(context.thumbnails.find(fmt::format("{}@{}", entry.path.string(), fmt::ptr(entry.robot.get())),
+                                           [robot = entry.robot] { return robot; }),
+                   corner, below, ImDrawFlags_RoundCornersTop);
+  else
+    list.AddText({corner.x + 0.4f * line, corner.y + 0.4f * line}, palette().bad, "cannot be read");
   const float margin = 0.35f * line;
   const std::string name =
       entry.robot && !entry.robot->name.empty() ? entry.robot->name : entry.path.filename().string();
@@ -297,24 +286,12 @@ void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float wid
   if (clicked && !entry.robot) context.toasts.show(Tone::error, entry.error);
 }
 
-void BrowserPanel::work(PanelContext& context, double seconds) {
-  const render::Theme theme = context.scene.view().theme;
-  if (reader_) {
-    std::vector<RobotFolderEntry> fresh = reader_->take();
-    entries_.insert(entries_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
-  }
-  // Only what is on the screen needs pictures: a folder may have thousands of robots.
-  const auto begin = std::chrono::steady_clock::now();
-  while (!wanted_.empty()) {
-    const std::size_t index = wanted_.back();
-    wanted_.pop_back();
-    if (index >= entries_.size()) continue;
-    const RobotFolderEntry& entry = entries_[index];
-    if (entry.robot) thumbnails_.draw(entry.path.string(), *entry.robot, theme);
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) break;
-  }
+void BrowserPanel::work(PanelContext&) {
+  if (!reader_) return;
+  std::vector<RobotFolderEntry> fresh = reader_->take();
+  entries_.insert(entries_.end(), std::make_move_iterator(fresh.begin()), std::make_move_iterator(fresh.end()));
 }
 
-std::unique_ptr<Panel> make_browser_panel(PanelContext& context) { return std::make_unique<BrowserPanel>(context); }
+std::unique_ptr<Panel> make_browser_panel(PanelContext&) { return std::make_unique<BrowserPanel>(); }
 
 }  // namespace mercury::window

@@ -26,6 +26,9 @@ std::vector<RobotId> selected_or_all(const LiveScene& scene);
 // The name of a robot; "?" if it does not exist.
 std::string name_of_robot(const LiveScene& scene, RobotId robot);
 
+// A thumbnail of a robot; 0 until it is drawn.
+ImTextureID thumbnail_of_robot(PanelContext& context, RobotId robot);
+
 // Moves the camera so that it shows these robots; all robots if the list is empty.
 void frame_robots(PanelContext& context, const std::vector<RobotId>& robots);
 
@@ -112,6 +115,9 @@ void choose_run(PanelContext& context);
 
 // Puts the robot of an individual of the run into the scene, or selects it if it is there.
 void add_individual(PanelContext& context, std::uint64_t id);
+
+// A thumbnail of an individual of the run; 0 until it is drawn.
+ImTextureID thumbnail_of_individual(PanelContext& context, std::uint64_t id);
 
 // Asks for the settings of a new run and starts it from the selected robots.
 void evolve_selected(PanelContext& context);

@@ -322,6 +322,13 @@ void add_individual(PanelContext& context, std::uint64_t id) {
   });
 }
 
+ImTextureID thumbnail_of_individual(PanelContext& context, std::uint64_t id) {
+  const std::shared_ptr<const RunView> view = context.run.view();
+  if (!view) return {};
+  return context.thumbnails.find(fmt::format("{}#{}#{}", view->folder.string(), view->opening, id),
+                                 [&run = context.run, id] { return run.body_of(id); });
+}
+
 void evolve_selected(PanelContext& context) {
   if (context.scene.selection().empty())
     context.toasts.show(Tone::info, "select the robots to evolve first");

@@ -26,7 +26,7 @@ class EvolutionPanel : public Panel {
  public:
   void draw(PanelContext& context) override;
   // Follows the run while the tab is closed, too.
-  void work(PanelContext& context, double seconds) override;
+  void work(PanelContext& context) override;
 
  private:
   void choose(PanelContext& context, std::uint64_t id);
@@ -42,7 +42,7 @@ class EvolutionPanel : public Panel {
   std::shared_ptr<const RunView> view_;  // of the last frame; shows whether there is a newer one
   std::optional<std::uint64_t> chosen_;  // whose family is shown; none = that of the best champion
   std::vector<std::size_t> order_;       // of the champions in the table
-  int column_ = 2;                       // to sort by
+  int column_ = 1;                       // to sort by
   bool ascending_ = false;
 };
 
@@ -151,7 +151,8 @@ void draw_progress(PanelContext& context, const RunView& view) {
 void draw_summary(const RunView& view) {
   const EvolutionSettings& settings = view.settings;
   std::string objectives;
-  for (const std::string& objective : settings.objectives) objectives += (objectives.empty() ? "" : "; ") + objective;
+  for (const std::string& objective : settings.objectives)
+    objectives += (objectives.empty() ? "" : "; ") + objective_label(objective);
   note(fmt::format("{}, {} robots, {:.3g} s in {}\n{}", settings.algorithm.name, settings.algorithm.population,
                    settings.trials.seconds, name_of(settings.configuration.environment), objectives)
            .c_str());
@@ -187,15 +188,15 @@ void draw_scores(const RunView& view) {
   const PlotLine lines[] = {{"best", render::category_color(0), number, best},
                             {"median", render::category_color(1), number, median}};
   const float text = ImGui::GetFontSize();
-  const std::string title =
-      shortened("score: " + view.settings.objectives.front(), ImGui::GetContentRegionAvail().x - 9 * text);
+  const std::string title = shortened("score: " + objective_label(view.settings.objectives.front()),
+                                      ImGui::GetContentRegionAvail().x - 9 * text);
   plot("scores",
        {.title = title, .unit = "", .x_title = "generation", .x_unit = "", .height = 10 * text, .x_whole = true},
        lines);
   plot_legend(lines);
 }
 
-// The columns of the table after robot and generation: scores, then quantities.
+// The columns of the table besides robot and generation: scores, then quantities.
 double number_of(const Individual& individual, std::size_t column, std::size_t objectives) {
   const auto& numbers = column < objectives ? individual.assessment.scores : individual.assessment.values;
   const std::size_t index = column < objectives ? column : column - objectives;
@@ -222,7 +223,7 @@ void EvolutionPanel::add_champion(PanelContext& context) {
   if (!view->best.empty()) add_individual(context, view->best.front());
 }
 
-void EvolutionPanel::work(PanelContext& context, double) {
+void EvolutionPanel::work(PanelContext& context) {
   add_champion(context);
   const std::shared_ptr<const RunView> view = context.run.view();
   if (view == view_) return;
@@ -285,23 +286,27 @@ void EvolutionPanel::draw_champions(PanelContext& context, const RunView& view) 
   heading(fmt::format("Champions: {}", view.champions.size()).c_str());
   const std::size_t objectives = std::min(most_scores, view.settings.objectives.size());
   const int columns = 2 + static_cast<int>(objectives + quantities().size());
-  const float line = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-  const float height = (std::clamp(static_cast<float>(view.champions.size()), 2.0f, 5.0f) + 1) * line +
-                       ImGui::GetStyle().ScrollbarSize + 2;
+  const float padding = 2 * ImGui::GetStyle().CellPadding.y;
+  const float height =
+      std::clamp(static_cast<float>(view.champions.size()), 1.0f, 3.6f) * (thumbnail_row_height() + padding) +
+      ImGui::GetTextLineHeight() + padding + ImGui::GetStyle().ScrollbarSize + 2;
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
                      ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_Hideable |
                      ImGuiTableFlags_BordersOuter | ImGuiTableFlags_NoSavedSettings;
   if (!ImGui::BeginTable("champions", columns, flags, {0, height})) return;
   ImGui::TableSetupScrollFreeze(1, 1);
-  ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_NoHide | ImGuiTableColumnFlags_PreferSortDescending);
-  ImGui::TableSetupColumn("generation", ImGuiTableColumnFlags_PreferSortDescending);
+  ImGui::TableSetupColumn(
+      "robot",
+      ImGuiTableColumnFlags_NoHide | ImGuiTableColumnFlags_PreferSortDescending | ImGuiTableColumnFlags_WidthFixed,
+      5.6f * ImGui::GetFontSize());
   for (std::size_t i = 0; i < objectives; ++i)
     ImGui::TableSetupColumn(
-        objectives == 1 ? "score" : view.settings.objectives[i].c_str(),
+        objectives == 1 ? "score" : objective_label(view.settings.objectives[i]).c_str(),
         ImGuiTableColumnFlags_PreferSortDescending | (i == 0 ? ImGuiTableColumnFlags_DefaultSort : 0));
+  ImGui::TableSetupColumn("generation", ImGuiTableColumnFlags_PreferSortDescending);
   for (const Quantity& quantity : quantities())
     ImGui::TableSetupColumn(
-        std::string(quantity.name).c_str(),
+        title_of(quantity).c_str(),
         ImGuiTableColumnFlags_PreferSortDescending |
             (is_usual(quantity.name, view.settings.objectives) ? 0 : ImGuiTableColumnFlags_DefaultHide));
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
@@ -323,17 +328,18 @@ void EvolutionPanel::draw_champions(PanelContext& context, const RunView& view) 
       const bool shown = context.run.family() && context.run.family()->line.front().individual.id == individual.id;
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      if (ImGui::Selectable(std::to_string(individual.id).c_str(), shown, ImGuiSelectableFlags_SpanAllColumns)) {
+      if (thumbnail_row(fmt::format("##{}", individual.id).c_str(), thumbnail_of_individual(context, individual.id),
+                        std::to_string(individual.id), shown, ImGuiSelectableFlags_SpanAllColumns)) {
         choose(context, individual.id);
         add_individual(context, individual.id);
       }
       if (i < 20) context.log.item(fmt::format("champion.{}", i));
       if (ImGui::IsItemHovered() && pointer_rests())
-        show_individual(individual, view.settings, "click: into the scene, and its family");
-      ImGui::TableNextColumn();
-      right_aligned(std::to_string(champion.since));
-      for (std::size_t column = 0; column < objectives + quantities().size(); ++column)
-        if (ImGui::TableNextColumn()) right_aligned(score_text(number_of(individual, column, objectives)));
+        show_individual(context, individual, view.settings, "click: into the scene, and its family");
+      for (std::size_t column = 0; column < objectives + quantities().size(); ++column) {
+        if (column == objectives && ImGui::TableNextColumn()) thumbnail_row_cell(std::to_string(champion.since));
+        if (ImGui::TableNextColumn()) thumbnail_row_cell(score_text(number_of(individual, column, objectives)));
+      }
     }
   ImGui::EndTable();
 }
@@ -350,10 +356,11 @@ void EvolutionPanel::sort(const RunView& view) {
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   const auto key = [&](std::size_t index) {
     const Champion& champion = view.champions[index];
-    if (column_ == 0) return static_cast<double>(champion.individual.id);
-    if (column_ == 1) return static_cast<double>(champion.since);
-    return number_of(champion.individual, static_cast<std::size_t>(column_ - 2),
-                     std::min(most_scores, view.settings.objectives.size()));
+    const auto column = static_cast<std::size_t>(column_);
+    const std::size_t objectives = std::min(most_scores, view.settings.objectives.size());
+    if (column == 0) return static_cast<double>(champion.individual.id);
+    if (column == 1 + objectives) return static_cast<double>(champion.since);
+    return number_of(champion.individual, column <= objectives ? column - 1 : column - 2, objectives);
   };
   std::ranges::stable_sort(
       order_, [&](std::size_t a, std::size_t b) { return ascending_ ? key(a) < key(b) : key(b) < key(a); });

@@ -24,6 +24,7 @@
 #include "app/window/toolkit/window.h"
 #include "app/window/viewport/mouse_controller.h"
 #include "app/window/viewport/orbit_controller.h"
+#include "app/window/viewport/thumbnails.h"
 #include "app/window/viewport/viewport.h"
 
 namespace mercury::window {
@@ -77,6 +78,7 @@ struct PanelContext {
   const Viewport& viewport;
   VideoRecorder& recorder;
   FrameHistory& frame_history;
+  Thumbnails& thumbnails;  // pictures of robots in lists
   RobotCreation creation = {};
   EvolveRequest evolve = {};  // the settings of the last evolution
   Scrub scrub = {};
@@ -96,11 +98,8 @@ class Panel {
   // Draws the panel with ImGui. Called once per frame while its tab is open.
   virtual void draw(PanelContext& context) = 0;
 
-  // Background work on the window's thread, such as thumbnails: at most about `seconds`. Called once per frame, whether
-  // the tab is open or not.
-  virtual void work(PanelContext& context, double seconds);
-  // True while work() has more to do; the window then keeps drawing frames.
-  virtual bool busy() const { return false; }
+  // Takes over results of background tasks. Called once per frame, whether the tab is open or not.
+  virtual void work(PanelContext& context);
 };
 
 enum class Side { left, right };

@@ -28,7 +28,7 @@ constexpr PanelEntry table[] = {
 
 }  // namespace
 
-void Panel::work(PanelContext&, double) {}
+void Panel::work(PanelContext&) {}
 
 std::span<const PanelEntry> panel_table() { return table; }
 

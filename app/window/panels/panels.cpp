@@ -32,12 +32,8 @@ PanelColumn::PanelColumn(Side side, PanelContext& context)
     if (entry.side == side) tabs_.push_back({&entry, entry.make(context)});
 }
 
-void PanelColumn::work(PanelContext& context, double seconds) {
-  for (const Tab& tab : tabs_) tab.panel->work(context, seconds);
-}
-
-bool PanelColumn::busy() const {
-  return std::ranges::any_of(tabs_, [](const Tab& tab) { return tab.panel->busy(); });
+void PanelColumn::work(PanelContext& context) {
+  for (const Tab& tab : tabs_) tab.panel->work(context);
 }
 
 float PanelColumn::rail_pixels() { return std::round(2.6f * ImGui::GetFontSize()); }
@@ -200,9 +196,9 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
 // Dear ImGui requires that no window outside a modal appears after it in the frame in which the modal opens.
 void Panels::draw_dialogs() { context_.dialogs.draw(context_.log); }
 
-void Panels::work(double seconds) {
-  left_.work(context_, seconds);
-  right_.work(context_, seconds);
+void Panels::work() {
+  left_.work(context_);
+  right_.work(context_);
 }
 
 void Panels::show(const std::string& panel) {

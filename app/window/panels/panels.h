@@ -45,8 +45,7 @@ class PanelColumn {
   bool has(const std::string& title) const;
 
   // Passes the call on to each panel (panel.h).
-  void work(PanelContext& context, double seconds);
-  bool busy() const;
+  void work(PanelContext& context);
 
  private:
   void draw_edge(float top, float bottom, float size, float& width);
@@ -78,9 +77,9 @@ class Panels {
   bool press_in_palette(const KeyPress& press, std::optional<Action> command);
   // Opens a panel by its title.
   void show(const std::string& panel);
-  // Background work of panels, for about `seconds` (panel.h).
-  void work(double seconds);
-  bool busy() const { return left_.busy() || right_.busy() || first_steps_.fading(); }
+  // Background work of panels (panel.h).
+  void work();
+  bool busy() const { return first_steps_.fading(); }
 
   // Quits, after asking the user if changes would be lost.
   void quit();

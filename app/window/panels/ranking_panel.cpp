@@ -114,7 +114,7 @@ void RankingPanel::draw_notes(PanelContext& context, const std::vector<Row>& row
 
 void RankingPanel::draw_headings(PanelContext& context) {
   ImGui::TableSetupScrollFreeze(1, 1);
-  ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 6 * ImGui::GetFontSize());
+  ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 9 * ImGui::GetFontSize());
   for (const Column& column : columns)
     ImGui::TableSetupColumn(column.name, ImGuiTableColumnFlags_PreferSortDescending |
                                              (&column == columns.data() ? ImGuiTableColumnFlags_DefaultSort : 0));
@@ -176,8 +176,9 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   ImGui::PushID(static_cast<int>(robot));
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  if (ImGui::Selectable(fmt::format("{}. {}", index + 1, row.name).c_str(), context.scene.is_selected(robot),
-                        ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
+  if (thumbnail_row("##row", thumbnail_of_robot(context, robot), fmt::format("{}. {}", index + 1, row.name),
+                    context.scene.is_selected(robot),
+                    ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
     if (ImGui::IsMouseDoubleClicked(0))
       frame_robots(context, {robot});
     else
@@ -192,7 +193,7 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   robot_menu_of_row(context, robot);
   for (const Column& column : columns) {
     ImGui::TableNextColumn();
-    right_aligned(row.values.counts() ? fmt::format("{:.3g}", column.figure(row.values)) : "-");
+    thumbnail_row_cell(row.values.counts() ? fmt::format("{:.3g}", column.figure(row.values)) : "-");
   }
   ImGui::PopID();
 }

@@ -41,6 +41,13 @@ std::string name_of_robot(const LiveScene& scene, RobotId robot) {
   return found ? found->body.name : "?";
 }
 
+ImTextureID thumbnail_of_robot(PanelContext& context, RobotId id) {
+  const DocumentRobot* robot = context.scene.document().find(id);
+  if (!robot) return {};
+  return context.thumbnails.find(fmt::format("{}@{}", id, fmt::ptr(robot->body.robot.get())),
+                                 [body = robot->body.robot] { return body; });
+}
+
 void frame_robots(PanelContext& context, const std::vector<RobotId>& robots) {
   std::vector<render::Bounds> boxes = boxes_of(context.scene, robots);
   if (boxes.empty()) boxes = boxes_of(context.scene, selected_or_all(context.scene));

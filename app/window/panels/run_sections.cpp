@@ -34,8 +34,7 @@ std::string parents_of(const Individual& individual) {
 
 std::string title_of(const MapAxis& axis) {
   const auto found = find_quantity(axis.quantity);
-  const std::string_view unit = found ? quantities()[*found].unit : "";
-  return unit.empty() ? axis.quantity : fmt::format("{} [{}]", axis.quantity, unit);
+  return found ? window::title_of(quantities()[*found]) : label_of(axis.quantity);
 }
 
 void draw_text(ImVec2 at, float align, ImU32 color, const std::string& words) {
@@ -128,8 +127,9 @@ ScoreRange range_of(const std::vector<Row>& rows) {
 struct Columns {
   explicit Columns(float width) : text(ImGui::GetFontSize()), right(width - 0.3f * text) {}
   float text;
-  float line = 0.7f * text, branch = 1.9f * text;                       // middles of the dots
-  float generation = 5.6f * text, robot = 9 * text, bar = 9.8f * text;  // right, right, left
+  float line = 0.7f * text, branch = 1.9f * text;         // middles of the dots
+  float generation = 5.5f * text, picture = 5.9f * text;  // right, left
+  float robot = 11.1f * text, bar = 12 * text;            // right, left
   float right;
   float number() const { return 3.6f * text; }  // room of the score
 };
@@ -139,7 +139,7 @@ class Tree {
   Tree(const Family& family, float width) : rows_(rows_of(family)), range_(range_of(rows_)), columns_(width) {}
 
   const std::vector<Row>& rows() const { return rows_; }
-  float row_height() const { return 1.45f * columns_.text; }
+  static float row_height() { return thumbnail_row_height(); }
 
   void draw_headings() const {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -152,13 +152,16 @@ class Tree {
     ImGui::Dummy({0, columns_.text});
   }
 
-  void draw_row(std::size_t index, ImVec2 corner) const {
+  void draw_row(std::size_t index, ImVec2 corner, ImTextureID thumbnail) const {
     const Row& row = rows_[index];
     const float height = row_height(), middle = corner.y + height / 2, top = middle - columns_.text / 2;
     draw_lines(index, corner.x, middle);
     const double score = row.individual->score();
     const ImU32 color = ImGui::GetColorU32(row.is_branch ? ImGuiCol_TextDisabled : ImGuiCol_Text);
     draw_text({corner.x + columns_.generation, top}, 1, color, std::to_string(row.individual->generation));
+    const float left_edge = corner.x + columns_.picture;
+    draw_thumbnail(thumbnail, {left_edge, corner.y + 1},
+                   {left_edge + height * Thumbnails::width / Thumbnails::height, corner.y + height - 1});
     draw_text({corner.x + columns_.robot, top}, 1, color, std::to_string(row.individual->id));
     draw_text({corner.x + columns_.right, top}, 1, color, score_text(score));
     const float left = corner.x + columns_.bar, most = columns_.right - columns_.number() - columns_.bar;
@@ -201,6 +204,15 @@ class Tree {
 
 }  // namespace
 
+std::string title_of(const Quantity& quantity) {
+  return quantity.unit.empty() ? label_of(quantity.name)
+                               : fmt::format("{} [{}]", label_of(quantity.name), unit_text(quantity.unit));
+}
+
+std::string objective_label(const std::string& objective) {
+  return find_quantity(objective) ? label_of(objective) : objective;
+}
+
 std::string score_text(double score) { return std::isfinite(score) ? short_number(score) : "-"; }
 
 void ScoreRange::add(double score) {
@@ -219,7 +231,8 @@ ImU32 ScoreRange::color(double score) const {
   return packed(render::color_at(render::Colormap::viridis, 0.15f + 0.85f * share(score)));
 }
 
-void show_individual(const Individual& individual, const EvolutionSettings& settings, const char* hint) {
+void show_individual(PanelContext& context, const Individual& individual, const EvolutionSettings& settings,
+                     const char* hint) {
   const Assessment& assessment = individual.assessment;
   const float text = ImGui::GetFontSize();
   // Beside the panel, so that it covers none of its rows.
@@ -227,22 +240,30 @@ void show_individual(const Individual& individual, const EvolutionSettings& sett
   const float y = ImGui::GetIO().MousePos.y, share = std::clamp(y / ImGui::GetIO().DisplaySize.y, 0.0f, 1.0f);
   ImGui::SetNextWindowPos({right, y}, ImGuiCond_Always, {0, share});
   ImGui::BeginTooltip();
+  const ImVec2 corner = ImGui::GetCursorScreenPos(),
+               size{12 * text, 12 * text * Thumbnails::height / Thumbnails::width};
+  draw_thumbnail(thumbnail_of_individual(context, individual.id), corner, {corner.x + size.x, corner.y + size.y});
+  ImGui::Dummy(size);
+  ImGui::SameLine();
+  ImGui::BeginGroup();
   ImGui::TextUnformatted(fmt::format("Robot {}", individual.id).c_str());
   if (ImGui::BeginTable("origin", 2, ImGuiTableFlags_SizingFixedFit)) {
     entry("born in generation", std::to_string(individual.generation));
     entry(individual.parents.size() > 1 ? "parents" : "parent", parents_of(individual));
     if (assessment.fate != Fate::sound) entry("trial", std::string(name_of(assessment.fate)));
     for (std::size_t i = 0; i < assessment.scores.size() && i < settings.objectives.size(); ++i)
-      entry(settings.objectives[i], score_text(assessment.scores[i]));
+      entry(objective_label(settings.objectives[i]), score_text(assessment.scores[i]));
     ImGui::EndTable();
   }
+  ImGui::EndGroup();
   if (!assessment.values.empty() && ImGui::BeginTable("quantities", 4, ImGuiTableFlags_SizingFixedFit)) {
     for (std::size_t i = 0; i < assessment.values.size() && i < quantities().size(); ++i) {
       const Quantity& quantity = quantities()[i];
       if (!counts(quantity, assessment.fate)) continue;
       const bool is_score = std::ranges::find(settings.objectives, quantity.name) != settings.objectives.end();
       if (!is_score)
-        entry(std::string(quantity.name), fmt::format("{} {}", score_text(assessment.values[i]), quantity.unit));
+        entry(label_of(quantity.name),
+              fmt::format("{} {}", score_text(assessment.values[i]), unit_text(quantity.unit)));
     }
     ImGui::EndTable();
   }
@@ -282,7 +303,7 @@ std::optional<std::uint64_t> draw_elite_map(PanelContext& context, const EliteMa
       const auto column = static_cast<float>(index % map.columns), row = static_cast<float>(index / map.columns);
       const ImVec2 cell{grid.low.x + column * grid.cell.x, grid.high.y - (row + 1) * grid.cell.y};
       ImGui::GetWindowDrawList()->AddRect(cell, {cell.x + grid.cell.x, cell.y + grid.cell.y}, palette().mark, 0, 0, 2);
-      show_individual(*map.cells[index], settings, "click: into the scene, and its family");
+      show_individual(context, *map.cells[index], settings, "click: into the scene, and its family");
       if (clicked) chosen = map.cells[index]->id;
     }
   }
@@ -312,10 +333,10 @@ bool draw_family(PanelContext& context, const Family& family, const EvolutionSet
         if (i < 20) context.log.item(fmt::format("family.{}", i));
         if (ImGui::IsItemHovered() && pointer_rests()) {
           ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
-          show_individual(individual, settings, "click: into the scene; double click: its family");
+          show_individual(context, individual, settings, "click: into the scene; double click: its family");
           ImGui::PopStyleVar();
         }
-        tree.draw_row(index, corner);
+        tree.draw_row(index, corner, thumbnail_of_individual(context, individual.id));
         ImGui::PopID();
         if (clicked && ImGui::IsMouseDoubleClicked(0)) {
           chosen = true;

@@ -10,7 +10,16 @@
 #include "app/live/run_view.h"
 #include "app/window/panels/panel.h"
 
+namespace mercury {
+struct Quantity;
+}
+
 namespace mercury::window {
+
+// "cruise speed [m/s]"
+std::string title_of(const Quantity& quantity);
+// Of a quantity, its label; a formula as it is.
+std::string objective_label(const std::string& objective);
 
 // "0.123"; "-" for the worst score and for what was not measured.
 std::string score_text(double score);
@@ -30,7 +39,8 @@ class ScoreRange {
 };
 
 // A tooltip beside the panel with everything that is known of it; `hint` says what a click does.
-void show_individual(const Individual& individual, const EvolutionSettings& settings, const char* hint);
+void show_individual(PanelContext& context, const Individual& individual, const EvolutionSettings& settings,
+                     const char* hint);
 
 // Draws the map of elites as a colored grid over the remaining width. Returns the individual whose cell was clicked.
 std::optional<std::uint64_t> draw_elite_map(PanelContext& context, const EliteMap& map,

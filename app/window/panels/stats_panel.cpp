@@ -59,7 +59,7 @@ void draw_frame_times(PanelContext& context) {
   figure("scene", milliseconds(mean.scene), "taking over the newest state from the physics");
   figure("view", milliseconds(mean.drawn), "drawing the robots, including the wait for the GPU");
   figure("panels", milliseconds(mean.panels), "drawing the panels");
-  figure("thumbnails", milliseconds(mean.thumbnails), "of the browser");
+  figure("thumbnails", milliseconds(mean.thumbnails), "pictures of robots in panels");
   figure("display", milliseconds(mean.present), "bringing the frame to the display");
   figure("view size",
          fmt::format("{} x {} ({:.0f} %)", viewport.renderer().width(), viewport.renderer().height(),

@@ -96,23 +96,6 @@ bool is_safe(const Configuration& configuration) {
   return configuration.solver == Solver::xpbd || configuration.dt <= 1.01 * safe_dt;
 }
 
-// "drag coefficient"
-std::string label_of(std::string_view name) {
-  std::string label(name);
-  std::replace(label.begin(), label.end(), '_', ' ');
-  return label;
-}
-
-// "kg/m3" with a raised 3.
-std::string unit_text(std::string_view unit) {
-  std::string text;
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    const bool is_power = i > 0 && std::isalpha(static_cast<unsigned char>(unit[i - 1]));
-    text += is_power && unit[i] == '2' ? "\xc2\xb2" : is_power && unit[i] == '3' ? "\xc2\xb3" : std::string(1, unit[i]);
-  }
-  return text;
-}
-
 bool edit(const std::string& label, const std::string& hint, bool& value) {
   ImGui::PushID(label.c_str());
   row(label.c_str(), hint.c_str());

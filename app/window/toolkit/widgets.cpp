@@ -297,6 +297,21 @@ std::optional<int> fuzzy_match(std::string_view query, std::string_view text) {
   return 8 * score - static_cast<int>(text.size());
 }
 
+std::string label_of(std::string_view name) {
+  std::string label(name);
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+std::string unit_text(std::string_view unit) {
+  std::string text;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const bool is_power = i > 0 && std::isalpha(static_cast<unsigned char>(unit[i - 1]));
+    text += is_power && unit[i] == '2' ? "\xc2\xb2" : is_power && unit[i] == '3' ? "\xc2\xb3" : std::string(1, unit[i]);
+  }
+  return text;
+}
+
 bool item_dragged() { return ImGui::IsItemActive() || ImGui::IsItemDeactivated(); }
 
 bool words_match(std::string_view query, std::string_view text) {

@@ -66,6 +66,11 @@ bool text_field(const char* id, std::string& text, const char* placeholder = "")
 // wrapped text has more than 16,383 letters.
 std::string brief(const std::string& text, std::size_t letters);
 
+// A name of the program as a label: "drag coefficient" for "drag_coefficient".
+std::string label_of(std::string_view name);
+// "kg/m3" with a raised 3.
+std::string unit_text(std::string_view unit);
+
 // Whether the last item is dragged: held, or let go in this frame, whose motion still counts. A slow frame may hold all
 // of a drag's end.
 bool item_dragged();

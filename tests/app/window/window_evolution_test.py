@@ -5,7 +5,7 @@ import re
 import shutil
 import subprocess
 
-from window_case import PROGRAM, WindowCase, main
+from window_case import PROGRAM, WindowCase, main, numpy
 from window_driver import scratch
 
 
@@ -59,6 +59,32 @@ class EvolutionTest(WindowCase):
         since = window.mark()
         window.key("ctrl+z", "ctrl+z")
         window.wait("robots", since, lambda event: event["count"] == count)
+        self.finish(window)
+
+    def test_champions_ancestors_and_the_ranking_have_pictures_of_robots(self):
+        window, _ = self.open_run()
+        window.wait("robots", 0, lambda event: event["count"] > 0)
+
+        def has_thumbnail(row, left):
+            """A frame without a thumbnail has one color."""
+            item, pixels = window.items[row], window.pixels()
+            top, left = round(item["y"] - item["height"] / 2), round(item["x"] - item["width"] / 2 + left)
+            side = round(item["height"])
+            thumbnail = pixels[top + 4:top + side - 4, left + 4:left + side].reshape(-1, 3)
+            return len(numpy.unique(thumbnail // 8, axis=0)) > 30
+
+        def wait_for_thumbnail(row, left=0):
+            """`left`: where it begins, in heights of the row."""
+            window.place(row)
+            window.until(f"thumbnail of {row}", lambda: has_thumbnail(row, left * window.items[row]["height"]))
+
+        window.open("Evolution")
+        wait_for_thumbnail("champion.0")
+        window.do("mousemove", window.place("panel.Evolution")[0], 80)
+        window.do("click", "--repeat", 30, 5)
+        wait_for_thumbnail("family.0", 2.8)  # beyond the generation
+        window.open("Ranking")
+        wait_for_thumbnail("ranking.0")
         self.finish(window)
 
     def test_the_run_is_exported_as_a_page(self):
