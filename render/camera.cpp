@@ -31,19 +31,28 @@ struct Span {
 
 struct Interval {
   float low = -1e30f, high = 1e30f;
-  bool empty() const { return low > high; }
-  float middle() const { return 0.5f * (low + high); }
 };
 
-// The shifts of the target along an axis for which all points, seen from `distance`, lie in the free part.
-Interval shifts(std::span<const Vector3> points, int axis, Span free, float distance) {
-  Interval interval;
-  for (const Vector3& p : points) {
-    interval.low = std::max(interval.low, p[axis] - free.high * (distance - p.z));
-    interval.high = std::min(interval.high, p[axis] - free.low * (distance - p.z));
+// The shifts of the target along an axis for which all points lie in the free part. Seen from the distance d, they are
+// the interval from low - free.high d to high - free.low d.
+class Shifts {
+ public:
+  Shifts(std::span<const Vector3> points, int axis, Span free) : free_(free) {
+    for (const Vector3& p : points) {
+      at_zero_.low = std::max(at_zero_.low, p[axis] + free.high * p.z);
+      at_zero_.high = std::min(at_zero_.high, p[axis] + free.low * p.z);
+    }
   }
-  return interval;
-}
+  // From which there is one.
+  float least_distance() const { return (at_zero_.low - at_zero_.high) / (free_.high - free_.low); }
+  float middle(float distance) const {
+    return 0.5f * (at_zero_.low + at_zero_.high - (free_.high + free_.low) * distance);
+  }
+
+ private:
+  Span free_;
+  Interval at_zero_;
+};
 
 std::vector<Vector3> corners_of(std::span<const Bounds> boxes) {
   std::vector<Vector3> corners;
@@ -159,19 +168,10 @@ void Orbit::frame(std::span<const Bounds> boxes, float aspect, float margin, con
     seen.push_back({p.dot(axes.right), p.dot(axes.up), p.dot(axes.back)});
     nearest = std::max(nearest, seen.back().z);
   }
-  // Bisects for the smallest distance at which some sideways shift fits along both axes.
-  const Span across{half * aspect * (2 * free.left - 1), half * aspect * (1 - 2 * free.right)};
-  const Span upward{half * (2 * free.bottom - 1), half * (1 - 2 * free.top)};
-  float low = nearest, high = nearest + 1e6f;
-  for (int i = 0; i < 60; ++i) {
-    const float middle =
-        i < 30 ? nearest + std::sqrt(std::max(low - nearest, 1e-5f) * (high - nearest)) : 0.5f * (low + high);
-    const bool fits = !shifts(seen, 0, across, middle).empty() && !shifts(seen, 1, upward, middle).empty();
-    (fits ? high : low) = middle;
-  }
-  distance = std::max(1e-3f, high * margin);
-  target +=
-      shifts(seen, 0, across, distance).middle() * axes.right + shifts(seen, 1, upward, distance).middle() * axes.up;
+  const Shifts across(seen, 0, {half * aspect * (2 * free.left - 1), half * aspect * (1 - 2 * free.right)});
+  const Shifts upward(seen, 1, {half * (2 * free.bottom - 1), half * (1 - 2 * free.top)});
+  distance = std::max(1e-3f, margin * std::max({nearest, across.least_distance(), upward.least_distance()}));
+  target += across.middle(distance) * axes.right + upward.middle(distance) * axes.up;
 }
 
 Orbit top_view(const Bounds& bounds, float aspect) {
