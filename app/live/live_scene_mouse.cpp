@@ -70,7 +70,8 @@ std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
                         .springs = shown.springs,
                         .masses = shown.masses,
                         .cut = parts_->view.cut,
-                        .hidden = {hidden.get(), snapshot.robots->size()}});
+                        .hidden = {hidden.get(), snapshot.robots->size()},
+                        .near = parts_->pointed_drawn().last_boxes()});
 }
 
 HitDetails LiveScene::describe(const Hit& hit) const {

@@ -83,19 +83,26 @@ float room_around(const Robot& robot, float wanted) {
   return longest > 0 ? 0.12f * longest : 0.05f;
 }
 
+// Whether a ray misses a robot that is twice as large as a box, and turned.
+bool misses(const render::Ray& ray, const render::Bounds& near) {
+  const Vector3 reach = Vector3::all((near.high - near.low).norm());
+  return distance_to_box(ray, {near.center() - reach, near.center() + reach}) == far_away;
+}
+
 // A robot whose box the ray meets.
 struct Candidate {
   std::size_t index;
   float enter, room;  // [m]
 };
 
-// Nearest first. A look at each position costs little beside a look at each face.
+// Nearest first.
 std::vector<Candidate> candidates_on(const Snapshot& snapshot, std::span<const Vector3> offsets, const render::Ray& ray,
                                      const PickOptions& options) {
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < std::min(snapshot.robots->size(), offsets.size()); ++i) {
     if (!options.hidden.empty() && options.hidden[i]) continue;
     const float room = room_around(*snapshot.robots->robots[i].robot, options.radius);
+    if (i < options.near.size() && !snapshot.telemetry[i].exploded && misses(ray, options.near[i])) continue;
     render::Bounds box = render::bounds_of(floats(snapshot.positions_of(i))).moved(offsets[i]);
     box.low -= render::Vector3::all(room);
     box.high += render::Vector3::all(room);

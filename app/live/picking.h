@@ -28,9 +28,10 @@ struct Hit {
 
 struct PickOptions {
   bool skin = true, springs = false, masses = false;  // what the ray can meet: what is shown
-  float radius = 0;                // how near the ray must pass a spring or mass [m]; 0 = from the lengths
-  std::optional<render::Cut> cut;  // the ray ignores what it cuts away
-  std::span<const bool> hidden;    // robots left out; empty = none
+  float radius = 0;                      // how near the ray must pass a spring or mass [m]; 0 = from the lengths
+  std::optional<render::Cut> cut;        // the ray ignores what it cuts away
+  std::span<const bool> hidden;          // robots left out; empty = none
+  std::span<const render::Bounds> near;  // about where each robot is, so that others need not be read; empty = unknown
 };
 
 // Returns the nearest hit. `offsets`: per robot, added to its coordinates in the view [m]. A robot without faces is

@@ -7,9 +7,8 @@
 namespace mercury {
 namespace {
 
-std::span<const Vec3> part(std::span<const Vec3> all, const LiveRobots& robots, std::size_t robot) {
-  const std::size_t first = robots.mass_offsets[robot];
-  return all.subspan(first, robots.mass_offsets[robot + 1] - first);
+std::size_t mass_count(const LiveRobots& robots, std::size_t robot) {
+  return robots.mass_offsets[robot + 1] - robots.mass_offsets[robot];
 }
 
 }  // namespace
@@ -27,14 +26,18 @@ std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
   return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
 }
 
-std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const { return part(positions.host(), *robots, robot); }
+std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const {
+  return positions.host(robots->mass_offsets[robot], mass_count(*robots, robot));
+}
 std::span<const Vec3> Snapshot::velocities_of(std::size_t robot) const {
-  return velocities.empty() ? std::span<const Vec3>{} : part(velocities, *robots, robot);
+  if (velocities.empty()) return {};
+  return std::span(velocities).subspan(robots->mass_offsets[robot], mass_count(*robots, robot));
 }
 
 std::span<Vec3> SnapshotPositions::set_on_host(std::size_t masses) {
   device_.reset();
   on_host_ = true;
+  host_parts_.clear();
   host_.resize(size_ = masses);
   return host_;
 }
@@ -42,6 +45,7 @@ std::span<Vec3> SnapshotPositions::set_on_host(std::size_t masses) {
 void SnapshotPositions::set_on_device(std::unique_ptr<PositionSnapshot> positions, std::size_t masses) {
   device_ = std::move(positions);
   on_host_ = false;
+  host_parts_.clear();
   size_ = masses;
 }
 
@@ -49,10 +53,20 @@ std::span<const Vec3> SnapshotPositions::host() const {
   const std::lock_guard lock(mutex_);
   if (!on_host_) {
     host_.resize(size_);
-    device_->read(host_);
+    device_->read(0, host_);
     on_host_ = true;
   }
   return host_;
+}
+std::span<const Vec3> SnapshotPositions::host(std::size_t first, std::size_t count) const {
+  const std::lock_guard lock(mutex_);
+  if (on_host_) return std::span(host_).subspan(first, count);
+  std::vector<Vec3>& part = host_parts_[first];
+  if (part.size() < count) {
+    part.resize(count);
+    device_->read(first, part);
+  }
+  return std::span(part).first(count);
 }
 
 }  // namespace mercury

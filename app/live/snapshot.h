@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -82,6 +83,8 @@ class SnapshotPositions {
   const PositionSnapshot* device() const { return device_.get(); }
   // The first call copies them from the GPU and waits for that. Throws DeviceError.
   std::span<const Vec3> host() const;
+  // The same for `count` of them from `first` on; those of a robot arrive much sooner than those of all.
+  std::span<const Vec3> host(std::size_t first, std::size_t count) const;
 
  private:
   std::size_t size_ = 0;
@@ -89,6 +92,7 @@ class SnapshotPositions {
   mutable std::mutex mutex_;
   mutable bool on_host_ = true;
   mutable std::vector<Vec3> host_;
+  mutable std::map<std::size_t, std::vector<Vec3>> host_parts_;  // copied by themselves, by the first mass
 };
 
 // What a view says about the timeline of its robots (timeline.h). Times are simulated [s].

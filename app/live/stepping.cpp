@@ -82,7 +82,7 @@ std::int64_t Stepping::due(bool watched) {
 
 // Several steps per call are faster for large batches, because the state stays in the cache.
 std::int64_t Stepping::slice() const {
-  constexpr double usual = 0.006, longest = 0.1;  // wall time between two looks at the commands [s]
+  constexpr double usual = 0.015, longest = 0.1;  // wall time between two looks at the commands [s]
   return std::max(steps_in(usual), std::min(steps_in(longest), std::int64_t{16}));
 }
 

@@ -127,11 +127,11 @@ class CudaSnapshot final : public PositionSnapshot {
       : device_(earlier.device_), masses_(earlier.masses_), store_(earlier.store_), later_(later.store_),
         share_(share) {}
 
-  void read(std::span<Vec3> out) const override {
-    read_store(*store_, out);
+  void read(std::size_t first, std::span<Vec3> out) const override {
+    read_store(*store_, first, out);
     if (!later_) return;
     std::vector<Vec3> next(out.size());
-    read_store(*later_, next);
+    read_store(*later_, first, next);
     interpolate(out, next, share_);
   }
 
@@ -142,11 +142,11 @@ class CudaSnapshot final : public PositionSnapshot {
   std::size_t masses() const { return masses_; }
 
  private:
-  void read_store(const Store& store, std::span<Vec3> out) const {
+  void read_store(const Store& store, std::size_t first, std::span<Vec3> out) const {
     check(cudaSetDevice(device_), "choosing the device");
     store.taken.wait();
-    check(cudaMemcpyAsync(out.data(), store.data(), std::min(out.size(), masses_) * sizeof(Vec3),
-                          cudaMemcpyDeviceToHost, cudaStreamPerThread),
+    check(cudaMemcpyAsync(out.data(), store.data() + 3 * first, out.size_bytes(), cudaMemcpyDeviceToHost,
+                          cudaStreamPerThread),
           "reading positions");
     check(cudaStreamSynchronize(cudaStreamPerThread), "reading positions");
   }

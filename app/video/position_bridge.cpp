@@ -45,8 +45,8 @@ class HostSnapshot final : public PositionSnapshot {
   }
   ~HostSnapshot() override { pool_->put(std::move(positions_)); }
 
-  void read(std::span<Vec3> out) const override {
-    std::copy_n(positions_.begin(), std::min(out.size(), positions_.size()), out.begin());
+  void read(std::size_t first, std::span<Vec3> out) const override {
+    std::ranges::copy(std::span(positions_).subspan(first, out.size()), out.begin());
   }
   std::span<const float> floats() const { return {&positions_.data()->x, 3 * positions_.size()}; }
 

@@ -27,8 +27,8 @@ namespace mercury {
 class PositionSnapshot {
  public:
   virtual ~PositionSnapshot() = default;
-  // Copies the first out.size() positions to the host; waits for them. Safe to call from any thread.
-  virtual void read(std::span<Vec3> out) const = 0;
+  // Copies out.size() positions from that of mass `first` on to the host; waits for them. Safe to call from any thread.
+  virtual void read(std::size_t first, std::span<Vec3> out) const = 0;
 };
 
 // The simulating thread calls take() and the drawing thread calls show(), possibly at the same time. A bridge serves

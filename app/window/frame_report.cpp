@@ -123,9 +123,11 @@ void FrameReport::write(PanelContext& context, const ShownView& shown, const Fra
                       {"cost",
                        {{"scene", cost.scene},
                         {"thumbnails", cost.thumbnails},
+                        {"mouse", cost.mouse},
                         {"panels", cost.panels},
                         {"positions", cost.positions},
                         {"view", cost.drawn},
+                        {"waiting", cost.waiting},
                         {"present", cost.present}}},
                       {"passes", passes_of(context.viewport.renderer())}});
 }

@@ -68,10 +68,11 @@ class Viewer {
   void draw_text();
   void use_mouse();
   void draw_handles();
+  void place_views();
   void update_renderer();
   void begin_close();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
-  void draw_picture(double dt);
+  bool draw_picture(double dt);
   void present();
   void update_screenshot();
   bool anything_moves() const;
@@ -243,10 +244,17 @@ void Viewer::frame(double dt) {
 
 void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   imgui_.set_appearance(scene_.view().theme, preferences_.text_scale);
-  const auto panels_begin = Clock::now();
   imgui_.begin_frame(events);
-  split_area(panels_.draw_frame());
+  const bool left_out = pacing_.leaves_out_frame(window_.input().has_backlog());
+  split_area(whole_area_);
+  const auto mouse_begin = Clock::now();
   use_mouse();
+  times_.mouse = since(mouse_begin);
+  // In a steady view, the GPU draws the robots while the panels are made.
+  const bool early = camera_placed_ && redraws_ == 0 && scene_.playing();
+  bool draws = early && !left_out && draw_picture(dt);
+  const auto panels_begin = Clock::now();
+  split_area(panels_.draw_frame());
   panels_.draw_over(area_, shown_camera_, dt);
   draw_text();
   draw_handles();
@@ -254,16 +262,20 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();
-  if (pacing_.leaves_out_frame(window_.input().has_backlog())) {
+  if (left_out) {
     imgui_.discard_frame();
     return;
   }
-  const auto drawing = Clock::now();
-  draw_picture(dt);
+  if (!early) draws = draw_picture(dt);
+  const auto waiting = Clock::now();
+  viewport_.finish();
+  second_.finish();
+  if (draws) times_.drawn += since(waiting);
+  place_views();  // the panels may have moved
   const auto presenting = Clock::now();
   present();
-  times_.present = since(presenting);
-  pacing_.showed_frame(since(drawing));
+  times_.present = since(presenting) - times_.waiting;
+  pacing_.showed_frame((draws ? times_.drawn : 0) + since(presenting), draws);
 }
 
 // Two sides have a half each, and frames of the same size.
@@ -331,11 +343,17 @@ std::optional<std::size_t> Viewer::followed(const CameraPlan& plan) const {
   return std::nullopt;
 }
 
-// Hands changed robots, quality and size to the renderer.
-void Viewer::update_renderer() {
+// Puts the robots' picture into its area.
+void Viewer::place_views() {
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
   viewport_.place(static_cast<int>(area_.low.x * scale.x), static_cast<int>(area_.low.y * scale.y),
                   static_cast<int>(area_.width() * scale.x), static_cast<int>(area_.height() * scale.y));
+  second_.place(scale);
+}
+
+// Hands changed robots, quality and size to the renderer.
+void Viewer::update_renderer() {
+  place_views();
   DrawnScene& live = scene_.drawn();
   if (preferences_.quality != render::Quality::automatic && preferences_.quality != viewport_.renderer().quality()) {
     viewport_.renderer().set_quality(preferences_.quality);
@@ -346,7 +364,7 @@ void Viewer::update_renderer() {
     bodies_revision_ = live.bodies_revision();
     redraws_ = 3;
   }
-  if (second_.update(scene_, viewport_.renderer().quality(), scale)) redraws_ = 3;
+  if (second_.update(scene_, viewport_.renderer().quality())) redraws_ = 3;
   if (!camera_placed_ && !live.bounds().empty()) {
     CameraPlan plan = scene_.view().camera;
     plan.mode = camera_.mode();  // unless the user has changed it, that of the scene
@@ -377,7 +395,8 @@ bool Viewer::leaves_gpu_to_steps() const {
   return redraws_ == 0 && !mouse_.busy() && !camera_.gliding() && !recorder_.busy();
 }
 
-void Viewer::draw_picture(double dt) {
+// Returns whether it draws the robots.
+bool Viewer::draw_picture(double dt) {
   update_renderer();
   DrawnScene& live = scene_.drawn();
   camera_.floor =
@@ -395,14 +414,13 @@ void Viewer::draw_picture(double dt) {
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool changed = shown_changes_ != changes_of(scene_);
   const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
-  if (!moving && !stepped && !changed && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return;
-  if (pacing_.keeps_robots(leaves_gpu_to_steps(), viewport_.draw_seconds())) return;
+  if (!moving && !stepped && !changed && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return false;
+  if (pacing_.keeps_robots(leaves_gpu_to_steps())) return false;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
   times_.positions = since(begin);
   viewport_.draw(without_text(live.scene()), camera, moving);
   second_.draw(scene_, camera, moving);
-  pacing_.drew_robots();
   ++drawn_;
   times_.drawn = since(begin);
   shown_camera_ = camera;
@@ -410,6 +428,7 @@ void Viewer::draw_picture(double dt) {
   shown_changes_ = changes_of(scene_);
   shown_time_ = live.scene().time;
   redraws_ = std::max(0, redraws_ - 1);
+  return true;
 }
 
 void Viewer::present() {
@@ -428,6 +447,12 @@ void Viewer::present() {
   // After both, so that neither shows it.
   if (recorder_.recording() && !recorder_.ending())
     imgui_.draw_on_top([&](ImDrawList& list) { draw_recording_sign(list, context_, area_); });
+  times_.waiting = 0;
+  if (log_) {
+    const auto begin = Clock::now();
+    glFinish();
+    times_.waiting = since(begin);
+  }
   window_.swap_buffers();
 }
 

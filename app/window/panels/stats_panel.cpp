@@ -58,6 +58,7 @@ void draw_frame_times(PanelContext& context) {
   figure("frames", fmt::format("{:.0f}/s", mean.whole > 0 ? 1 / mean.whole : 0), "mean of the last 240 frames");
   figure("scene", milliseconds(mean.scene), "taking over the newest state from the physics");
   figure("view", milliseconds(mean.drawn), "drawing the robots, including the wait for the GPU");
+  figure("mouse", milliseconds(mean.mouse), "following it, and finding what it points at");
   figure("panels", milliseconds(mean.panels), "drawing the panels");
   figure("thumbnails", milliseconds(mean.thumbnails), "pictures of robots in panels");
   figure("display", milliseconds(mean.present), "bringing the frame to the display");

@@ -8,14 +8,17 @@ namespace {
 
 constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
 constexpr double rare_frame_time = 1.0 / 20;  // while the GPU is left to the steps [s]
+constexpr double longest_rest = 0.6;          // of the panels, then [s]
 constexpr double frame_share = 0.05;          // of the GPU's time, then
 // While input is waiting, frames are left out for this multiple of the time that the last one took.
 constexpr double backlog_factor = 4;
 
 }  // namespace
 
+double Pacing::rest() const { return (1 / frame_share - 1) * robots_seconds_ - since(drawn_at_); }
+
 double Pacing::wait(double spent, bool gpu_for_steps) const {
-  if (gpu_for_steps) return std::max(0.0, rare_frame_time - spent);
+  if (gpu_for_steps) return std::max({0.0, rare_frame_time - spent, std::min(rest(), longest_rest - spent)});
   return paced_ ? std::max(0.0, frame_time - spent) : 0;
 }
 
@@ -23,13 +26,14 @@ bool Pacing::leaves_out_frame(bool backlog) const {
   return backlog && since(shown_at_) < backlog_factor * frame_seconds_;
 }
 
-bool Pacing::keeps_robots(bool gpu_for_steps, double draw_seconds) const {
-  return gpu_for_steps && since(drawn_at_) < (1 / frame_share - 1) * draw_seconds;
-}
+bool Pacing::keeps_robots(bool gpu_for_steps) const { return gpu_for_steps && rest() > 0; }
 
-void Pacing::showed_frame(double seconds) {
+void Pacing::showed_frame(double seconds, bool robots) {
   shown_at_ = Clock::now();
   frame_seconds_ = seconds;
+  if (!robots) return;
+  drawn_at_ = shown_at_;
+  robots_seconds_ = seconds;
 }
 
 void FrameHistory::add(const FrameTimes& times) {
@@ -46,8 +50,10 @@ FrameTimes FrameHistory::mean() const {
     mean.scene += share * times.scene;
     mean.positions += share * times.positions;
     mean.drawn += share * times.drawn;
+    mean.mouse += share * times.mouse;
     mean.panels += share * times.panels;
     mean.thumbnails += share * times.thumbnails;
+    mean.waiting += share * times.waiting;
     mean.present += share * times.present;
   }
   return mean;

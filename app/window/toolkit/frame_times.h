@@ -19,18 +19,19 @@ class Pacing {
   // If drawing is slow, input queues up. Handling it comes first; a frame now and then shows the progress.
   bool leaves_out_frame(bool backlog) const;
   // Whether the robots of the last frame stay: then frames get a small share of the GPU's time.
-  bool keeps_robots(bool gpu_for_steps, double draw_seconds) const;
+  bool keeps_robots(bool gpu_for_steps) const;
 
-  void drew_robots() { drawn_at_ = Clock::now(); }
-  void showed_frame(double seconds);  // that drawing and showing it took
+  // `seconds`: that drawing and showing it took; `robots`: it drew them.
+  void showed_frame(double seconds, bool robots);
 
  private:
   using Clock = std::chrono::steady_clock;
+  double rest() const;  // from now on, so that frames have their share of the GPU's time [s]
   static double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
   bool paced_;
   Clock::time_point shown_at_, drawn_at_;
-  double frame_seconds_ = 0;  // of the last frame that was shown
+  double frame_seconds_ = 0, robots_seconds_ = 0;  // of the last frame that was shown, and with robots
 };
 
 // The parts of one frame [s].
@@ -39,8 +40,10 @@ struct FrameTimes {
   double scene = 0;      // taking over the newest state from the physics
   double positions = 0;  // part of the view: bringing positions to the renderer
   double drawn = 0;      // drawing the robots
+  double mouse = 0;      // following it, and finding what it points at
   double panels = 0;     // drawing the panels
   double thumbnails = 0;
+  double waiting = 0;  // for the GPU to finish the frame; measured only for a report, else part of the next
   double present = 0;  // bringing the frame to the display
 };
 

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double details_delay = 0.25;  // the pointer rests this long before details appear [s]
 constexpr double mark_delay = 0.05;     // the same for its name and for marks [s]
+constexpr double pick_period = 0.05;    // between two looks at what is under a mouse that rests [s]
 constexpr double pick_share = 0.1;      // of the time, for looking what is under a mouse that rests
 constexpr float wheel_factor = 0.88f;   // of the distance to the target, per notch
 
@@ -169,7 +170,7 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
   const auto begin = std::chrono::steady_clock::now();
   hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  next_pick_ = ImGui::GetTime() + seconds / pick_share;
+  next_pick_ = ImGui::GetTime() + std::max(pick_period, seconds / pick_share);
 }
 
 void MouseController::draw(const ViewportArea& area, const render::Camera& camera, const Box& legend) {

@@ -144,14 +144,19 @@ ViewportArea SecondView::split(LiveScene& scene, const ViewportArea& whole) {
   return halves.first;
 }
 
-bool SecondView::update(LiveScene& scene, render::Quality quality, ImVec2 scale) {
+void SecondView::place(ImVec2 scale) {
+  if (!area_ || !viewport_) return;
+  viewport_->place(static_cast<int>(area_->low.x * scale.x), static_cast<int>(area_->low.y * scale.y),
+                   static_cast<int>(area_->width() * scale.x), static_cast<int>(area_->height() * scale.y));
+}
+
+bool SecondView::update(LiveScene& scene, render::Quality quality) {
   if (!area_) return false;
   if (!viewport_) {
     viewport_.emplace(gl_context_, quality);
     revision_ = 0;
+    place(ImGui::GetIO().DisplayFramebufferScale);
   }
-  viewport_->place(static_cast<int>(area_->low.x * scale.x), static_cast<int>(area_->low.y * scale.y),
-                   static_cast<int>(area_->width() * scale.x), static_cast<int>(area_->height() * scale.y));
   if (viewport_->renderer().quality() != quality) viewport_->renderer().set_quality(quality);
   const DrawnScene& drawn = *scene.second_drawn();
   if (revision_ == drawn.bodies_revision()) return false;
@@ -162,6 +167,10 @@ bool SecondView::update(LiveScene& scene, render::Quality quality, ImVec2 scale)
 
 void SecondView::draw(LiveScene& scene, const render::Camera& camera, bool moving) {
   if (viewport_) viewport_->draw(without_text(scene.second_drawn()->scene()), camera, moving);
+}
+
+void SecondView::finish() {
+  if (viewport_) viewport_->finish();
 }
 
 void SecondView::present(int framebuffer_height) const {

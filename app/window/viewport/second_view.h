@@ -39,10 +39,12 @@ class SecondView {
   // Whether the number of sides changed in this frame.
   bool changed() const { return changed_; }
 
-  // Hands robots, quality and size to the renderer; `scale`: pixels of the framebuffer per pixel of the window. Returns
-  // whether the robots changed.
-  bool update(LiveScene& scene, render::Quality quality, ImVec2 scale);
+  // `scale`: pixels of the framebuffer per pixel of the window.
+  void place(ImVec2 scale);
+  // Hands robots and quality to the renderer. Returns whether the robots changed.
+  bool update(LiveScene& scene, render::Quality quality);
   void draw(LiveScene& scene, const render::Camera& camera, bool moving);
+  void finish();
   void present(int framebuffer_height) const;
   bool coarse() const { return viewport_ && viewport_->coarse(); }
 

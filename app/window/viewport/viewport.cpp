@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace mercury::window {
 namespace {
@@ -49,13 +49,19 @@ void Viewport::adapt(bool moving) {
 
 void Viewport::draw(const render::Scene& scene, const render::Camera& camera, bool moving) {
   adapt(moving);
-  const auto begin = std::chrono::steady_clock::now();
+  begun_ = std::chrono::steady_clock::now();
   const int width = std::max(16, static_cast<int>(std::lround(share_ * static_cast<float>(width_))));
   const int height = std::max(16, static_cast<int>(std::lround(share_ * static_cast<float>(height_))));
   if (width != renderer_.width() || height != renderer_.height()) renderer_.resize(width, height);
   renderer_.draw(scene, camera);
+  glFlush();
+  drawing_ = true;
+}
+
+void Viewport::finish() {
+  if (!std::exchange(drawing_, false)) return;
   glFinish();
-  draw_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  draw_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
 }
 
 void Viewport::present(int framebuffer_height) const {

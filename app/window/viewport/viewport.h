@@ -8,6 +8,8 @@
 
 #include <imgui.h>
 
+#include <chrono>
+
 #include "render/renderer.h"
 
 namespace mercury::window {
@@ -42,14 +44,16 @@ class Viewport {
   void place(int x, int y, int width, int height);
   float aspect() const { return static_cast<float>(width_) / static_cast<float>(height_); }
 
-  // Draws the scene. `moving`: the next frame follows at once, so this one may be coarse.
+  // Begins to draw the scene. `moving`: the next frame follows at once, so this one may be coarse.
   void draw(const render::Scene& scene, const render::Camera& camera, bool moving);
+  // Waits until the scene is drawn. Whatever the caller does in between, the GPU draws meanwhile.
+  void finish();
   // Copies the last frame into the window's framebuffer, which has this height [pixels].
   void present(int framebuffer_height) const;
 
   render::Renderer& renderer() { return renderer_; }
   const render::Renderer& renderer() const { return renderer_; }
-  double draw_seconds() const { return draw_seconds_; }  // of the last frame, including the wait for the GPU
+  double draw_seconds() const { return draw_seconds_; }  // of the last frame, from draw() to the end of finish()
   float share() const { return share_; }                 // of the area's width and height that was drawn, 0.5 to 1
   // True if the last frame had reduced resolution.
   bool coarse() const { return share_ < 1; }
@@ -61,6 +65,8 @@ class Viewport {
   bool software_;
   int x_ = 0, y_ = 0, width_ = 64, height_ = 64;
   float share_ = 1, moving_share_ = 1;
+  std::chrono::steady_clock::time_point begun_;
+  bool drawing_ = false;
   double draw_seconds_ = 0;
 };
 

@@ -29,7 +29,9 @@ class PretendedDevice final : public PositionBridge {
     explicit Kept(const Simulation& simulation) : positions(simulation.mass_count()) {
       simulation.read_positions(positions);
     }
-    void read(std::span<Vec3> out) const override { std::copy_n(positions.begin(), out.size(), out.begin()); }
+    void read(std::size_t first, std::span<Vec3> out) const override {
+      std::ranges::copy(std::span(positions).subspan(first, out.size()), out.begin());
+    }
     std::vector<Vec3> positions;
   };
   std::unique_ptr<PositionSnapshot> take(const Simulation& simulation) override {

@@ -73,7 +73,7 @@ TEST_F(PositionBridgeTest, MixedSnapshotsLieOnTheLineBetweenTheTwo) {
   const auto bridge = make_host_bridge();
   const auto read = [&](const PositionSnapshot& snapshot) {
     std::vector<Vec3> positions(simulation_->mass_count());
-    snapshot.read(positions);
+    snapshot.read(0, positions);
     return positions;
   };
   simulation_->step(200);
@@ -120,8 +120,8 @@ TEST_F(PositionBridgeTest, BothBridgesGiveTheSamePictureBitForBit) {
     EXPECT_EQ(mixed.bytes, picture(*host.bridge, *mixed_on_host).bytes) << moment;
     EXPECT_NE(mixed.bytes, drawn.bytes) << moment;
     std::vector<Vec3> read_from_device(simulation_->mass_count()), read_from_host(simulation_->mass_count());
-    mixed_on_device->read(read_from_device);
-    mixed_on_host->read(read_from_host);
+    mixed_on_device->read(0, read_from_device);
+    mixed_on_host->read(0, read_from_host);
     EXPECT_EQ(read_from_device, read_from_host) << moment;
   }
 }

@@ -76,7 +76,7 @@ class WatchedBridge final : public PositionBridge {
     return host_->mix(earlier, later, share);
   }
   void show(const PositionSnapshot& snapshot, render::Renderer& renderer, render::Scene& scene) override {
-    snapshot.read(drawn.emplace_back(renderer.mass_count()));
+    snapshot.read(0, drawn.emplace_back(renderer.mass_count()));
     host_->show(snapshot, renderer, scene);
   }
   std::vector<std::vector<Vec3>> drawn;
@@ -167,7 +167,7 @@ TEST(MomentSampler, MixesPlacesAndTakesColorsOfTheNearerStep) {
     const FrameSnapshot snapshot = take({.step = step, .share = share});
     const double fallen = (1 - share) * height(n) + share * height(n + 1);
     std::vector<Vec3> positions(4);
-    snapshot.positions->read(positions);
+    snapshot.positions->read(0, positions);
     EXPECT_NEAR(snapshot.time, (n + share) * dt, 1e-9);
     EXPECT_NEAR(positions[0].z, fallen, 1e-7) << step;
     EXPECT_NEAR(snapshot.telemetry[0].center_of_mass.z, 0.25 + fallen, 1e-6) << step;
