@@ -6,6 +6,7 @@
 #include <bit>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 
 #include "mercury/simulation.h"
 #include "sim/simulation_parts.h"
@@ -159,13 +160,39 @@ void SharedActuation::attach(Backend& backend) {
 void SharedActuation::set_drives(const Backend& backend, std::span<const DriveSetting> settings) {
   const SharedArray<float>& drive = arrays_.drive;
   if (settings.empty()) return;
-  const auto write = [&](float* to) {
-    for (const DriveSetting& setting : settings) to[setting.robot * drive.columns + setting.actuator] = setting.drive;
+  const auto write = [&](float* to, const std::uint8_t* driven) {
+    for (const DriveSetting& setting : settings) {
+      const std::size_t at = setting.robot * drive.columns + setting.actuator;
+      if (driven[at] != held_drive) to[at] = setting.drive;
+    }
   };
-  if (drive.cuda_device < 0) return write(drive.data.get());
+  if (drive.cuda_device < 0) return write(drive.data.get(), arrays_.driven.data.get());
   std::vector<float> values = read(backend, drive);
-  write(values.data());
+  write(values.data(), read(backend, arrays_.driven).data());
   backend.copy_shared(drive.data.get(), values.data(), values.size() * sizeof(float));
+}
+
+void SharedActuation::hold(const Backend& backend, std::span<const HeldDrive> held) {
+  std::vector<float> drives = read(backend, arrays_.drive);
+  std::vector<std::uint8_t> driven = read(backend, arrays_.driven);
+  for (std::size_t at = 0; at < driven.size(); ++at) {
+    if (driven[at] != held_drive) continue;
+    drives[at] = none;
+    driven[at] = 0;
+  }
+  for (const HeldDrive& one : held) {
+    if (one.actuator >= counts_.at(one.robot)) throw std::out_of_range("the robot does not have this actuator");
+    const std::size_t at = one.robot * arrays_.drive.columns + one.actuator;
+    drives[at] = one.drive;
+    driven[at] = held_drive;
+  }
+  if (driven.empty()) return;
+  const std::vector<float> nothing(driven.size(), none);
+  for (const auto field : fields) {
+    const std::vector<float>& values = field == &Actuation::drive ? drives : nothing;
+    backend.copy_shared((arrays_.*field).data.get(), values.data(), values.size() * sizeof(float));
+  }
+  backend.copy_shared(arrays_.driven.data.get(), driven.data(), driven.size());
 }
 
 ActuatorSetting SharedActuation::setting(std::size_t at) const {
@@ -218,6 +245,12 @@ SharedArray<std::uint8_t> Simulation::shared_exploded() {
 }
 const Actuation& Simulation::actuation() {
   return parts_->shared_actuation.arrays(*parts_->backend, parts_->robots, parts_->changed_tables);
+}
+
+void Simulation::hold_drives(std::span<const HeldDrive> held) {
+  if (held.empty() && !parts_->shared_actuation.is_made()) return;
+  (void)actuation();
+  parts_->shared_actuation.hold(*parts_->backend, held);
 }
 
 }  // namespace mercury

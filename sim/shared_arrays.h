@@ -57,6 +57,9 @@ class SharedActuation {
              std::span<const std::unique_ptr<MaterialTable>> tables);
   // Writes drives into arrays that have been made.
   void set_drives(const Backend& backend, std::span<const DriveSetting> settings);
+  // Simulation::hold_drives(), into arrays that have been made.
+  void hold(const Backend& backend, std::span<const HeldDrive> held);
+  bool is_made() const { return made_; }
   // Lets the backend read the arrays again, after it failed to exchange robots.
   void attach(Backend& backend);
   // The robots' own materials have changed in the backend.

@@ -23,10 +23,10 @@ Simulation simulation_of(const std::vector<LiveRobot>& live, const Configuration
   }
   Simulation simulation(configuration, robots);
   for (std::size_t i = 0; i < live.size(); ++i) {
-    if (!live[i].materials) continue;
-    for (std::size_t id = 1; id < live[i].materials->size(); ++id)
+    for (std::size_t id = 1; live[i].materials && id < live[i].materials->size(); ++id)
       simulation.set_material(i, static_cast<MaterialId>(id), (*live[i].materials)[id]);
   }
+  simulation.hold_drives(held_drives(live));
   return simulation;
 }
 

@@ -198,6 +198,10 @@ class LiveScene {
   // phase.
   bool scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale);
   void reset_materials(const std::vector<RobotId>& robots);  // to those of the robot's file
+  // Drives the actuators of this name by hand, in place of their sines and brains: u in [-1, 1]; none = releases them.
+  // Like the materials, drives belong to undo and the timeline; no file keeps them.
+  void drive_actuator(const std::vector<RobotId>& robots, const std::string& actuator, std::optional<float> drive);
+  void release_actuators(const std::vector<RobotId>& robots);
   const ViewSettings& view() const;
   void set_view(const ViewSettings& settings);  // details that the environment lacks are ignored
 

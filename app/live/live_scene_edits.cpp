@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/live/live_scene_parts.h"
 #include "mercury/error.h"
@@ -19,8 +20,8 @@ std::string LiveScene::Parts::free_name(const std::string& wanted) const {
     if (std::string name = fmt::format("{}-{}", wanted, number); !taken(name)) return name;
 }
 
-bool LiveScene::Parts::change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
-                                        const std::function<bool(DocumentRobot&)>& change) {
+bool LiveScene::Parts::change_robots(const std::vector<RobotId>& robots, const char* name, const std::string& key,
+                                     const std::function<bool(DocumentRobot&)>& change) {
   adopt_moment();
   SceneDocument after = document;
   bool any = false;
@@ -181,15 +182,14 @@ bool LiveScene::set_material(const std::vector<RobotId>& robots, MaterialId id, 
     parts_->report(Severity::warning, error.what());
     return false;
   }
-  return parts_->change_materials(robots, "change a material", fmt::format("material {}", id),
-                                  [&](DocumentRobot& robot) {
-                                    const auto now = materials_of(robot.body);
-                                    if (id == air || id >= now.size() || now[id] == material) return false;
-                                    auto table = std::make_shared<std::vector<Material>>(now.begin(), now.end());
-                                    (*table)[id] = material;
-                                    robot.body.materials = std::move(table);
-                                    return true;
-                                  });
+  return parts_->change_robots(robots, "change a material", fmt::format("material {}", id), [&](DocumentRobot& robot) {
+    const auto now = materials_of(robot.body);
+    if (id == air || id >= now.size() || now[id] == material) return false;
+    auto table = std::make_shared<std::vector<Material>>(now.begin(), now.end());
+    (*table)[id] = material;
+    robot.body.materials = std::move(table);
+    return true;
+  });
 }
 
 bool LiveScene::scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale) {
@@ -198,7 +198,7 @@ bool LiveScene::scale_materials(const std::vector<RobotId>& robots, const Materi
     parts_->report(Severity::warning, "materials: give finite factors, and at least 0 for the stiffness");
     return false;
   }
-  return parts_->change_materials(robots, "tune materials", "materials", [&](DocumentRobot& robot) {
+  return parts_->change_robots(robots, "tune materials", "materials", [&](DocumentRobot& robot) {
     const auto own = materials_of(*robot.body.robot);
     auto table = std::make_shared<std::vector<Material>>(own.begin(), own.end());
     for (std::size_t id = 1; id < table->size(); ++id) {
@@ -217,10 +217,38 @@ bool LiveScene::scale_materials(const std::vector<RobotId>& robots, const Materi
 
 void LiveScene::reset_materials(const std::vector<RobotId>& robots) {
   end_edit();
-  parts_->change_materials(robots, "reset materials", {}, [](DocumentRobot& robot) {
+  parts_->change_robots(robots, "reset materials", {}, [](DocumentRobot& robot) {
     const bool tuned = robot.body.materials != nullptr;
     robot.body.materials.reset();
     return tuned;
+  });
+}
+
+void LiveScene::drive_actuator(const std::vector<RobotId>& robots, const std::string& name,
+                               std::optional<float> drive) {
+  const float value = drive ? std::clamp(*drive, -1.0f, 1.0f) : std::numeric_limits<float>::quiet_NaN();
+  parts_->change_robots(robots, drive ? "drive an actuator" : "release an actuator", "drive " + name,
+                        [&](DocumentRobot& robot) {
+                          const std::vector<Actuator> actuators = actuators_of(*robot.body.robot);
+                          const auto found = std::ranges::find(actuators, name, &Actuator::name);
+                          if (found == actuators.end() || (!drive && !robot.body.drives)) return false;
+                          std::vector<float> drives(actuators.size(), std::numeric_limits<float>::quiet_NaN());
+                          if (robot.body.drives) drives = *robot.body.drives;
+                          float& own = drives[static_cast<std::size_t>(found - actuators.begin())];
+                          if (own == value || (std::isnan(own) && std::isnan(value))) return false;
+                          own = value;
+                          const bool any = !std::ranges::all_of(drives, [](float u) { return std::isnan(u); });
+                          robot.body.drives = any ? std::make_shared<const std::vector<float>>(drives) : nullptr;
+                          return true;
+                        });
+}
+
+void LiveScene::release_actuators(const std::vector<RobotId>& robots) {
+  end_edit();
+  parts_->change_robots(robots, "release actuators", {}, [](DocumentRobot& robot) {
+    const bool driven = robot.body.drives != nullptr;
+    robot.body.drives.reset();
+    return driven;
   });
 }
 
@@ -271,6 +299,7 @@ bool LiveScene::edit_voxel(RobotId id, const VoxelSide& side, const VoxelEdit& e
   parts_->edit(names[static_cast<std::size_t>(edit.tool)]);
   DocumentRobot* robot = parts_->find(id);
   robot->body.robot = std::move(changed);
+  robot->body.drives.reset();                    // perhaps it has other actuators
   robot->source = {.file = robot->source.file};  // the seed no longer makes this robot
   // Masses have other numbers now.
   std::erase_if(parts_->document.attachments, [&](const Attachment& one) { return one.spring.robot == id; });

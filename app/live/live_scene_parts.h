@@ -180,8 +180,8 @@ struct LiveScene::Parts {
   void update_ghosts();
   void play_recording(const std::shared_ptr<TrajectoryReader>& recording, const std::filesystem::path& file);
   // Applies `change` to robots as one edit. `change` returns whether it changed its robot.
-  bool change_materials(const std::vector<RobotId>& robots, const char* name, const std::string& key,
-                        const std::function<bool(DocumentRobot&)>& change);
+  bool change_robots(const std::vector<RobotId>& robots, const char* name, const std::string& key,
+                     const std::function<bool(DocumentRobot&)>& change);
   RobotId append(Robot robot, RobotProvenance source);
   // Reports robots that break a rule and leaves them out.
   void remove_invalid(std::vector<Robot>& robots);

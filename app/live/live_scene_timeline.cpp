@@ -63,7 +63,8 @@ void LiveScene::Parts::adopt_moment() {
     DocumentRobot robot{.body = body, .source = known ? known->source : RobotProvenance{}};
     if (known) robot.body.name = known->body.name;
     if (known) robot.made = known->made, robot.parent = known->parent;
-    same = same && known && known->body.robot == body.robot && known->body.materials == body.materials;
+    same = same && known && known->body.robot == body.robot && known->body.materials == body.materials &&
+           known->body.drives == body.drives;
     then.robots.push_back(std::move(robot));
   }
   same =

@@ -63,6 +63,7 @@ bool Population::follow(const std::vector<LiveRobot>& wanted) {
     arrange(wanted);
   }
   follow_materials(wanted, changed);
+  follow_drives(wanted, changed);
   robots_ = listed(wanted, *robots_, changed);
   return changed;
 }
@@ -133,6 +134,7 @@ void Population::settle() {
 void Population::start_over() {
   forget_departed();
   robots_ = listed({}, *robots_, true);
+  held_ = false;
 }
 
 // Keeps the robots that stay, adds the new ones after them, then sorts all into the wanted order.
@@ -198,6 +200,18 @@ void Population::follow_materials(const std::vector<LiveRobot>& wanted, bool arr
     std::ranges::copy(materials.first(std::min(materials.size(), table.size())), table.begin());
   }
   if (!tables.empty()) simulation_.set_materials(tables);
+}
+
+// New robots have values of their materials in the shared arrays, which hold_drives() takes out.
+void Population::follow_drives(const std::vector<LiveRobot>& wanted, bool arranged) {
+  bool any = false, same = !arranged;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    any = any || wanted[i].drives;
+    same = same && robots_->robots[i].drives == wanted[i].drives;
+  }
+  if (same || !(any || held_)) return;
+  held_ = true;
+  simulation_.hold_drives(held_drives(wanted));
 }
 
 std::vector<Perturbation> Population::perturbations_of(std::span<const LivePerturbation> perturbations) const {

@@ -23,8 +23,8 @@ class Population {
       : simulation_(simulation),
         robots_(std::make_shared<LiveRobots>(LiveRobots{.revision = revision, .mass_offsets = {0}})) {}
 
-  // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials. Returns whether the
-  // list changed; materials alone do not count.
+  // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials and
+  // what drives them by hand. Returns whether the list changed; materials and drives alone do not count.
   bool follow(const std::vector<LiveRobot>& wanted);
   // Keeps the clock and the states of all robots under a number, in place of those that it had. The oldest numbers are
   // forgotten if the states fill the memory.
@@ -54,6 +54,7 @@ class Population {
   void arrange(const std::vector<LiveRobot>& wanted);
   void begin_as(const std::vector<LiveRobot>& wanted, const std::vector<std::size_t>& indices, std::size_t robot);
   void follow_materials(const std::vector<LiveRobot>& wanted, bool arranged);
+  void follow_drives(const std::vector<LiveRobot>& wanted, bool arranged);
 
   Simulation& simulation_;
   std::shared_ptr<const LiveRobots> robots_;
@@ -63,6 +64,7 @@ class Population {
     std::map<RobotId, Departed> states;
   };
   std::map<std::uint64_t, Surroundings> surroundings_;
+  bool held_ = false;  // drives were held by hand
   std::size_t departed_masses_ = 0;
 };
 

@@ -46,12 +46,12 @@ void ReplayLog::cut(const Simulation& simulation, const LiveRobots& robots,
   };
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const LiveRobot& robot = robots.robots[i];
-    Track track{.robot = robot.robot, .materials = robot.materials, .older = {}, .newer = {}};
+    Track track{.robot = robot.robot, .materials = robot.materials, .drives = robot.drives};
     if (const auto found = tracks_.find(robot.id); found != tracks_.end() && found->second.robot == robot.robot) {
       track.older = found->second.older;
       track.newer = is_known(found->second.newer) ? found->second.newer : track.older;
     }
-    if (!is_known(track.older)) track.older = track.newer = start(simulation, i, robot.materials);
+    if (!is_known(track.older)) track.older = track.newer = start(simulation, i, track);
     tracks[robot.id] = std::move(track);
   }
   tracks_ = std::move(tracks);
@@ -74,27 +74,30 @@ void ReplayLog::follow(const Simulation& simulation, const LiveRobots& robots,
       track = std::move(known->second);
       if (track.materials != robot.materials)
         events_.add({.step = step, .materials = std::pair{robot.id, robot.materials}});
+      if (track.drives != robot.drives) events_.add({.step = step, .drives = std::pair{robot.id, robot.drives}});
     } else {
       fresh.push_back(i);
     }
     track.robot = robot.robot;
     track.materials = robot.materials;
+    track.drives = robot.drives;
   }
   tracks_ = std::move(tracks);
   if (perturbations != perturbations_ && !tracks_.empty()) events_.add({.step = step, .perturbations = perturbations});
   perturbations_ = perturbations;
   for (const std::size_t i : fresh) {
     Track& track = tracks_.at(robots.robots[i].id);
-    track.older = track.newer = start(simulation, i, track.materials);
+    track.older = track.newer = start(simulation, i, track);
   }
   if (!fresh.empty()) events_.seal();
 }
 
 std::shared_ptr<const ReplayLog::Start> ReplayLog::start(const Simulation& simulation, std::size_t index,
-                                                         const Materials& materials) const {
+                                                         const Track& track) const {
   return std::make_shared<const Start>(Start{.clock = simulation.clock(),
                                              .configuration = simulation.configuration(),
-                                             .materials = materials,
+                                             .materials = track.materials,
+                                             .drives = track.drives,
                                              .state = simulation.state(index),
                                              .perturbations = perturbations_,
                                              .next = events_.end()});
@@ -108,7 +111,7 @@ void ReplayLog::stepped(double seconds, const Simulation& simulation, const Live
     const auto track = tracks_.find(robots.robots[i].id);
     if (track == tracks_.end()) continue;
     track->second.older = std::move(track->second.newer);
-    track->second.newer = start(simulation, i, track->second.materials);
+    track->second.newer = start(simulation, i, track->second);
   }
   events_.seal();
 }
@@ -125,6 +128,10 @@ std::function<Repro()> ReplayLog::repro(const Simulation& simulation, const Live
   const auto found = tracks_.find(robot.id);
   if (found == tracks_.end() || found->second.robot != robot.robot) return {};
   const auto& start = found->second.older;
+  bool by_hand = start->drives != nullptr;
+  for (std::uint64_t number = start->next; const SceneEvent* event = events_.find(number); ++number)
+    by_hand = by_hand || (event->drives && event->drives->first == robot.id);
+  if (by_hand) return {};
   return [record = Record{robot, start, events_.copy(), start->next - events_.begin(), telemetry, simulation.steps(),
                           simulation.device_name()}] { return record.repro(); };
 }

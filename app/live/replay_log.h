@@ -49,7 +49,8 @@ class ReplayLog {
               const std::vector<LivePerturbation>& perturbations);
   // Call it after steps that took `seconds` of wall time, and after repro() for each robot that exploded in them.
   void stepped(double seconds, const Simulation& simulation, const LiveRobots& robots);
-  // Returns a function that makes the repro of a robot that has just exploded; empty if the robot is unknown. `index`
+  // Returns a function that makes the repro of a robot that has just exploded; empty if the robot is unknown, or was
+  // driven by hand, which a repro cannot repeat. `index`
   // is its index in `simulation` and `robots`. The function may be called later and on any thread: thousands of robots
   // may explode at once, and few of their repros are ever needed.
   std::function<Repro()> repro(const Simulation& simulation, const LiveRobots& robots, std::size_t index,
@@ -61,6 +62,7 @@ class ReplayLog {
     Clock clock;
     Configuration configuration;
     Materials materials;
+    SceneEvent::Drives drives;
     State state;
     std::vector<LivePerturbation> perturbations;
     std::uint64_t next = 0;  // number of the first event after it
@@ -68,6 +70,7 @@ class ReplayLog {
   struct Track {
     std::shared_ptr<const Robot> robot;
     Materials materials;
+    SceneEvent::Drives drives;
     std::shared_ptr<const Start> older, newer;
   };
   static constexpr double period = 5;                    // wall time of steps between two states [s]
@@ -84,7 +87,7 @@ class ReplayLog {
     std::string device_name;
     Repro repro() const;
   };
-  std::shared_ptr<const Start> start(const Simulation& simulation, std::size_t index, const Materials& materials) const;
+  std::shared_ptr<const Start> start(const Simulation& simulation, std::size_t index, const Track& track) const;
 
   SceneEvents& events_;
   std::map<RobotId, Track> tracks_;

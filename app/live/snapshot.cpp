@@ -2,6 +2,7 @@
 #include "app/live/snapshot.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace mercury {
@@ -12,6 +13,14 @@ std::size_t mass_count(const LiveRobots& robots, std::size_t robot) {
 }
 
 }  // namespace
+
+std::vector<HeldDrive> held_drives(std::span<const LiveRobot> robots) {
+  std::vector<HeldDrive> held;
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    for (std::size_t a = 0; robots[i].drives && a < robots[i].drives->size(); ++a)
+      if (const float drive = (*robots[i].drives)[a]; !std::isnan(drive)) held.push_back({i, a, drive});
+  return held;
+}
 
 std::span<const Material> materials_of(const LiveRobot& robot) {
   return robot.materials ? std::span<const Material>(*robot.materials) : materials_of(*robot.robot);

@@ -32,12 +32,16 @@ struct LiveRobot {
   std::string name;  // replaces the robot's own name
   std::shared_ptr<const Robot> robot;
   std::shared_ptr<const std::vector<Material>> materials;  // replaces its table, same length; or null
+  std::shared_ptr<const std::vector<float>> drives = {};   // by hand, per actuator; NaN = not driven; null = none is
   RobotId begins_as = 0;  // a new robot begins in the state of this one, if it is the same body; 0 = at rest
   friend bool operator==(const LiveRobot&, const LiveRobot&) = default;
 };
 
 // The table in use, indexed by material id.
 std::span<const Material> materials_of(const LiveRobot& robot);
+
+// What drives these robots by hand, for Simulation::hold_drives().
+std::vector<HeldDrive> held_drives(std::span<const LiveRobot> robots);
 
 // The robots of a snapshot, in the order of the window's list of robots.
 struct LiveRobots {

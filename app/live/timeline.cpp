@@ -149,10 +149,11 @@ void SceneEvents::add(SceneEvent event) {
   copied_.reset();
   if (!events_.empty() && end() > sealed_) {
     SceneEvent& last = events_.back();
-    const bool same_kind =
-        last.configuration.has_value() == event.configuration.has_value() &&
-        last.perturbations.has_value() == event.perturbations.has_value() &&
-        (last.materials ? last.materials->first : 0) == (event.materials ? event.materials->first : 0);
+    const auto robot_of = [](const auto& part) { return part ? part->first : RobotId{0}; };
+    const bool same_kind = last.configuration.has_value() == event.configuration.has_value() &&
+                           last.perturbations.has_value() == event.perturbations.has_value() &&
+                           robot_of(last.materials) == robot_of(event.materials) &&
+                           robot_of(last.drives) == robot_of(event.drives);
     if (last.step == event.step && same_kind && !event.configuration) {
       last = std::move(event);
       return;

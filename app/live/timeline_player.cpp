@@ -150,10 +150,12 @@ void TimelinePlayer::apply_events() {
     changed = true;
     std::vector<LivePerturbation> perturbations = event->perturbations.value_or(batch_.perturbations());
     if (event->configuration) batch_.configure(*event->configuration);
-    if (event->materials) {
+    if (event->materials || event->drives) {
       std::vector<LiveRobot> robots = batch_.robots()->robots;
-      for (LiveRobot& robot : robots)
-        if (robot.id == event->materials->first) robot.materials = event->materials->second;
+      for (LiveRobot& robot : robots) {
+        if (event->materials && robot.id == event->materials->first) robot.materials = event->materials->second;
+        if (event->drives && robot.id == event->drives->first) robot.drives = event->drives->second;
+      }
       batch_.follow(robots);
     }
     batch_.perturb(std::move(perturbations));

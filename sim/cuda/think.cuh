@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "mercury/shared_array.h"
 #include "sim/cuda/actuate.cuh"
 #include "sim/cuda/thread_context.cuh"
 #include "sim/physics/activation.h"
@@ -352,7 +353,8 @@ class Thought {
     const ActuationSources& sources = thoughts_.sources;
     for (std::uint32_t i = robot_.thread(); i < of_.outputs; i += robot_.threads()) {
       const BrainPlan::Output output = tables_.outputs[of_.first_output + i];
-      sources.drive[of_.robot * sources.columns + output.actuator] = drive_of(z_[of_.senses + output.neuron]);
+      const std::size_t at = of_.robot * sources.columns + output.actuator;
+      if (sources.driven[at] != held_drive) sources.drive[at] = drive_of(z_[of_.senses + output.neuron]);
     }
     wait();
     for (std::uint32_t i = robot_.thread(); i < of_.driven; i += robot_.threads())

@@ -110,6 +110,28 @@ TEST_P(ActuationOf, IsInTheElasticEnergyAndThePowerOfMuscles) {
   EXPECT_NEAR(telemetry[1].muscle_power, k * a * std::sin(angle) * a * 7 * std::cos(angle), 1e-4);
 }
 
+// In steps of a microsecond the masses hardly move, as above.
+TEST_P(ActuationOf, IsHeldByHandUntilItIsReleasedAndMaterialsKeepTheirOwnValues) {
+  const double k = 50, a = double{0.3f};
+  const std::vector<Robot> robots(2, bodies::pair({50, 0.3f, 4, 1}));
+  SharedBatch batch = this->batch({.dt = 1e-6, .environment = empty_space()}, robots);
+  const HeldDrive held{.robot = 0, .actuator = 0, .drive = 0.5f};
+  batch->hold_drives(std::span(&held, 1));
+  batch->step();
+  EXPECT_NEAR(batch->telemetry()[0].elastic_energy, k / 2 * std::pow(a * 0.5, 2), 15 * 4e-7);
+  EXPECT_NEAR(batch->telemetry()[1].elastic_energy, k / 2 * std::pow(a * std::sin(1.0), 2), 15 * 2e-6);
+  batch->hold_drives({});
+  const MaterialId id = robots[0].springs[0].material;
+  Material weaker = batch->material(1, id);
+  weaker.amplitude = 0.1f;
+  batch->set_material(1, id, weaker);
+  batch->step();
+  EXPECT_NEAR(batch->telemetry()[0].elastic_energy, k / 2 * std::pow(a * std::sin(1.0), 2), 15 * 4e-6);
+  EXPECT_NEAR(batch->telemetry()[1].elastic_energy, k / 2 * std::pow(0.1 * std::sin(1.0), 2), 15 * 4e-6);
+  const HeldDrive missing{.robot = 0, .actuator = 1, .drive = 0};
+  EXPECT_THROW(batch->hold_drives(std::span(&missing, 1)), std::out_of_range);
+}
+
 TEST_P(ActuationOf, EqualsMaterialsWithTheseValues) {
   const std::vector<Robot> robots = crowd();
   for (const Solver solver : {Solver::force, Solver::xpbd}) {

@@ -93,6 +93,21 @@ struct Reference {
   }
 };
 
+TEST_P(BrainOn, LeavesADriveAloneThatIsHeld) {
+  const Robot robot = thinker();
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+  const HeldDrive held{.robot = 0, .actuator = 1, .drive = 0.25f};
+  batch->hold_drives(std::span(&held, 1));
+  batch->step(60);
+  const std::vector<float> neurons = batch->brain_state(0).neurons;
+  EXPECT_EQ(drives(batch)[0], neurons[3]);
+  EXPECT_EQ(drives(batch)[1], 0.25f);
+  EXPECT_NE(neurons[4], 0.25f);
+  batch->hold_drives({});
+  batch->step(60);
+  EXPECT_EQ(drives(batch)[1], batch->brain_state(0).neurons[4]);
+}
+
 TEST_P(BrainOn, ThinksAsTheEquationSays) {
   const Robot robot = thinker();
   SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));

@@ -6,8 +6,8 @@ namespace mercury::window {
 // Each is in NAME_panel.cpp.
 using MakePanel = std::unique_ptr<Panel>(PanelContext& context);
 MakePanel make_robots_panel, make_browser_panel, make_ranking_panel, make_evolution_panel, make_compare_panel,
-    make_view_panel, make_tune_panel, make_measure_panel, make_brain_panel, make_video_panel, make_messages_panel,
-    make_stats_panel;
+    make_view_panel, make_tune_panel, make_measure_panel, make_actuators_panel, make_brain_panel, make_video_panel,
+    make_messages_panel, make_stats_panel;
 
 namespace {
 
@@ -20,6 +20,7 @@ constexpr PanelEntry table[] = {
     {"View", "\uf06e", "colors, arrows, camera, appearance", Side::right, make_view_panel},
     {"Tune", "\uf1de", "solver, environment, materials", Side::right, make_tune_panel},
     {"Measure", "\uf201", "plots over time", Side::right, make_measure_panel},
+    {"Actuators", "\uf256", "sliders that drive the muscles of a robot by hand", Side::right, make_actuators_panel},
     {"Brain", "\uf1e0", "senses, neurons and muscles of a robot that thinks", Side::right, make_brain_panel},
     {"Video", "\uf03d", "videos and screenshots", Side::right, make_video_panel},
     {"Messages", "\uf0f3", "everything that the window has reported", Side::right, make_messages_panel},

@@ -20,7 +20,6 @@ namespace {
 
 constexpr float name_share = 0.42f;  // of a row's width
 constexpr double rest_time = 0.4;    // of the pointer before a tooltip appears [s]
-constexpr const char* reset_tooltip = "reset to the default";
 constexpr const char* dots = "\xe2\x80\xa6";
 constexpr std::size_t longest_tooltip = 2000;  // [letters]
 
@@ -32,33 +31,6 @@ std::size_t letter_end(const std::string& text, std::size_t at) {
 std::size_t letter_begin(const std::string& text, std::size_t at) {
   while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80) ++at;
   return at;
-}
-
-// Like row(), with a reset button beside the name if `differs`. Returns true when that button was clicked.
-bool row_with_reset(const char* name, const char* text, bool differs) {
-  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x, names = name_share * width;
-  const float side = 0.75f * ImGui::GetFrameHeight();
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(shortened(name, differs ? names - side - 0.3f * ImGui::GetFontSize() : names).c_str());
-  tooltip(text);
-  bool clicked = false;
-  if (differs) {
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(left + names - side - 0.3f * ImGui::GetFontSize());
-    const float top = ImGui::GetCursorPosY();
-    ImGui::SetCursorPosY(top + (ImGui::GetFrameHeight() - side) / 2);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
-    clicked = ImGui::Button("\xe2\x86\x90##reset", {side, side});
-    ImGui::PopStyleVar();
-    tooltip(reset_tooltip);
-    ImGui::SameLine();
-    ImGui::SetCursorPosY(top);
-  } else {
-    ImGui::SameLine();
-  }
-  ImGui::SetCursorPosX(left + names);
-  ImGui::SetNextItemWidth(width - names);
-  return clicked;
 }
 
 // Where the knob is: 0 = left, 1 = right.
@@ -170,6 +142,32 @@ void tooltip(const char* text) {
   ImGui::TextUnformatted(brief(text, longest_tooltip).c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
+}
+
+bool row_with_reset(const char* name, const char* text, bool differs, const char* reset_text) {
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x, names = name_share * width;
+  const float side = 0.75f * ImGui::GetFrameHeight();
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shortened(name, differs ? names - side - 0.3f * ImGui::GetFontSize() : names).c_str());
+  tooltip(text);
+  bool clicked = false;
+  if (differs) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left + names - side - 0.3f * ImGui::GetFontSize());
+    const float top = ImGui::GetCursorPosY();
+    ImGui::SetCursorPosY(top + (ImGui::GetFrameHeight() - side) / 2);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
+    clicked = ImGui::Button("\xe2\x86\x90##reset", {side, side});
+    ImGui::PopStyleVar();
+    tooltip(reset_text);
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(top);
+  } else {
+    ImGui::SameLine();
+  }
+  ImGui::SetCursorPosX(left + names);
+  ImGui::SetNextItemWidth(width - names);
+  return clicked;
 }
 
 void row(const char* name, const char* text) { row_with_reset(name, text, false); }

@@ -40,7 +40,17 @@ struct Actuation {
   SharedArray<float> frequency;      // [rad/s]
   SharedArray<float> phase;          // [rad]
   SharedArray<float> drive;          // u [1]
-  SharedArray<std::uint8_t> driven;  // 0 or 1
+  SharedArray<std::uint8_t> driven;  // 0, 1, or held_drive
+};
+
+// In Actuation::driven: a brain leaves the drive alone.
+inline constexpr std::uint8_t held_drive = 2;
+
+// The drive of one actuator that is set by hand (Simulation::hold_drives()).
+struct HeldDrive {
+  std::size_t robot = 0;
+  std::size_t actuator = 0;  // index in actuators_of(robot)
+  float drive = 0;           // u [1]
 };
 
 }  // namespace mercury

@@ -147,6 +147,10 @@ class Simulation {
   // NaN where they differ, and is not driven. Every step() and step_in_stream() reads the arrays when it begins. add()
   // and keep() make other arrays with the same values for the robots that stay.
   const Actuation& actuation();
+  // Drives these actuators, on every backend, in place of their sines and brains, until a call leaves them out. In
+  // actuation(), the amplitude, frequency and phase of all actuators become NaN: materials keep their own. Throws
+  // std::out_of_range for an actuator that its robot does not have.
+  void hold_drives(std::span<const HeldDrive> held);
 
   // Brains (mercury/brain.h) think by themselves while the simulation steps: on the device if that is one CUDA device,
   // else on the host. They drive their actuators through actuation(), where what a program writes for these lasts until

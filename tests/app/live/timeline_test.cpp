@@ -229,6 +229,49 @@ TEST_P(TimelineOn, AnEditInThePastGoesOnFromThere) {
   EXPECT_EQ(scene.configuration(), moments_[2].configuration);
 }
 
+TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
+  LiveScene scene(options()), free(options());
+  std::vector<Moment> moments;
+  for (LiveScene* one : {&scene, &free}) {
+    test::make_robots(*one, 2);
+    make_steps(*one, 30);
+  }
+  const std::vector<RobotId> robots = test::ids_of(scene);
+  const auto drives = [&] { return scene.document().robots[0].body.drives; };
+  const std::string name = actuators_of(*scene.document().robots[0].body.robot).front().name;
+  moments.push_back(moment_of(scene));
+  scene.drive_actuator(robots, name, 0.8f);
+  scene.end_edit();
+  make_steps(scene, 30);
+  make_steps(free, 30);
+  moments.push_back(moment_of(scene));
+  EXPECT_FALSE(same_bits(scene.snapshot().positions.host(), free.snapshot().positions.host()));
+  scene.drive_actuator(robots, name, {});
+  scene.end_edit();
+  EXPECT_FALSE(drives()) << "released";
+  make_steps(scene, 30);
+  moments.push_back(moment_of(scene));
+  for (const std::size_t i : {0, 2, 1}) {
+    scene.seek(moments[i].time);
+    scene.wait_until_done();
+    expect_shown(scene, moments[i]);
+  }
+  scene.seek(moments[2].time);
+  scene.wait_until_done();
+  scene.undo();
+  ASSERT_TRUE(drives());
+  EXPECT_EQ(drives()->front(), 0.8f);
+  scene.undo();
+  EXPECT_FALSE(drives());
+  scene.redo();
+  ASSERT_TRUE(drives());
+  // At an earlier moment, the document takes the drives of that moment before the next edit.
+  scene.seek(moments[0].time);
+  scene.wait_until_done();
+  scene.go_on();
+  EXPECT_FALSE(drives());
+}
+
 TEST_P(TimelineOn, AForkMovesAsItsOriginalUntilItIsChanged) {
   LiveScene scene(options());
   make_history(scene);

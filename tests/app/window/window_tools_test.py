@@ -8,6 +8,26 @@ from window_driver import SIZE, Window, scratch
 
 
 class ToolsTest(WindowCase):
+    def test_a_slider_drives_a_muscle_by_hand_until_it_is_released(self):
+        window = self.small("--paused")
+        window.open("Actuators")
+        x, y = window.place("actuator.0")
+        width, since = window.items["actuator.0"]["width"], window.mark()
+        window.drag((x, y), (x + 0.2 * width, y), (x + width, y))
+        self.assertEqual(window.wait("drive", since, lambda event: event["drive"] == 1)["drive"], 1)
+        window.place("actuator.0.release")
+        since = window.mark()
+        window.key("ctrl+z")  # the whole drag is one edit
+        window.until("release", lambda: "actuator.0.release" not in window.items)
+        window.key("ctrl+y")
+        window.click("actuator.0.release")
+        self.assertIsNone(window.wait("drive", since)["drive"])
+        window.until("release", lambda: "actuator.0.release" not in window.items)
+        window.drag((x, y), (x + width, y))
+        window.click("actuators.release")
+        window.until("release", lambda: "actuator.0.release" not in window.items)
+        self.finish(window)
+
     def test_messages_are_kept_and_can_be_copied(self):
         window = self.small("--paused")
         for name in ("first.json", "second.json"):
