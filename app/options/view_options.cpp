@@ -30,11 +30,11 @@ void ViewOptions::add_to(const Command& command) {
   add(add_choice(command, "--colormap", words_.colormap, std::move(maps), "Colors of values (default: by quantity)"));
   add(command.add_flag("--log-scale", words_.log_scale, "Spread the colors by ratios of values"));
   add(add_value(command, "--show", words_.show,
-                "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact, and "
+                "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact,force, and "
                 "path,labels,captions,legend,clock,scale (default skin,clock)",
                 "LIST", text_from)
-          .offering({"skin", "springs", "masses", "drag", "lift", "velocity", "gravity", "contact", "path", "labels",
-                     "captions", "legend", "clock", "scale"}));
+          .offering({"skin", "springs", "masses", "drag", "lift", "velocity", "gravity", "contact", "force", "path",
+                     "labels", "captions", "legend", "clock", "scale"}));
   add(add_number(command, "--arrow-length", words_.arrow_length, "Above 1: longer arrows (default 1)", "X"));
   add(add_number(command, "--arrow-density", words_.arrow_density, "Share of the arrows that is drawn (default 1)",
                  "X"));

@@ -22,6 +22,7 @@ constexpr render::Color lift_color = render::rgb(0x3d8bff);
 constexpr render::Color velocity_color = render::rgb(0xffffff);
 constexpr render::Color gravity_color = render::rgb(0xce93d8);
 constexpr render::Color contact_color = render::rgb(0xff3dc2);
+constexpr render::Color force_color = render::rgb(0xffb23d);
 constexpr render::Color weak_color = render::rgb(0xdfe6e4);
 
 // Whether the arrow with this index is drawn: the same ones at any time, and more of them with a higher density.
@@ -102,14 +103,25 @@ void Arrows::add_contacts(std::size_t robot, const GroupState& state, std::vecto
                           render::Vector3(contact.force), contact_color});
 }
 
+void Arrows::add_forces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& forces) const {
+  const Robot& body = simulation_.robot(robot);
+  const std::vector<Vec3> on_masses = net_forces(simulation_, robot, state);
+  const std::size_t first = simulation_.mass_offsets()[robot];
+  for (std::size_t i = 0; i < body.masses.size(); ++i)
+    if (is_drawn(i, kinds_.density))
+      forces.push_back({static_cast<std::uint32_t>(robot), render::Vector3(state.positions[first + i]),
+                        render::Vector3(on_masses[i]), force_color});
+}
+
 std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const Telemetry> telemetry) {
   std::vector<render::Arrow> forces, lifts, velocities;
-  std::vector<render::Arrow> gravities, contacts;
+  std::vector<render::Arrow> gravities, contacts, nets;
   const render::Vector3 gravity = render::Vector3(gravity_of(simulation_.configuration().environment));
   for (std::size_t i = 0; i < simulation_.size(); ++i) {
     if (telemetry[i].exploded) continue;
     if (kinds_.drag || kinds_.lift) add_faces(i, state, forces, lifts);
     if (kinds_.contact) add_contacts(i, state, contacts);
+    if (kinds_.force) add_forces(i, state, nets);
     const render::Vector3 middle = render::Vector3(telemetry[i].center_of_mass);
     const auto index = static_cast<std::uint32_t>(i);
     if (kinds_.velocity) velocities.push_back({index, middle, render::Vector3(telemetry[i].velocity), velocity_color});
@@ -124,7 +136,9 @@ std::vector<render::Arrow> Arrows::at(const GroupState& state, std::span<const T
   fit(forces, force_);
   fit(velocities, velocity_);
   fit(contacts, contact_);
-  for (const auto* more : {&velocities, &gravities, &contacts}) forces.insert(forces.end(), more->begin(), more->end());
+  fit(nets, net_);
+  for (const auto* more : {&velocities, &gravities, &contacts, &nets})
+    forces.insert(forces.end(), more->begin(), more->end());
   std::erase_if(forces, [](const render::Arrow& arrow) { return !arrow.vector.is_finite(); });
   return forces;
 }
@@ -139,6 +153,7 @@ std::string Arrows::key() const {
   add(kinds_.drag && !kinds_.lift, "drag", force_);
   add(kinds_.lift && !kinds_.drag, "lift", force_);
   add(kinds_.contact, contact_.name, contact_);
+  add(kinds_.force, net_.name, net_);
   add(kinds_.velocity, velocity_.name, velocity_);
   return text;
 }

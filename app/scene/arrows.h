@@ -17,11 +17,12 @@ struct ArrowKinds {
   bool velocity = false;            // of each robot's center of mass
   bool gravity = false;             // at each robot's center of mass
   bool contact = false;             // force of the floor on each mass
+  bool force = false;               // net force on each mass
   float length = 1;                 // factor, 0.01 to 100
-  float density = 1;                // share of the arrows of faces and contacts that is drawn, 0 to 1
+  float density = 1;                // share of the arrows of faces and masses that is drawn, 0 to 1
   float threshold = 0;              // arrows shorter than this share of the usual longest are left out, 0 to 1
 
-  bool any() const { return drag || lift || velocity || gravity || contact; }
+  bool any() const { return drag || lift || velocity || gravity || contact || force; }
   friend bool operator==(const ArrowKinds&, const ArrowKinds&) = default;
 };
 
@@ -51,11 +52,12 @@ class Arrows {
   void add_faces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& drag,
                  std::vector<render::Arrow>& lift) const;
   void add_contacts(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& contacts) const;
+  void add_forces(std::size_t robot, const GroupState& state, std::vector<render::Arrow>& forces) const;
 
   const Simulation& simulation_;
   ArrowKinds kinds_;
   float longest_;  // of an arrow whose value is that of its gauge [m]
-  Gauge force_{"force", "N"}, velocity_{"velocity", "m/s"}, contact_{"contact", "N"};
+  Gauge force_{"force", "N"}, velocity_{"velocity", "m/s"}, contact_{"contact", "N"}, net_{"net force", "N"};
 };
 
 }  // namespace mercury

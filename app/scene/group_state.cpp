@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/group_state.h"
 
+#include <variant>
+
 namespace mercury {
 
 GroupState read_state(const Simulation& simulation) {
@@ -27,6 +29,30 @@ std::vector<FloorForce> floor_forces(const Simulation& simulation, std::size_t r
   const auto materials = materials_at(materials_of(simulation, robot), configuration.environment, state.time);
   return floor_forces(simulation.robot(robot), configuration, materials, masses_of(simulation, robot, state.positions),
                       masses_of(simulation, robot, state.velocities));
+}
+
+std::vector<Vec3> net_forces(const Simulation& simulation, std::size_t index, const GroupState& state) {
+  const Robot& robot = simulation.robot(index);
+  const Environment& environment = simulation.configuration().environment;
+  const auto positions = masses_of(simulation, index, state.positions);
+  const auto velocities = masses_of(simulation, index, state.velocities);
+  const auto materials = materials_at(materials_of(simulation, index), environment, state.time);
+  std::vector<Vec3> forces = spring_forces(robot, materials, positions);
+  const Vec3 gravity = gravity_of(environment);
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = forces[i] + mass_of(robot, i) * gravity;
+  if (const auto* water = std::get_if<PointDrag>(&environment.water))
+    for (std::size_t i = 0; i < forces.size(); ++i)
+      forces[i] = forces[i] + water->point_drag * (water->flow - velocities[i]);
+  if (has_face_forces(environment))
+    for (const Face& face : robot.faces) {
+      const FaceForce force = face_force(environment, face, positions, velocities);
+      for (const std::uint16_t corner : {face.a, face.b, face.c})
+        forces[corner] = forces[corner] + (1.0f / 3) * (force.drag + force.lift);
+    }
+  for (const FloorForce& contact : floor_forces(simulation, index, state))
+    forces[contact.mass] = forces[contact.mass] + contact.force;
+  for (const std::uint16_t fixed : robot.fixed) forces[fixed] = Vec3{};
+  return forces;
 }
 
 }  // namespace mercury

@@ -27,4 +27,7 @@ std::vector<Material> materials_of(const Simulation& simulation, std::size_t rob
 // floor_forces() of mercury/observables.h for one robot.
 std::vector<FloorForce> floor_forces(const Simulation& simulation, std::size_t robot, const GroupState& state);
 
+// The sum of all forces on each mass of one robot, of springs, water, gravity and the floor [N]. 0 for fixed masses.
+std::vector<Vec3> net_forces(const Simulation& simulation, std::size_t robot, const GroupState& state);
+
 }  // namespace mercury

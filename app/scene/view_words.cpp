@@ -140,6 +140,7 @@ Shown shown_from(const std::string& text) {
                                                               {"velocity", &shown.arrows.velocity},
                                                               {"gravity", &shown.arrows.gravity},
                                                               {"contact", &shown.arrows.contact},
+                                                              {"force", &shown.arrows.force},
                                                               {"path", &shown.path},
                                                               {"labels", &shown.labels},
                                                               {"captions", &shown.captions},

@@ -41,6 +41,7 @@ constexpr Switch switches[] = {
     {"velocity arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.velocity; }},
     {"gravity arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.gravity; }},
     {"contact arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.contact; }},
+    {"force arrows", [](ViewSettings& view) -> bool& { return view.shown.arrows.force; }},
     {"logarithmic color scale", [](ViewSettings& view) -> bool& { return view.log_scale; }},
     {"color scale of all robots", [](ViewSettings& view) -> bool& { return view.scale_all; }},
 };

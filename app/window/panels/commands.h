@@ -53,8 +53,8 @@ void with_window_camera(PanelContext& context, const std::function<void()>& act)
 // Copies the command line that makes this scene to the clipboard. `subcommand`: "view" or "render".
 void copy_as_command(PanelContext& context, const char* subcommand);
 
-// Switches the drag arrows on or off.
-void toggle_drag_arrows(PanelContext& context);
+// Switches the arrows of a command on or off.
+void toggle_arrows(PanelContext& context, Action action);
 
 // Camera bookmarks, and views along an axis (camera_commands.cpp).
 
@@ -154,6 +154,11 @@ void draw_voxel_outline(PanelContext& context, const Hit& hit, const ViewportAre
 
 // Applies the tool to what was clicked. Returns false if no body is edited, or the click was beside it.
 bool edit_body_at(PanelContext& context, const Hit& hit);
+
+// The figures of the mass and spring that were clicked, as a card below a panel, where it covers no robot
+// (probes_panel.cpp).
+void draw_pinned_card(PanelContext& context);
+float pinned_card_height();  // [pixels]
 
 // The part of the View panel that chooses what the colors show (color_section.cpp).
 

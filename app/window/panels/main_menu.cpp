@@ -110,6 +110,9 @@ void Panels::draw_view_menu() {
     ImGui::Separator();
     menu_item("Frame", Action::frame, context_.scene.robot_count() > 0);
     menu_item("Drag arrows", Action::drag_arrows, true, context_.scene.view().shown.arrows.drag);
+    const ArrowKinds& arrows = context_.scene.view().shown.arrows;
+    menu_item("Contact arrows", Action::contact_arrows, true, arrows.contact);
+    menu_item("Force arrows", Action::force_arrows, true, arrows.force);
     menu_item("Dark or light", Action::theme);
     menu_item("Two views", Action::compare, context_.scene.robot_count() > 0, context_.scene.second().has_value());
     menu_item("Ghosts of the selected", Action::ghosts,

@@ -73,6 +73,8 @@ void Panels::execute(Action action) {
       change_camera(action);
       break;
     case Action::drag_arrows:
+    case Action::contact_arrows:
+    case Action::force_arrows:
     case Action::color_material:
     case Action::color_activation:
     case Action::color_strain:
@@ -187,7 +189,9 @@ void Panels::change_view(Action action) {
   }
   switch (action) {
     case Action::drag_arrows:
-      toggle_drag_arrows(context_);
+    case Action::contact_arrows:
+    case Action::force_arrows:
+      toggle_arrows(context_, action);
       return;
     case Action::cells:
       set_layout(view, view.layout == Layout::cells ? Layout::grid : Layout::cells);

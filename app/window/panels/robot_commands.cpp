@@ -153,13 +153,24 @@ void copy_as_command(PanelContext& context, const char* subcommand) {
   for (const std::string& line : command.notes) context.toasts.show(Tone::warning, line);
 }
 
-void toggle_drag_arrows(PanelContext& context) {
+void toggle_arrows(PanelContext& context, Action action) {
+  struct Kind {
+    Action action;
+    const char* name;
+    bool ArrowKinds::*shown;
+    bool (*exists)(const Environment& environment);
+    const char* missing;
+  };
+  static constexpr Kind kinds[] = {
+      {Action::drag_arrows, "drag", &ArrowKinds::drag, has_face_forces, "only the ocean environment has drag arrows"},
+      {Action::contact_arrows, "contact", &ArrowKinds::contact, has_ground, "without ground there are no contacts"},
+      {Action::force_arrows, "force", &ArrowKinds::force, [](const Environment&) { return true; }, ""}};
+  const Kind& kind = *std::ranges::find(kinds, action, &Kind::action);
   ViewSettings view = context.scene.view();
-  bool& drag = view.shown.arrows.drag;
-  drag = !drag;
-  if (drag && !has_face_forces(context.scene.configuration().environment))
-    context.toasts.show(Tone::info, "only the ocean environment has drag arrows");
-  context.log.write("view", {{"drag", drag}});
+  bool& shown = view.shown.arrows.*kind.shown;
+  shown = !shown;
+  if (shown && !kind.exists(context.scene.configuration().environment)) context.toasts.show(Tone::info, kind.missing);
+  context.log.write("view", {{kind.name, shown}});
   context.scene.set_view(view);
 }
 

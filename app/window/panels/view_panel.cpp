@@ -93,19 +93,22 @@ bool draw_arrow_section(ViewSettings& view, const Environment& environment, cons
     changed |=
         check("Lift", "lift of the water on each face; only in the ocean environment", shown.arrows.lift, "lift", log);
     ImGui::EndDisabled();
+    changed |= check("Force", with_keys(keys, "net force on each mass", Action::force_arrows), shown.arrows.force,
+                     "force", log);
     ImGui::TableNextColumn();
     changed |= check("Velocity", "velocity of each center of mass", shown.arrows.velocity, "velocity", log);
     ImGui::BeginDisabled(!has_gravity(environment) && !shown.arrows.gravity);
     changed |= check("Gravity", "at each center of mass, if there is gravity", shown.arrows.gravity, "gravity", log);
     ImGui::EndDisabled();
     ImGui::BeginDisabled(!has_ground(environment) && !shown.arrows.contact);
-    changed |=
-        check("Contact", "force of the ground on each mass, if there is ground", shown.arrows.contact, "contact", log);
+    changed |= check("Contact",
+                     with_keys(keys, "force of the ground on each mass, if there is ground", Action::contact_arrows),
+                     shown.arrows.contact, "contact", log);
     ImGui::EndDisabled();
     ImGui::EndTable();
   }
   if (!shown.arrows.any()) return changed;
-  changed |= slider("length", "a factor", shown.arrows.length, 1, {0.1f, 10, "%.2f", true});
+  changed |= slider("length", "a factor", shown.arrows.length, 1, {0.1f, 10, "\xc3\x97 %.2f", true});
   log.item("arrows.length");
   float density = 100 * shown.arrows.density, threshold = 100 * shown.arrows.threshold;
   if (slider("density", "how many of the arrows are drawn", density, 100, {1, 100, "%.0f %%", true})) {

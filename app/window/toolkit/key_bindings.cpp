@@ -63,6 +63,8 @@ constexpr KeyBinding table[] = {
     {Action::save, "save", "Ctrl Shift S", "save robots", "Robots"},
 
     {Action::drag_arrows, "drag_arrows", "D", "drag arrows", "View"},
+    {Action::contact_arrows, "contact_arrows", "Q", "contact arrows: forces of the ground on masses", "View"},
+    {Action::force_arrows, "force_arrows", "Ctrl F", "force arrows: the net force on each mass", "View"},
     {Action::cells, "cells", "C", "robots stay in their cells, or travel", "View"},
     {Action::springs, "springs", "S", "springs instead of the skin", "View"},
     {Action::labels, "labels", "L", "names and distances", "View"},
@@ -104,7 +106,7 @@ constexpr MouseGesture mouse_table[] = {
     {"Right click", "a menu for the robot"},
     {"Double click", "follow a robot"},
     {"Ctrl drag", "pull a mass; its force is shown. With Shift as well, the spring stays"},
-    {"Rest on a robot", "its name, and details of the mass and spring there; a click keeps them"},
+    {"Rest on a robot", "its name, and details of the mass and spring there; a click keeps them in the side panel"},
     {"Drop files", "open their robots, or a run"},
 };
 

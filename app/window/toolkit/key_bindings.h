@@ -63,6 +63,8 @@ enum class Action {
   save_scene,
   save,  // robots
   drag_arrows,
+  contact_arrows,
+  force_arrows,
   color_material,  // the quantities of color_quantities(), in their order
   color_activation,
   color_strain,

@@ -144,11 +144,12 @@ INSTANTIATE_TEST_SUITE_P(
                  "mean voxel?"},
         BadInput{"Word", with({"--form", "ribg"}),
                  "--form: \"ribg\" is not accepted; give any, bell, tube, ring or pod; did you mean ring?"},
-        BadInput{"Shown",
-                 {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,sprngs"},
-                 "--show: \"sprngs\" is not accepted; give some of "
-                 "skin,springs,masses,drag,lift,velocity,gravity,contact,path,labels,captions,legend,clock,scale; did "
-                 "you mean springs?"},
+        BadInput{
+            "Shown",
+            {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,sprngs"},
+            "--show: \"sprngs\" is not accepted; give some of "
+            "skin,springs,masses,drag,lift,velocity,gravity,contact,force,path,labels,captions,legend,clock,scale; did "
+            "you mean springs?"},
         BadInput{
             "Camera",
             {"render", "--random", "voxel", "-o", "a.mp4", "--camera", "turntabel"},
@@ -208,10 +209,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"ScaleUpsideDown",
                  {"render", "--random", "voxel", "-o", "a.mp4", "--scale", "2,1"},
                  "--scale: \"2,1\" is not accepted; give two finite numbers, the lower first"},
-        BadInput{"UnknownThing",
-                 {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,bones"},
-                 "--show: \"bones\" is not accepted; give some of "
-                 "skin,springs,masses,drag,lift,velocity,gravity,contact,path,labels,captions,legend,clock,scale"},
+        BadInput{
+            "UnknownThing",
+            {"render", "--random", "voxel", "-o", "a.mp4", "--show", "skin,bones"},
+            "--show: \"bones\" is not accepted; give some of "
+            "skin,springs,masses,drag,lift,velocity,gravity,contact,force,path,labels,captions,legend,clock,scale"},
         BadInput{
             "UnknownCamera",
             {"render", "--random", "voxel", "-o", "a.mp4", "--camera", "drone"},

@@ -37,6 +37,15 @@ class PanelsTest(WindowCase):
         window.frame(lambda frame: frame["panels"])
         self.finish(window)
 
+    def test_keys_show_contact_and_net_forces(self):
+        window = self.small("--paused", "--environment", "land")
+        for key, kind in (("q", "contact"), ("ctrl+f", "force")):
+            for shown in (True, False):
+                since = window.mark()
+                window.key(key)
+                self.assertEqual(window.wait("view", since)[kind], shown)
+        self.finish(window)
+
     def test_drag_arrows_are_drawn(self):
         window = self.small()
         window.frame(lambda frame: frame["time"] > 0.3)
