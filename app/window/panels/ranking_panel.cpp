@@ -47,23 +47,31 @@ namespace {
 
 struct Column {
   const char* name;
+  const char* unit;
+  int decimals;
   const char* help;
   double (*figure)(const RankingRow& row);
 };
 
 // The columns after the name.
 constexpr std::array columns{
-    Column{"distance", "of the center of mass since birth: since the robot was added, or the last reset [m]",
+    Column{"distance", "m", 3, "of the center of mass since birth: since the robot was added, or the last reset",
            [](const RankingRow& row) { return row.distance; }},
-    Column{"mean speed", "distance divided by age [m/s]", [](const RankingRow& row) { return row.mean_speed; }},
-    Column{"age", "time since birth: since the robot was added, or the last reset [s]",
+    Column{"mean speed", "m/s", 3, "distance divided by age", [](const RankingRow& row) { return row.mean_speed; }},
+    Column{"age", "s", 1, "time since birth: since the robot was added, or the last reset",
            [](const RankingRow& row) { return row.age; }},
-    Column{"at equal age", "distance when it was as old as the youngest robot is now: fair to young robots [m]",
+    Column{"at equal age", "m", 3, "distance when it was as old as the youngest robot is now: fair to young robots",
            [](const RankingRow& row) { return row.distance_at_equal_age; }},
-    Column{"speed", "of the center of mass, now [m/s]", [](const RankingRow& row) { return row.speed; }},
-    Column{"energy", "kinetic and elastic, now [J]",
+    Column{"speed", "m/s", 3, "of the center of mass, now", [](const RankingRow& row) { return row.speed; }},
+    Column{"energy", "J", 2, "kinetic and elastic, now",
            [](const RankingRow& row) { return row.kinetic_energy + row.elastic_energy; }},
-    Column{"largest strain", "of any spring, so far", [](const RankingRow& row) { return row.largest_strain; }}};
+    Column{"largest strain", "%", 1, "of any spring, so far",
+           [](const RankingRow& row) { return 100 * row.largest_strain; }}};
+
+// Of a column of the table.
+const char* name_of_column(int column) {
+  return column == 0 ? "robot" : columns[std::min(static_cast<std::size_t>(column), columns.size()) - 1].name;
+}
 
 constexpr const char* help_of_robot = "its place in this order, and its name";
 
@@ -98,8 +106,8 @@ void RankingPanel::draw(PanelContext& context) {
 void RankingPanel::draw_notes(PanelContext& context, const std::vector<Row>& rows) {
   const bool any_exploded = std::ranges::any_of(rows, [](const Row& row) { return row.values.exploded; });
   note(held_          ? "the order stays as it is while the mouse is over the table"
-       : any_exploded ? "m, m/s, s, J; - = exploded; click a heading to sort"
-                      : "m, m/s, s, J; click a heading to sort");
+       : any_exploded ? "-: exploded; click a heading to sort"
+                      : "click a heading to sort");
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   ImGui::BeginDisabled(order_.size() < 2);
   if (ImGui::Button("Keep the best...", {half, 0})) ask_for_best(context, order_);
@@ -116,13 +124,14 @@ void RankingPanel::draw_headings(PanelContext& context) {
   ImGui::TableSetupScrollFreeze(1, 1);
   ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 9 * ImGui::GetFontSize());
   for (const Column& column : columns)
-    ImGui::TableSetupColumn(column.name, ImGuiTableColumnFlags_PreferSortDescending |
-                                             (&column == columns.data() ? ImGuiTableColumnFlags_DefaultSort : 0));
+    ImGui::TableSetupColumn(fmt::format("{} [{}]", column.name, column.unit).c_str(),
+                            ImGuiTableColumnFlags_PreferSortDescending |
+                                (&column == columns.data() ? ImGuiTableColumnFlags_DefaultSort : 0));
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (int column = 0; column < ImGui::TableGetColumnCount(); ++column) {
     if (!ImGui::TableSetColumnIndex(column)) continue;
     ImGui::TableHeader(ImGui::TableGetColumnName(column));
-    context.log.item(std::string("ranking.by.") + ImGui::TableGetColumnName(column));
+    context.log.item(std::string("ranking.by.") + name_of_column(column));
     tooltip(column == 0 ? help_of_robot : columns[static_cast<std::size_t>(column) - 1].help);
   }
 }
@@ -167,8 +176,7 @@ void RankingPanel::log_order(PanelContext& context, const std::vector<Row>& rows
   if (std::exchange(logged_, true)) return;
   std::vector<std::string> names;
   for (const Row& row : rows) names.push_back(row.name);
-  context.log.write("ranking",
-                    {{"by", ImGui::TableGetColumnName(column_)}, {"ascending", ascending_}, {"names", names}});
+  context.log.write("ranking", {{"by", name_of_column(column_)}, {"ascending", ascending_}, {"names", names}});
 }
 
 void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
@@ -193,7 +201,7 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   robot_menu_of_row(context, robot);
   for (const Column& column : columns) {
     ImGui::TableNextColumn();
-    thumbnail_row_cell(row.values.counts() ? fmt::format("{:.3g}", column.figure(row.values)) : "-");
+    thumbnail_row_cell(row.values.counts() ? fmt::format("{:.{}f}", column.figure(row.values), column.decimals) : "-");
   }
   ImGui::PopID();
 }

@@ -57,14 +57,18 @@ struct Control {
   const GeneratorParameter& parameter;
   PanelContext& context;
 
-  const char* name() const { return parameter.name.c_str(); }
+  std::string name() const {
+    const bool named = parameter.unit.empty() || std::holds_alternative<float>(parameter.initial) ||
+                       std::holds_alternative<double>(parameter.initial);  // a slider shows the unit
+    return label_of(parameter.name) + (named ? "" : fmt::format(" [{}]", unit_text(parameter.unit)));
+  }
   const char* help() const { return parameter.help.c_str(); }
   std::string item() const { return "generate." + parameter.name; }
   double highest() const { return parameter.usual_highest.value_or(parameter.highest.value_or(1e6)); }
 
   bool operator()(std::int64_t& value) const {
     auto number = static_cast<int>(value);
-    const bool changed = whole_number(name(), help(), number, static_cast<int>(parameter.lowest),
+    const bool changed = whole_number(name().c_str(), help(), number, static_cast<int>(parameter.lowest),
                                       static_cast<int>(highest()), context, item());
     value = number;
     return changed;
@@ -78,7 +82,7 @@ struct Control {
     auto shown = static_cast<float>(scale * static_cast<double>(value));
     const auto default_value = static_cast<float>(scale * static_cast<double>(std::get<Number>(parameter.initial)));
     const bool changed =
-        slider(name(), help(), shown, default_value,
+        slider(name().c_str(), help(), shown, default_value,
                {static_cast<float>(scale * parameter.lowest), static_cast<float>(scale * highest()), format.c_str()});
     context.log.item(item());
     if (changed)
@@ -89,13 +93,13 @@ struct Control {
     std::vector<const char*> words;
     for (const std::string& one : parameter.words) words.push_back(one.c_str());
     auto index = static_cast<int>(std::ranges::find(parameter.words, word) - parameter.words.begin());
-    const bool changed = combo(name(), help(), index, words);
+    const bool changed = combo(name().c_str(), help(), index, words);
     context.log.item(item());
     if (changed) word = parameter.words.at(static_cast<std::size_t>(index));
     return changed;
   }
   bool operator()(std::vector<int>& numbers) const {
-    row(name(), help());
+    row(name().c_str(), help());
     std::string text = option_text(numbers);
     const bool entered = text_field(("##" + parameter.name).c_str(), text);
     context.log.item(item());
@@ -111,9 +115,9 @@ struct Control {
     return true;
   }
   bool operator()(SizeRange& sizes) const {
-    row("smallest", (parameter.unit + " along x, y and z").c_str());
+    row(fmt::format("smallest [{}]", parameter.unit).c_str(), "along x, y and z");
     bool changed = ImGui::InputInt3("##smallest", sizes.smallest.data());
-    row("largest", (parameter.unit + " along x, y and z").c_str());
+    row(fmt::format("largest [{}]", parameter.unit).c_str(), "along x, y and z");
     changed = ImGui::InputInt3("##largest", sizes.largest.data()) || changed;
     for (std::size_t i = 0; i < 3; ++i) {
       sizes.smallest[i] =

@@ -63,7 +63,7 @@ void draw_recording(PanelContext& context) {
   }
   combo("format", "of both kinds of video", settings.format, {"MP4", "WebM", "GIF"});
   row("frame rate", "frames per second");
-  number_slider("##rate", settings.frames_per_second, 10, 60);
+  number_slider("##rate", settings.frames_per_second, 10, 60, "%d frames/s");
   settings.frames_per_second = std::clamp(settings.frames_per_second, 1, 120);
   ImGui::Checkbox("Without panels", &settings.hide_panels);
   tooltip("hide the panels until the recording stops");
