@@ -264,13 +264,14 @@ HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t index,
   const LiveRobot& live = snapshot.robots->robots[index];
   const Robot& robot = *live.robot;
   const Spring& spring = robot.springs[spring_index];
-  const Material& material = materials_of(live)[spring.material];
+  const Material material = driven_material(live, spring.material);
   const auto positions = snapshot.positions_of(index);
   const double time = snapshot.telemetry[index].exploded ? snapshot.telemetry[index].exploded_at : snapshot.time;
   const MaterialNow now = materials_at({&material, 1}, snapshot.configuration.environment, time).front();
   HitDetails::OfSpring of{.material = spring.material, .rest_length = spring.rest_length};
   of.length = spring_length(spring, positions);
   of.strain = strain(of.length, spring.rest_length);
+  of.activation = 1 - now.length_factor;
   of.force = spring_force(now.stiffness, stretch(spring, now, positions));
   if (!robot.material_names.empty())
     of.material_name = robot.material_names[spring.material];

@@ -51,6 +51,7 @@ struct HitDetails {
     std::string material_name;
     float rest_length = 0, length = 0;  // [m]
     float strain = 0;                   // (|d| - L0) / L0 [1]
+    float activation = 0;               // how far its muscle is contracted, (L0 - L) / L0 [1]
     float force = 0;                    // [N], > 0 pulls the ends together
   };
   std::string robot;  // name

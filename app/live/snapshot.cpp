@@ -35,6 +35,20 @@ std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
   return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
 }
 
+Material driven_material(const LiveRobot& robot, MaterialId id) {
+  Material material = materials_of(robot)[id];
+  if (!robot.drives) return material;
+  const std::vector<Actuator> actuators = actuators_of(*robot.robot);
+  for (std::size_t a = 0; a < std::min(actuators.size(), robot.drives->size()); ++a) {
+    const float drive = (*robot.drives)[a];
+    if (std::isnan(drive) || std::ranges::count(actuators[a].materials, id) == 0) continue;
+    material.frequency = 0;
+    material.phase = std::asin(drive);
+    material.half_wave = false;
+  }
+  return material;
+}
+
 std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const {
   return positions.host(robots->mass_offsets[robot], mass_count(*robots, robot));
 }

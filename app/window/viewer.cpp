@@ -100,7 +100,7 @@ class Viewer {
   PanelContext context_{scene_,   run_,    camera_,   preferences_, keys_,          log_,       toasts_,
                         dialogs_, window_, viewport_, recorder_,    frame_history_, thumbnails_};
   Panels panels_{context_};
-  MouseController mouse_{scene_, camera_, log_, toasts_};
+  MouseController mouse_{scene_, camera_, log_, toasts_, context_.pinned};
   LegendView legend_;
   CutHandle cut_handle_;
   TargetHandle target_handle_;
@@ -258,7 +258,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_over(area_, shown_camera_, dt);
   draw_text();
   draw_handles();
-  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_, legend_.box());
+  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();

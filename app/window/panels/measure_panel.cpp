@@ -27,13 +27,11 @@ class MeasurePanel : public Panel {
   void draw_window(PanelContext& context);
   void draw_plots(PanelContext& context, float height);
   void draw_buttons(PanelContext& context);
-  void scrub(PanelContext& context);
   void log_view(PanelContext& context);
 
   std::array<bool, 7> shown_{true, true};  // one per measure of measures()
-  PlotView view_;
-  bool large_ = false;   // in a window of their own
-  bool scrubs_ = false;  // a drag goes through time
+  TimePlots plots_;
+  bool large_ = false;  // in a window of their own
   std::optional<std::pair<double, double>> logged_;
 };
 
@@ -90,15 +88,11 @@ void MeasurePanel::draw(PanelContext& context) {
     view.folding = folding;
     context.scene.set_view(view);
   }
-  view_.cursor = context.cursor.time;
-  view_.next_cursor.reset();
-  view_.went_to.reset();
-  view_.mark = context.scene.drawn().scene().time;
+  plots_.begin(context);
   if (!large_) draw_plots(context, 9 * ImGui::GetFontSize());
   draw_buttons(context);
   if (large_) draw_window(context);
-  if (view_.next_cursor) context.cursor.next = view_.next_cursor;
-  scrub(context);
+  plots_.end(context);
   log_view(context);
 }
 
@@ -147,7 +141,7 @@ void MeasurePanel::draw_plots(PanelContext& context, float height) {
         lines.push_back({curves[k].name + suffixes[side], render::category_color(static_cast<int>(k)), series.times,
                          values.back(), strokes[side]});
       }
-    plot(measure.name, {.title = measure.name, .unit = measure.unit, .height = height}, lines, &view_);
+    plot(measure.name, {.title = measure.name, .unit = measure.unit, .height = height}, lines, &plots_.view);
     context.log.item(std::string("plot.") + measure.name);
   }
   std::vector<PlotLine> names;
@@ -157,14 +151,21 @@ void MeasurePanel::draw_plots(PanelContext& context, float height) {
   if (const std::string meaning = stroke_text(scene.snapshot()); !meaning.empty()) note(meaning.c_str());
 }
 
-// A drag with Ctrl shows the moment under the mouse.
-void MeasurePanel::scrub(PanelContext& context) {
-  if (!view_.went_to) {
-    if (std::exchange(scrubs_, false)) end_scrub(context);
+void TimePlots::begin(const PanelContext& context) {
+  view.cursor = context.cursor.time;
+  view.next_cursor.reset();
+  view.went_to.reset();
+  view.mark = context.scene.drawn().scene().time;
+}
+
+void TimePlots::end(PanelContext& context) {
+  if (view.next_cursor) context.cursor.next = view.next_cursor;
+  if (!view.went_to) {
+    if (std::exchange(scrubs, false)) end_scrub(context);
     return;
   }
-  if (!std::exchange(scrubs_, true)) begin_scrub(context);
-  scrub_to(context, *view_.went_to);
+  if (!std::exchange(scrubs, true)) begin_scrub(context);
+  scrub_to(context, *view.went_to);
 }
 
 void MeasurePanel::draw_buttons(PanelContext& context) {
@@ -183,8 +184,8 @@ void MeasurePanel::draw_buttons(PanelContext& context) {
 
 // For tests: the part of the time that is shown.
 void MeasurePanel::log_view(PanelContext& context) {
-  if (logged_ == view_.range) return;
-  logged_ = view_.range;
+  if (logged_ == plots_.view.range) return;
+  logged_ = plots_.view.range;
   if (logged_)
     context.log.write("plot", {{"from", logged_->first}, {"to", logged_->second}});
   else

@@ -19,6 +19,7 @@
 #include "app/window/toolkit/event_log.h"
 #include "app/window/toolkit/frame_times.h"
 #include "app/window/toolkit/key_map.h"
+#include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/preferences.h"
 #include "app/window/toolkit/toasts.h"
 #include "app/window/toolkit/window.h"
@@ -30,6 +31,7 @@
 namespace mercury::window {
 
 class VideoRecorder;
+struct PanelContext;
 
 // The settings with which the window makes new robots.
 struct RobotCreation {
@@ -49,6 +51,15 @@ struct Scrub {
 struct TimeCursor {
   std::optional<double> time, next;  // [s]
   void begin_frame() { time = std::exchange(next, std::nullopt); }
+};
+
+// Plots over time that share the moment with the timeline: a line marks the time of the view, and a drag with Ctrl goes
+// through time (measure_panel.cpp).
+struct TimePlots {
+  PlotView view;
+  bool scrubs = false;
+  void begin(const PanelContext& context);
+  void end(PanelContext& context);
 };
 
 // The body that is edited and the tool in use (body_editor.cpp).
@@ -85,7 +96,9 @@ struct PanelContext {
   TimeCursor cursor = {};
   BodyEdit body_edit = {};
   RobotMenu robot_menu = {};
-  UsedGestures gestures = {};                       // of this session
+  std::optional<Hit> pinned = {};     // the mass and spring that were clicked, while their robot is selected
+  std::optional<Hit> new_probe = {};  // to be plotted over time
+  UsedGestures gestures = {};         // of this session
   Box legend = {}, caption = {}, first_steps = {};  // over the viewport, in the last frame
   float aspect = 16.0f / 9;                         // width / height of the viewport in this frame
   bool screenshot_requested = false;                // set it to take one at the end of the frame

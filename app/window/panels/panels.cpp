@@ -48,7 +48,8 @@ bool PanelColumn::has(const std::string& title) const {
   return std::ranges::any_of(tabs_, [&](const Tab& tab) { return tab.entry->title == title; });
 }
 
-void PanelColumn::draw(PanelContext& context, float top, float bottom, float size, std::string& open, float& width) {
+void PanelColumn::draw(PanelContext& context, float top, float bottom, float size, std::string& open, float& width,
+                       bool card) {
   if (!has(open)) open = tabs_.front().entry->title;
   const float screen = ImGui::GetIO().DisplaySize.x, rail = rail_pixels();
   ImGui::SetNextWindowPos({right_ ? screen - rail - size : rail, top});
@@ -62,9 +63,10 @@ void PanelColumn::draw(PanelContext& context, float top, float bottom, float siz
   ImGui::Separator();
   const auto tab = std::ranges::find_if(tabs_, [&](const Tab& other) { return other.entry->title == open; });
   // Each panel has an ImGui child of its own, which keeps its scroll position.
-  if (ImGui::BeginChild(tab->entry->title, {0, 0})) tab->panel->draw(context);
+  if (ImGui::BeginChild(tab->entry->title, {0, card ? -pinned_card_height() : 0})) tab->panel->draw(context);
   ImGui::EndChild();
   context.log.item(std::string("panel.") + tab->entry->title);
+  if (card) draw_pinned_card(context);
   ImGui::End();
   draw_edge(top, bottom, size, width);
 }
@@ -137,6 +139,7 @@ ViewportArea Panels::draw_frame() {
     area = {{left, top}, {screen.x - draw_column(right_, Side::right, top, bottom), bottom}};
     draw_play_bar(context_, {0, area.high.y}, screen);
   }
+  if (context_.new_probe) show("Probes");
   context_.aspect = area.aspect();
   context_.log.item("view", area.low, area.high);
   return area;
@@ -168,7 +171,8 @@ float Panels::draw_column(PanelColumn& column, Side side, float top, float botto
   std::string& panel = side == Side::left ? preferences.left_panel : preferences.right_panel;
   const bool open = column_open(side);
   const float pixels = open ? PanelColumn::pixels(width, is_narrow()) : 0;
-  if (open) column.draw(context_, top, bottom, pixels, panel, width);
+  const bool has_card = context_.pinned && (side == Side::left || !column_open(Side::left));
+  if (open) column.draw(context_, top, bottom, pixels, panel, width, has_card);
   if (const PanelEntry* clicked = column.draw_rail(context_.log, top, bottom, open ? &panel : nullptr)) {
     if (open && panel == clicked->title)
       open_column(side, false);

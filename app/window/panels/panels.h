@@ -34,8 +34,8 @@ class PanelColumn {
   PanelColumn(Side side, PanelContext& context);
 
   // Draws the column between two heights of the window, `size` pixels wide. The user changes `open`, the title of the
-  // open panel, and `width` [lines of text].
-  void draw(PanelContext& context, float top, float bottom, float size, std::string& open, float& width);
+  // open panel, and `width` [lines of text]. `card`: below the panel is the card of what was clicked.
+  void draw(PanelContext& context, float top, float bottom, float size, std::string& open, float& width, bool card);
   // Draws the rail between two heights of the window; `open` is the title of the open panel, if the column is open.
   // Returns the panel whose icon was clicked.
   const PanelEntry* draw_rail(EventLog& log, float top, float bottom, const std::string* open);

@@ -23,23 +23,6 @@ std::optional<ImVec2> seen_at(const ViewportArea& area, const render::Camera& ca
   return p.is_finite() && p.z >= camera.near ? std::optional(on_screen(area, camera, point)) : std::nullopt;
 }
 
-// Where a window of that size covers neither the two points nor the legend, if there is such a place.
-ImVec2 free_corner(const ViewportArea& area, ImVec2 size, ImVec2 a, ImVec2 b, const Box& legend) {
-  const float gap = 2 * ImGui::GetFontSize();
-  const float right = std::max(a.x, b.x) + gap, left = std::min(a.x, b.x) - gap - size.x;
-  const float above = std::min(a.y, b.y) - size.y - gap, below = std::max(a.y, b.y) + gap;
-  const auto inside = [&](float x, float y) {
-    return ImVec2(std::clamp(x, area.low.x, std::max(area.low.x, area.high.x - size.x)),
-                  std::clamp(y, area.low.y, std::max(area.low.y, area.high.y - size.y)));
-  };
-  const ImVec2 corners[] = {inside(right, above), inside(left, above), inside(right, below), inside(left, below)};
-  for (const ImVec2& corner : corners) {
-    const Box box{corner, {corner.x + size.x, corner.y + size.y}};
-    if (!box.meets(legend) && !box.holds(a) && !box.holds(b)) return corner;
-  }
-  return corners[1];
-}
-
 constexpr float shortest = 12;  // line on which the handle moves; below it the mouse moves it up and down [pixels]
 
 std::span<const float> floats(std::span<const Vec3> points) {
@@ -216,49 +199,21 @@ void write_figures(const LiveScene& scene, const Hit& hit) {
   const HitDetails figures = scene.describe(hit);
   ImGui::TextUnformatted(figures.robot.c_str());
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
-  const std::string speed = figures.mass.speed ? fmt::format("{:.3g} m/s", *figures.mass.speed) : "...";
+  const std::string speed = figures.mass.speed ? fmt::format("{:.3f} m/s", *figures.mass.speed) : "...";
   ImGui::Text("mass %d: %s, %zu springs", static_cast<int>(hit.mass), speed.c_str(), figures.mass.springs);
   ImGui::Text("at %.3f, %.3f, %.3f m", static_cast<double>(figures.mass.position.x),
               static_cast<double>(figures.mass.position.y), static_cast<double>(figures.mass.position.z));
   if (figures.spring) {
     ImGui::Text("spring: %s", figures.spring->material_name.c_str());
-    ImGui::Text("strain %+.2f %%, force %+.3g N", 100 * static_cast<double>(figures.spring->strain),
+    ImGui::Text("strain %+.2f %%, force %+.2f N", 100 * static_cast<double>(figures.spring->strain),
                 static_cast<double>(figures.spring->force));
-    ImGui::Text("%.4g m, at rest %.4g m", static_cast<double>(figures.spring->length),
+    ImGui::Text("%.4f m, at rest %.4f m", static_cast<double>(figures.spring->length),
                 static_cast<double>(figures.spring->rest_length));
   }
   ImGui::PopStyleColor();
 }
 
-float figures_height() { return 6 * ImGui::GetTextLineHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y; }
-
-bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const ViewportArea& area,
-                         const render::Camera& camera, const Box& legend) {
-  if (!scene.pointed_snapshot().robots->index_of(hit.robot)) return false;
-  const auto at = draw_hit_mark(scene, hit, area, camera);
-  const float text = ImGui::GetFontSize();
-  const ImVec2 mass = at.value_or(ImVec2(area.low.x, area.high.y));
-  // Beside the point that was clicked, too, so that a second click there reaches the robot.
-  const ImVec2 clicked = seen_at(area, camera, hit.point).value_or(mass);
-  const ImVec2 size{18 * text, figures_height() + 1.6f * text};
-  const ImVec2 corner = free_corner(area, size, mass, clicked, legend);
-  const float width = size.x, x = corner.x;
-  if (at)
-    ImGui::GetBackgroundDrawList()->AddLine(*at, {corner.x + (x > mass.x ? 0 : width), corner.y + 2 * text},
-                                            palette().warning, 0.06f * text);
-  ImGui::SetNextWindowPos(corner);
-  ImGui::SetNextWindowSizeConstraints({width, 0}, {FLT_MAX, FLT_MAX});
-  ImGui::Begin("##pinned", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
-  write_figures(scene, hit);
-  const bool closed = ImGui::SmallButton("close");
-  log.item("pinned.close");
-  const ImVec2 low = ImGui::GetWindowPos();
-  log.item("panel.Pinned", low, {low.x + ImGui::GetWindowWidth(), low.y + ImGui::GetWindowHeight()});
-  ImGui::End();
-  return !closed;
-}
+float figures_height() { return 6 * ImGui::GetTextLineHeightWithSpacing(); }
 
 bool CutHandle::draw(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, ViewSettings& view,
                      EventLog& log) const {

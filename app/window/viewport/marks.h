@@ -22,13 +22,7 @@ std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const View
 // The figures of a hit, as lines of the current ImGui window.
 void write_figures(const LiveScene& scene, const Hit& hit);
 
-// How high a tooltip with all figures is [pixels].
-float figures_height();
-
-// A small window with the figures, beside the mass and, where possible, beside the legend. Returns false once the user
-// closes it, or the robot is gone.
-bool draw_pinned_figures(LiveScene& scene, const Hit& hit, EventLog& log, const ViewportArea& area,
-                         const render::Camera& camera, const Box& legend);
+float figures_height();  // of all of them [pixels]
 
 // A handle in the view that moves the planes which cut the robots open.
 class CutHandle {

@@ -173,12 +173,14 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
   next_pick_ = ImGui::GetTime() + std::max(pick_period, seconds / pick_share);
 }
 
-void MouseController::draw(const ViewportArea& area, const render::Camera& camera, const Box& legend) {
+void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
   draw_springs(area, camera);
   draw_pull(area, camera);
   draw_box();
-  if (pinned_ && !scene_.is_selected(pinned_->robot)) pinned_.reset();
-  if (pinned_ && !draw_pinned_figures(scene_, *pinned_, log_, area, camera, legend)) pinned_.reset();
+  const bool stays =
+      pinned_ && scene_.is_selected(pinned_->robot) && scene_.pointed_snapshot().robots->index_of(pinned_->robot);
+  if (!stays) pinned_.reset();
+  if (pinned_) draw_hit_mark(scene_, *pinned_, area, camera);
   if (!hovered_) return;
   draw_hit_mark(scene_, *hovered_, area, camera);
   const bool is_pinned = pinned_ && pinned_->robot == hovered_->robot && pinned_->mass == hovered_->mass;
@@ -230,7 +232,8 @@ void MouseController::draw_box() const {
 
 void MouseController::draw_details(const ViewportArea& area) const {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const float text_height = ImGui::GetFontSize(), width = 18 * text_height, height = figures_height();
+  const float text_height = ImGui::GetFontSize(), width = 18 * text_height,
+              height = figures_height() + 2 * ImGui::GetStyle().WindowPadding.y;
   const bool left = mouse.x + width > area.high.x, above = mouse.y + text_height + height > area.high.y;
   // Beside the mouse where there is no room above or below.
   const float y = above ? mouse.y - text_height - height : mouse.y + text_height;

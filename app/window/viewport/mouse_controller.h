@@ -27,15 +27,16 @@ struct MouseActions {
 
 class MouseController {
  public:
-  MouseController(LiveScene& scene, OrbitController& camera, EventLog& log, Toasts& toasts)
-      : scene_(scene), camera_(camera), log_(log), toasts_(toasts) {}
+  // `pinned`: the mass and spring that were clicked, while their robot is selected.
+  MouseController(LiveScene& scene, OrbitController& camera, EventLog& log, Toasts& toasts, std::optional<Hit>& pinned)
+      : scene_(scene), camera_(camera), log_(log), toasts_(toasts), pinned_(pinned) {}
 
   void set_actions(MouseActions actions) { actions_ = std::move(actions); }
   // Handles the mouse where no panel uses it. Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the
   // one the last frame was drawn with.
   void update(const ViewportArea& area, const render::Camera& camera);
   // Draws the force of a pull and the details under the pointer.
-  void draw(const ViewportArea& area, const render::Camera& camera, const Box& legend);
+  void draw(const ViewportArea& area, const render::Camera& camera);
   // The robot under the pointer, by its index in the snapshot.
   std::optional<std::size_t> hovered() const;
   // What it is over there.
@@ -71,7 +72,7 @@ class MouseController {
   float pull_depth_ = 0;  // of the pulled point along the line of sight [m]
   bool follows_ = false;  // the press was a double click
   std::optional<Hit> hovered_;
-  std::optional<Hit> pinned_;  // its figures stay
+  std::optional<Hit>& pinned_;
   ImVec2 last_position_{-1, -1};
   double rest_time_ = 0;  // since the mouse last moved [s]
   double next_pick_ = 0;  // when hovered_ is looked up again, in ImGui's time [s]

@@ -103,6 +103,9 @@ class LayoutTest(WindowCase):
         window.do("click", 1)
         window.wait("pinned")
         window.place("panel.Pinned")
+        card, column = window.items["panel.Pinned"], window.items["panel.Robots"]
+        self.assertLess(card["x"] + card["width"] / 2, window.items["view"]["x"] - window.items["view"]["width"] / 2)
+        self.assertGreaterEqual(card["y"] - card["height"] / 2, column["y"] + column["height"] / 2)
         window.do("mousemove", x, y + 200)
         window.frame()
         window.place("panel.Pinned")

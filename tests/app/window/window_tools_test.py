@@ -28,6 +28,49 @@ class ToolsTest(WindowCase):
         window.until("release", lambda: "actuator.0.release" not in window.items)
         self.finish(window)
 
+    def test_probes_plot_a_mass_and_a_spring_over_time_until_they_are_removed(self):
+        window = self.small()
+        x, y = map(round, window.frame(lambda frame: len(frame["where"]) == 2)["where"][1])
+        window.do("mousemove", x, y)
+        window.frame()
+        window.do("click", 1)
+        window.wait("pinned")
+        since = window.mark()
+        window.click("pinned.plot")
+        self.assertEqual(window.wait("probe", since)["count"], 1)
+        for quantity in ("speed", "strain", "force"):
+            window.place(f"probe.plot.{quantity}")
+        time = window.frame()["time"]
+        window.frame(lambda frame: frame["time"] > time + 0.5)
+        window.click("pinned.plot")  # it is there already
+        window.click("probe.0.remove")
+        self.assertEqual(window.wait("probe", since, lambda event: event["count"] == 0)["count"], 0)
+        window.until("no plots", lambda: "probe.plot.speed" not in window.items)
+        self.finish(window)
+
+    def test_the_tree_of_the_scene_is_searched_and_selects(self):
+        window = self.open("--random", "voxel:1000", "--paused")
+        window.wait("robots", 0, lambda event: event["count"] == 1000)
+        window.open("Tree")
+        window.click("tree.1")
+        window.frame(lambda frame: frame["selected"] == 1)
+        row = window.items["tree.1"]
+        window.do("mousemove", row["x"] - row["width"] / 2 + 1.5 * row["height"] / 1.5, row["y"])
+        since = window.mark()
+        window.do("click", 1)
+        window.wait("tree", since)
+        since = window.mark()
+        window.click("tree.2")  # the muscles of the first robot
+        self.assertTrue(window.wait("tree", since)["row"].startswith("muscles: "))
+        window.click("tree.search")
+        name = window.wait("robots", 0, lambda event: event["count"] == 1000)["names"][-1]
+        window.type(name)
+        window.until("one robot", lambda: "tree.1" in window.items and "tree.3" not in window.items)
+        since = window.mark()
+        window.click("tree.1")
+        self.assertEqual(window.wait("tree", since)["row"], name)
+        self.finish(window)
+
     def test_messages_are_kept_and_can_be_copied(self):
         window = self.small("--paused")
         for name in ("first.json", "second.json"):
