@@ -135,7 +135,8 @@ void ActuatorsPanel::draw_actuator(PanelContext& context, const LiveRobot& robot
   if (!moved && !released) return;
   context.scene.drive_actuator(robots, actuator.name, released ? std::nullopt : std::optional(drive));
   if (released) context.scene.end_edit();
-  context.log.write("drive", {{"actuator", actuator.name}, {"drive", released ? nlohmann::json() : nlohmann::json(drive)}});
+  context.log.write("drive",
+                    {{"actuator", actuator.name}, {"drive", released ? nlohmann::json() : nlohmann::json(drive)}});
 }
 
 std::unique_ptr<Panel> make_actuators_panel(PanelContext&) { return std::make_unique<ActuatorsPanel>(); }

@@ -78,7 +78,6 @@ constexpr const char* help_of_robot = "its place in this order, and its name";
 }  // namespace
 
 void RankingPanel::draw(PanelContext& context) {
-  heading("Ranking");
   std::vector<Row> rows;
   for (const RankingRow& row : context.scene.ranking()) rows.push_back({name_of_robot(context.scene, row.robot), row});
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
