@@ -65,6 +65,16 @@ std::vector<Vector3> corners_of(std::span<const Bounds> boxes) {
 
 }  // namespace
 
+Vector2 disc_sample(int i, int count) {
+  const float radius = std::sqrt((float(i) + 0.5f) / float(count)), angle = 2.39996323f * float(i);
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+Vector2 square_sample(int i) {
+  const double n = i + 0.5;
+  return {float(std::fmod(0.7548776662466927 * n, 1.0)), float(std::fmod(0.5698402909980532 * n, 1.0))};
+}
+
 void Bounds::extend(const Vector3& point) {
   low = smallest(low, point);
   high = largest(high, point);
@@ -102,6 +112,8 @@ Matrix4 Camera::projection(float aspect) const {
   Matrix4 m = Matrix4{};
   m(0, 0) = scale / aspect;
   m(1, 1) = scale;
+  m(0, 2) = scale / aspect * shift.x;
+  m(1, 2) = scale * shift.y;
   m(2, 2) = near / (far - near);
   m(2, 3) = near * far / (far - near);
   m(3, 2) = -1;
@@ -119,7 +131,21 @@ Ray Camera::ray(float x, float y, int width, int height) const {
   const float half = std::tan(0.5f * field_of_view);
   const float across = (2 * x / float(width) - 1) * half * float(width) / float(height);
   const float upward = (1 - 2 * y / float(height)) * half;
-  return {eye, (across * axes.right + upward * axes.up - axes.back).normalized()};
+  return {eye, ((across + shift.x) * axes.right + (upward + shift.y) * axes.up - axes.back).normalized()};
+}
+
+Camera Camera::seen_through_lens(int i, int height) const {
+  const Axes axes = axes_of(*this);
+  const Vector2 on_lens = lens.radius * disc_sample(i, lens.samples);
+  const Vector3 moved = on_lens.x * axes.right + on_lens.y * axes.up;
+  const float pixel = 2 * std::tan(0.5f * field_of_view) / float(height);
+  Camera seen = *this;
+  seen.lens = {};
+  seen.eye += moved;
+  seen.target += moved;
+  // What is in focus stays where it is in the picture.
+  seen.shift = shift - (1 / lens.focus) * on_lens + pixel * (square_sample(i) - Vector2(0.5f, 0.5f));
+  return seen;
 }
 
 Camera Orbit::camera() const {

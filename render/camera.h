@@ -22,9 +22,21 @@ struct Bounds {
 // The box around points, 3 floats each; ignores points that are not finite.
 Bounds bounds_of(std::span<const float> points);
 
+// The i-th of `count` points spread over the unit disc (golden-angle spiral).
+Vector2 disc_sample(int i, int count);
+// The i-th of any number of points spread over the unit square (Roberts 2018, sequence R2).
+Vector2 square_sample(int i);
+
 // A half-line.
 struct Ray {
   Vector3 origin, direction;  // direction has length 1
+};
+
+// What is not at this distance is blurred: a picture is the mean over eyes all over a disc, from `samples` of them.
+struct Lens {
+  float radius = 0;  // of the disc [m]
+  float focus = 1;   // distance along the line of sight that stays sharp [m]
+  int samples = 1;   // above 1: edges and shadows are smoother, too; costs as many pictures
 };
 
 struct Camera {
@@ -33,6 +45,8 @@ struct Camera {
   Vector3 up{0, 0, 1};             // any direction that is not the line of sight
   float field_of_view = 0.6f;      // of the picture's height [rad]
   float near = 0.05f, far = 1000;  // the range of depths that is drawn [m]
+  Vector2 shift{0, 0};             // of the picture's middle, right and up from the line of sight [tangents]
+  Lens lens;
 
   // World to eye, eye looking along -z.
   Matrix4 view() const;
@@ -42,6 +56,8 @@ struct Camera {
   // A point in a picture of width x height: pixels from the upper left corner, and depth along the line of sight [m]
   // (negative = behind the eye).
   Vector3 project(const Vector3& point, int width, int height) const;
+  // Sample i of its lens, moved within a pixel of a picture that is that high, too. Without a lens.
+  Camera seen_through_lens(int i, int height) const;
   // The line of sight through a point of the picture, in pixels from the upper left corner.
   Ray ray(float x, float y, int width, int height) const;
 };

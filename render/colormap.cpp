@@ -105,18 +105,19 @@ bool in_srgb(Triple linear) {
 struct MuscleAnchor {
   float hue, lightness, chroma;
 };
-// An eighth of a turn apart in phase: red, amber, yellow, mint, teal, blue, violet, purple. People who do not
-// distinguish red from green see yellow, blue and lightness; this is a loop in these, too: bright yellow, bright and
-// then dark blue, dark yellow. Found by a search for the largest smallest difference between phases at least 45 degrees
-// apart: CIEDE2000 of 22 for normal vision, 13 without green cones, 14 without red ones.
-constexpr std::array<MuscleAnchor, 8> muscle_anchors{{{0.516f, 0.576f, 0.211f},
-                                                      {1.309f, 0.718f, 0.212f},
-                                                      {1.858f, 0.918f, 0.122f},
-                                                      {2.999f, 0.920f, 0.153f},
-                                                      {3.538f, 0.729f, 0.091f},
-                                                      {4.445f, 0.687f, 0.153f},
-                                                      {4.930f, 0.518f, 0.214f},
-                                                      {6.052f, 0.404f, 0.207f}}};
+// An eighth of a turn apart in phase: terracotta, ochre, yellow, mint, teal, blue, violet, wine. Their chroma is at
+// most 0.13. People who do not distinguish red from green see yellow, blue and lightness; this is a loop
+// in these, too: bright yellow, bright and then dark blue, dark yellow. Found by a search for colors of this chroma
+// with differences between phases at least 45 degrees apart of CIEDE2000 17 for normal vision, 13 without green or red
+// cones.
+constexpr std::array<MuscleAnchor, 8> muscle_anchors{{{0.746f, 0.524f, 0.130f},
+                                                      {1.499f, 0.654f, 0.130f},
+                                                      {1.956f, 0.863f, 0.130f},
+                                                      {2.916f, 0.922f, 0.130f},
+                                                      {3.512f, 0.726f, 0.088f},
+                                                      {4.272f, 0.658f, 0.130f},
+                                                      {5.031f, 0.423f, 0.108f},
+                                                      {6.319f, 0.424f, 0.090f}}};
 
 constexpr std::array categories{rgb(0x2f7ed8), rgb(0xf28e2b), rgb(0x1fa187), rgb(0xd1495b), rgb(0x9467bd),
                                 rgb(0xe0b92f), rgb(0x56b4e9), rgb(0x8c6d46), rgb(0xe377c2), rgb(0x7f8fa6)};

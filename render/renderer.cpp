@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -107,6 +108,7 @@ void Renderer::set_quality(Quality quality) {
   p.quality = quality;
   p.settings = settings_of(quality);
   p.passes.emplace(p.settings);
+  p.fine.reset();
   p.passes->skin.attach(p.bodies);
   if (p.width > 0) resize(std::exchange(p.width, 0), p.height);
 }
@@ -122,6 +124,8 @@ void Renderer::set_bodies(std::span<const Body> bodies) {
 }
 
 void Renderer::set_bodies(std::shared_ptr<const BodyData> bodies) {
+  parts_->body_data = bodies;
+  parts_->fine.reset();
   parts_->bodies.set(std::move(bodies));
   parts_->passes->skin.attach(parts_->bodies);
   parts_->outline.attach(parts_->bodies);
@@ -180,19 +184,25 @@ KeptFrame::~KeptFrame() {
 }
 
 // Uploads the scene, and computes what depends on positions: boxes, the frame's block, normals, lists of faces.
-void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const Style& style) {
+void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const Style& style, float noise) {
   if (scene.show.springs || scene.cut) bodies.write_springs();
   scene_buffers.upload(scene, bodies);
   scene_buffers.bind(bodies);
   bounds.measure(bodies);
   if (scene.cut) cut.find(bodies, *scene.cut);
   if (!scene.labels.empty()) bounds.start_reading();
-  const FrameBlock block = frame_block(scene, camera, style, width, height);
+  FrameBlock block = frame_block(scene, camera, style, width, height, noise);
+  block.lens.w = 1.7f * bodies.typical_spring();
   frame.write(&block, sizeof block);
   fit.fit(frame.last(), bounds.boxes(), bodies.body_count(), settings.shadow_side, settings.ground_side);
   frame.bind_uniform(0);
   variant = surroundings_variant(scene, block);
-  passes->skin.deform(bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }), scene.cut.has_value());
+  if (is_fine) {
+    fine->follow(bodies);
+    scene_buffers.bind(fine->bodies());
+  }
+  skin().deform(is_fine ? fine->bodies() : bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }),
+                scene.cut.has_value());
 }
 
 // Calls draw_skins(variant) for each visible side of the skins: the fronts, and where a cut shows solid insides, the
@@ -215,7 +225,7 @@ void Renderer::Parts::draw_light(const Scene& scene) {
   glDepthMask(GL_TRUE);
   scene.cut ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
   passes->light.draw_shadows([&] {
-    if (scene.show.skin) passes->skin.draw_shadow();
+    if (scene.show.skin) skin().draw_shadow();
     passes->lattice.draw_shadow(bodies, scene);
   });
   timer.mark("shadow map");
@@ -225,9 +235,9 @@ void Renderer::Parts::draw_light(const Scene& scene) {
   if (draws_inside(scene))
     section.find([&] {
       draw_sides(scene,
-                 [&](const std::string& side) { passes->skin.draw_depth(side == cut_variant ? backs_variant : side); });
+                 [&](const std::string& side) { skin().draw_depth(side == cut_variant ? backs_variant : side); });
     });
-  passes->front.draw([&] { draw_sides(scene, [&](const char* side) { passes->skin.draw_depth(side); }); });
+  passes->front.draw([&] { draw_sides(scene, [&](const char* side) { skin().draw_depth(side); }); });
   timer.mark("nearest surfaces");
   glDisable(GL_CULL_FACE);
   passes->occlusion.draw(passes->front.depths(), 6 * bodies.typical_spring());
@@ -249,7 +259,7 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::materials;
   draw_sides(scene,
-             [&](const char* side) { passes->skin.draw(color_by, scene.scale, variant + skin_variant(scene) + side); });
+             [&](const char* side) { skin().draw(color_by, scene.scale, variant + skin_variant(scene) + side); });
   glDisable(GL_CULL_FACE);
   timer.mark("skins");
   passes->lattice.draw(bodies, scene);
@@ -261,10 +271,70 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   timer.mark("surroundings");
 }
 
+// The light that water or air scatters towards the eye.
+void Renderer::Parts::draw_beams() const {
+  glDisable(GL_DEPTH_TEST);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_ONE, GL_ONE, GL_ZERO, GL_ONE);
+  glBindTextureUnit(binding::source, passes->front.depths());
+  passes->beams.draw(variant);
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void Renderer::Parts::draw_light_of(const Scene& scene, const Camera& camera, const Style& style, float noise) {
+  prepare(scene, camera, style, noise);
+  timer.mark("positions");
+  draw_light(scene);
+  draw_solid(scene, camera);
+  if (scene.against_light && scene.surroundings != Surroundings::none) draw_beams();
+  glDepthFunc(GL_GREATER);
+  passes->annotation.draw_tiles(scene.tiles);
+  passes->annotation.draw_paths(scene.paths, 0.0035f * float(height));
+  if (scene.surroundings == Surroundings::water) passes->annotation.draw_particles(scene, camera, settings.particles);
+  ghosts.draw(scene.ghosts);
+}
+
+// Rounded bodies in the colors of their materials have a finer skin in pictures that take their time.
+void Renderer::Parts::choose_skin(const Scene& scene) {
+  constexpr std::size_t most_faces = 600'000;
+  const bool rounded = std::ranges::all_of(scene.placements, [](const Placement& p) { return p.smooth; });
+  const bool colored = !scene.face_values.empty() || !scene.mass_values.empty();
+  is_fine = rounded && !colored && !scene.cut && scene.show.skin && !scene.show.springs && !scene.show.masses &&
+            body_data && !body_data->records.empty() && 4 * bodies.face_count() < most_faces;
+  if (!is_fine || fine) return;
+  const int times = 16 * bodies.face_count() < most_faces / 3 ? 2 : 1;
+  fine.emplace(subdivided(*body_data, times), Passes::skin_defines(settings));
+}
+
+void Renderer::Parts::draw_through_lens(const Scene& scene, const Camera& camera, const Style& style) {
+  constexpr float left = 0.35f;  // of the key light's size in each picture
+  const Vector3 to_key = style.to_key.normalized();
+  const Vector3 across = to_key.cross(Vector3::unit(1)).normalized(), along = to_key.cross(across);
+  const int samples = std::min(camera.lens.samples, settings.lens_samples);
+  choose_skin(scene);
+  Camera through = camera;
+  through.lens.samples = samples;
+  for (int i = 0; i < samples; ++i) {
+    if (i > 0) pace.begin();
+    // Each picture has another point of the key light, which is a disc; together they have soft shadows.
+    const Vector2 on_light = style.key_size * disc_sample((7 * i + 3) % samples, samples);
+    Style lit = style;
+    lit.to_key = to_key + on_light.x * across + on_light.y * along;
+    lit.key_size = left * style.key_size;
+    draw_light_of(scene, through.seen_through_lens(i, height), lit, std::fmod(0.618034f * float(i), 1.0f));
+    passes->mean.add(targets.light.get(), i == 0);
+    if (i + 1 < samples) pace.end();
+  }
+  passes->mean.draw(targets.drawing.get(), samples);
+  is_fine = false;
+}
+
 void Renderer::draw(const Scene& scene, const Camera& camera) {
   Parts& p = *parts_;
   const bool values = !scene.face_values.empty() || !scene.mass_values.empty() || !scene.spring_values.empty();
   Style style = style_of(scene.surroundings, scene.theme, values);
+  if (scene.against_light) set_against_light(style, *scene.against_light, scene.surroundings);
   if (scene.flat_backdrop) {
     const float light = *scene.flat_backdrop;
     style.backdrop_high = style.backdrop_low = {light, light, light};
@@ -274,16 +344,7 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // others may draw in this context, too
   p.pace.begin();
   p.timer.begin();
-  p.prepare(scene, camera, style);
-  p.timer.mark("positions");
-  p.draw_light(scene);
-  p.draw_solid(scene, camera);
-  glDepthFunc(GL_GREATER);
-  p.passes->annotation.draw_tiles(scene.tiles);
-  p.passes->annotation.draw_paths(scene.paths, 0.0035f * float(p.height));
-  if (scene.surroundings == Surroundings::water)
-    p.passes->annotation.draw_particles(scene, camera, p.settings.particles);
-  p.ghosts.draw(scene.ghosts);
+  camera.lens.samples > 1 ? p.draw_through_lens(scene, camera, style) : p.draw_light_of(scene, camera, style, 0);
   p.passes->finish.draw(p.targets.light.get(), p.targets.bytes.get(), scene.tiles.empty() ? style.vignette : 0);
   p.outline.draw(p.bodies, scene, p.passes->lattice, p.bounds.boxes(), p.targets);
   // The boxes were measured long ago, and the GPU still has the picture to draw: nobody waits.

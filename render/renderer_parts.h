@@ -19,6 +19,7 @@
 // 3. The CPU is at most two frames ahead of the GPU (Pace). Until then, what it wrote stays (StreamBuffer).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -41,13 +42,17 @@ namespace mercury::render {
 
 // The passes that depend on quality; set_quality() builds them from scratch.
 struct Passes {
+  static std::string skin_defines(const QualitySettings& settings) {
+    return settings.skin_defines() + (settings.front_light ? "#define FRONT_LIGHT\n" : "");
+  }
   explicit Passes(const QualitySettings& settings)
-      : skin(settings.skin_defines() + (settings.front_light ? "#define FRONT_LIGHT\n" : "")),
-        lattice(settings.skin_defines()), annotation(settings.defines()), light(settings), front(settings),
-        occlusion(settings), finish(settings), backdrop("backdrop.frag") {}
+      : skin(skin_defines(settings)), lattice(settings.skin_defines()), annotation(settings.defines()), light(settings),
+        front(settings), occlusion(settings), mean(settings), finish(settings), backdrop("backdrop.frag"),
+        beams("beams.frag") {}
   void resize(int width, int height) {
     front.resize(width, height);
     occlusion.resize(width, height);
+    mean.resize(width, height);
     finish.resize(width, height);
   }
   SkinPass skin;
@@ -56,8 +61,9 @@ struct Passes {
   LightPass light;
   FrontPass front;
   OcclusionPass occlusion;
+  MeanPass mean;
   FinishPass finish;
-  Fullscreen backdrop;
+  Fullscreen backdrop, beams;
 };
 
 // All color maps, one per row, from the middle of the first texel to the middle of the last.
@@ -77,6 +83,9 @@ struct Renderer::Parts {
   std::optional<Overlay> text;  // of the last picture
   float text_size = 0;
   std::optional<Passes> passes;
+  std::shared_ptr<const BodyData> body_data;
+  std::optional<FineSkinPass> fine;  // of these bodies; made when it is first needed
+  bool is_fine = false;              // this picture shows it
   MixPass mix;
   BoundsPass bounds;
   FitPass fit;
@@ -89,11 +98,18 @@ struct Renderer::Parts {
   Pace pace;
   std::string variant;  // lines of #define for this frame
 
-  void prepare(const Scene& scene, const Camera& camera, const Style& style);
+  // The light of a picture, which the finish then shows. `noise`: see frame_block().
+  void draw_light_of(const Scene& scene, const Camera& camera, const Style& style, float noise);
+  // The mean of that through the camera's lens.
+  void draw_through_lens(const Scene& scene, const Camera& camera, const Style& style);
+  void prepare(const Scene& scene, const Camera& camera, const Style& style, float noise);
   template <typename Draw>
   void draw_sides(const Scene& scene, Draw draw_skins);
   void draw_light(const Scene& scene);
+  SkinPass& skin() { return is_fine ? fine->skin() : passes->skin; }
+  void choose_skin(const Scene& scene);
   void draw_solid(const Scene& scene, const Camera& camera);
+  void draw_beams() const;
 };
 
 }  // namespace mercury::render

@@ -124,4 +124,24 @@ Style style_of(Surroundings surroundings, Theme theme, bool values) {
   return s;
 }
 
+void set_against_light(Style& s, const KeyLight& light, Surroundings surroundings) {
+  s.to_key = light.to_key;
+  if (surroundings == Surroundings::water) {
+    s.key_light = {4.6f, 4.5f, 4.0f};
+    s.sky_light = {0.30f, 0.46f, 0.54f};
+    s.ground_light = {0.14f, 0.24f, 0.30f};
+    s.backdrop_high = {0.012f, 0.150f, 0.235f};
+    s.backdrop_low = {0.002f, 0.020f, 0.050f};
+    s.fog = {0.42f, 0.24f, 0.20f};
+  } else {
+    s.key_light = {4.9f, 3.05f, 1.55f};
+    s.sky_light = {0.22f, 0.27f, 0.40f};
+    s.ground_light = {0.16f, 0.12f, 0.08f};
+    s.floor_color = {0.30f, 0.225f, 0.150f};
+    s.backdrop_high = {0.52f, 0.31f, 0.18f};
+    s.backdrop_low = {0.030f, 0.080f, 0.230f};
+    s.fog = {0.045f, 0.050f, 0.058f};
+  }
+}
+
 }  // namespace mercury::render

@@ -24,5 +24,7 @@ struct Style {
 
 // `values`: bodies are colored by values. Dark water is darker then, because the low ends of color maps are as dark.
 Style style_of(Surroundings surroundings, Theme theme, bool values = false);
+// The light of that style for pictures that look towards it: deep water with a bright surface; the last sun on land.
+void set_against_light(Style& style, const KeyLight& light, Surroundings surroundings);
 
 }  // namespace mercury::render

@@ -22,10 +22,11 @@ float shafts(vec3 direction) {
 vec3 sky(vec3 direction) {
   float high = max(direction.z, 0.0);
   vec3 haze = frame.backdrop_high.rgb, zenith = frame.backdrop_low.rgb;
-  vec3 light = mix(haze, zenith, 1.0 - exp(-4.2 * high));
+  vec3 light = mix(haze, zenith, 1.0 - exp(-frame.sky_light.w * high));
   float sun = max(dot(direction, frame.to_key.xyz), 0.0);
   float bright = sun * sun * sun;
   light += haze * (0.28 * bright + 0.5 * pow(sun, 48.0)) * frame.key_light.rgb / frame.key_light.g;
+  light += 0.7 * frame.key_light.rgb * smoothstep(0.9988, 0.9993, sun);
   vec2 above = direction.xy / (high + 0.16);
   float clouds = texture(sand_tile, above * vec2(0.05, 0.11)).a * 0.65 + texture(sand_tile, above.yx * 0.23).a * 0.35;
   light = mix(light, haze * (1.12 + 0.5 * bright), 0.55 * smoothstep(0.46, 0.72, clouds) * smoothstep(0.02, 0.22, high));
@@ -40,7 +41,7 @@ vec3 sky(vec3 direction) {
 }
 
 void main() {
-  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
+  vec3 sight = sight_through(uv);
   vec3 direction = normalize(sight);
   vec3 light = backdrop(direction);
 #if AROUND == AROUND_WATER && defined(HORIZON)

@@ -25,3 +25,6 @@ float caustics(vec2 at, float footprint, float blur) {
 #endif
   return 1.0 + frame.water.y * (light - 1.0);
 }
+
+// On bodies: softer, so that their own colors are seen.
+float caustics_on_skin(vec2 at, float footprint) { return mix(1.0, caustics(at, footprint, 1.8), 0.7); }

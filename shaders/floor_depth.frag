@@ -6,7 +6,7 @@ layout(location = 0) out uint face;
 
 void main() {
   face = 0u;
-  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
+  vec3 sight = sight_through(uv);
   float steps = (frame.ground.w - frame.eye.z) / sight.z;
   bool has_floor = int(frame.water.x) != AROUND_NONE || frame.octave.w > 0.5;  // or one that catches shadows alone
   bool hits_floor = has_floor && steps > frame.depth.x && steps < 0.5 * frame.depth.y;

@@ -13,7 +13,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 eye;                      // world; w = time [s]
   vec4 to_key;                   // direction towards the key light; w = tangent of its half angle
   vec4 key_light;                // linear light; w = strength of muscles' glow
-  vec4 sky_light;                // from straight above
+  vec4 sky_light;                // from straight above; w = how fast haze over land gives way to blue sky
   vec4 ground_light;             // from straight below
   vec4 backdrop_high;            // light from far away, looking up and level
   vec4 backdrop_low;             // the same, looking down; on land, straight up
@@ -26,6 +26,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 ground;                   // corner x, y and side of the floor's light map, height of the floor [m]
   vec4 water;                    // Surroundings, strength of caustics, height of the highest body, distance to target
   vec4 octave;                   // Octave: size, its double, share of the double
+  vec4 lens;                     // Camera::shift, x and y; added to pixel_noise(); how far light shines into bodies [m]
 } frame;
 
 // Values of AROUND (Surroundings in render/scene.h), for shaders that depend on it.
@@ -50,4 +51,11 @@ vec3 through_fog(vec3 light, vec3 sight, float range) {
 }
 
 // A number in [0, 1) per pixel, evenly spread within each neighborhood (interleaved gradient noise, Jimenez 2014).
-float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715)))); }
+float pixel_noise(vec2 pixel) {
+  return fract(frame.lens.z + 52.9829189 * fract(dot(floor(pixel), vec2(0.06711056, 0.00583715))));
+}
+
+// From the eye through a place of the picture, in the world; of length 1 along the camera's axis.
+vec3 sight_through(vec2 uv) {
+  return transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw + frame.lens.xy, -1.0);
+}

@@ -22,7 +22,7 @@ void store(ivec2 texel, vec2 light, float range, vec3 normal) {
 
 // The point of a plane that is seen through a place of the picture. `plane`: normal and offset, relative to the eye.
 vec3 seen_point(vec4 plane, vec2 uv) {
-  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
+  vec3 sight = sight_through(uv);
   return frame.eye.xyz + sight * (plane.w / min(dot(plane.xyz, sight), -1e-3));
 }
 
@@ -36,7 +36,7 @@ void main() {
   }
   float range = distance_of_depth(texelFetch(depths, texel, 0).r);
   vec2 uv = (vec2(texel) + 0.5) / vec2(size);
-  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
+  vec3 sight = sight_through(uv);
   vec3 normal;
   if ((face & CUT_BODY) != 0u)
     normal = placements[face & ~CUT_BODY].cut.xyz;
@@ -52,7 +52,7 @@ void main() {
     vec2 at = surface_point(point);
     float across = distance(surface_point(seen_point(plane, uv + vec2(frame.screen.z, 0.0))), at);
     float along = distance(surface_point(seen_point(plane, uv + vec2(0.0, frame.screen.w))), at);
-    key *= caustics(at, max(across, along), 1.0);
+    key *= caustics_on_skin(at, max(across, along));
 #endif
   }
   store(texel, vec2(key, openness(vec2(texel) + 0.5, range)), range, normal);

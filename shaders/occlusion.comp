@@ -19,7 +19,7 @@ vec3 at(ivec2 texel) {
   ivec2 size = textureSize(depths, 0);
   ivec2 from = DEPTH_STEP * texel;
   float range = distance_of_depth(texelFetch(depths, clamp(from, ivec2(0), size - 1), 0).r);
-  return vec3((2.0 * (vec2(from) + 0.5) / vec2(size) - 1.0) * frame.depth.zw, -1.0) * range;
+  return vec3((2.0 * (vec2(from) + 0.5) / vec2(size) - 1.0) * frame.depth.zw + frame.lens.xy, -1.0) * range;
 }
 
 // The flatter of two differences, which does not cross an edge.

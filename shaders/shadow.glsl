@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of the key light, a disc, reaches a point: percentage-closer soft shadows (Fernando 2005).
 layout(binding = 1) uniform sampler2DShadow shadow_map;
+#define SHADOW_DEPTHS_DECLARED
 layout(binding = 2) uniform sampler2D shadow_depths;
 
 #ifndef SHADOW_BLOCKERS

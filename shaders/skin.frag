@@ -18,6 +18,7 @@
 #include "caustics.glsl"
 #include "occlusion.glsl"
 #endif
+#include "skin_light.glsl"
 #ifdef CUT
 #include "cut.glsl"
 #include "cut_map.glsl"
@@ -30,6 +31,9 @@ layout(location = 1) in vec3 skin_point;
 layout(location = 2) flat in uint flags;
 #ifdef ROUNDED
 layout(location = 3) in vec3 smooth_normal;
+#if COLOR_BY == 0
+layout(location = 7) in vec4 smooth_material;
+#endif
 #endif
 #if COLOR_BY == 1
 layout(std430, binding = 9) readonly buffer FaceValues { float face_values[]; };
@@ -70,7 +74,7 @@ void main() {
   if (!shows_inside(ivec2(gl_FragCoord.xy), body_index)) discard;
   // Computed from the pixel and not from the skin, so that all faces of a body in its cut share one plane.
   vec2 uv = gl_FragCoord.xy * frame.screen.zw;
-  world = point_of_cut(cut, transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0));
+  world = point_of_cut(cut, sight_through(uv));
   gl_FragDepth = depth_of(world);
 #endif
   vec3 from_eye = world - frame.eye.xyz;
@@ -104,6 +108,9 @@ void main() {
 
 #if COLOR_BY == 0
   vec4 material = material_at(face.material, flags);
+#ifdef ROUNDED
+  if ((flags & PLACEMENT_SMOOTH) != 0u) material = smooth_material;
+#endif
   float activation = material.a;
   vec3 albedo = material.rgb * (1.0 + 0.25 * min(activation, 0.0));
 #else
@@ -122,6 +129,10 @@ void main() {
   albedo *= drawn_section(ivec2(gl_FragCoord.xy), body_index);
 #endif
   albedo *= 1.0 - 0.28 * seam;
+  float facing = max(dot(normal, to_eye), 0.0);
+#if COLOR_BY == 0 && !defined(CUT)
+  albedo = under_skin(albedo, facing);
+#endif
 #ifdef MARKED
   if ((flags & PLACEMENT_FAULTY) != 0u) albedo = vec3(0.25 + 0.1 * dot(albedo, vec3(0.3)));
 #endif
@@ -137,14 +148,16 @@ void main() {
   if (dot(normal, frame.to_key.xyz) > -0.25) {  // it turns towards the light
     key = frame.key_light.rgb * key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
 #if AROUND == AROUND_WATER
-    key *= caustics(surface_point(world), 0.0, 1.0);
+    key *= caustics_on_skin(surface_point(world), 0.0);
 #endif
   }
 #endif
   vec3 light = lit(Surface(albedo, normal, 0.42, 0.6), to_eye, key, open);
+#ifndef CUT
+  light += light_through(world, normal, to_eye, albedo);
+#endif
 
-  float strength = max(activation, 0.0);
-  vec3 glow = frame.key_light.w * strength * strength * albedo * (0.35 + 0.65 * albedo) * (0.35 + 0.65 * max(dot(normal, to_eye), 0.0));
+  vec3 glow = glow_inside(albedo, activation, facing);
 #ifdef MARKED
   if ((flags & PLACEMENT_FAULTY) != 0u) glow += pow(1.0 - abs(dot(normal, to_eye)), 2.5) * vec3(2.0, 0.15, 0.1);
 #endif

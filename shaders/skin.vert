@@ -16,6 +16,9 @@ layout(location = 1) out vec3 world;
 layout(location = 2) flat out uint flags;
 #ifdef ROUNDED
 layout(location = 3) out vec3 smooth_normal;
+#if COLOR_BY == 0
+layout(location = 7) out vec4 smooth_material;
+#endif
 #endif
 #if COLOR_BY == 2
 layout(location = 4) out float mass_value;
@@ -36,7 +39,10 @@ void main() {
   world = position + placement.offset;
   flags = placement.flags;
 #ifdef ROUNDED
-  smooth_normal = mass_normals[gl_VertexID].xyz;
+  smooth_normal = mass_normals[2 * gl_VertexID].xyz;
+#if COLOR_BY == 0
+  smooth_material = mass_normals[2 * gl_VertexID + 1];
+#endif
 #endif
 #if COLOR_BY == 2
   mass_value = mass_values[gl_VertexID];

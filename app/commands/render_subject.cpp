@@ -10,12 +10,15 @@
 
 #include "app/base/progress.h"
 #include "app/recording/trajectory_layout.h"
+#include "app/scene/hero_style.h"
 #include "app/video/frame_writer.h"
 #include "app/video/side_by_side.h"
 #include "mercury/error.h"
 
 namespace mercury {
 namespace {
+
+constexpr double hero_moment = 3;  // of the style "hero", without --still [s]
 
 Subject recording_of(const RenderOptions& options, const std::filesystem::path& file) {
   if (options.video.each()) throw InputError("--each", "does not work with a recording; it is played as a whole");
@@ -154,6 +157,19 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
     throw InputError("--still", fmt::format("{} is not accepted; the recording has {:.6g} s", moment, length));
 }
 
+// The first robot, with the others or copies of itself behind it.
+void show_as_hero(const RenderOptions& options, RenderTask& task) {
+  if (task.view.board || task.view.compare || !task.subject.others.empty())
+    throw InputError("--style", "hero shows one group of robots; leave out --map, --compare and further recordings");
+  set_hero_style(task.view, task.subject.configuration.environment);
+  if (!options.view.chooses_what_is_shown()) task.view.shown.clock = false;
+  if (task.subject.recording) return;
+  for (Clip& clip : task.subject.clips) {
+    clip.captions.clear();
+    add_siblings(clip.robots, task.subject.configuration.environment);
+  }
+}
+
 }  // namespace
 
 std::vector<FilmedGroup> Subject::groups_of(const Clip& clip, const ViewSettings& view) const {
@@ -176,6 +192,7 @@ std::string Subject::comment(const Clip& clip) const {
 
 void check_options(RenderOptions& options) {
   if (options.film.map() || options.view.settings().background) options.video.set_usual_still(0);
+  if (options.video.hero() || options.video.aperture() > 0) options.video.set_usual_still(hero_moment);
   options.video.plan(options.simulation.seconds());
   options.view.settings();
 }
@@ -197,6 +214,8 @@ RenderTask render_task(RenderOptions& options) {
     throw InputError("-o", "an .svg or .pdf is a figure; give --background, and one group of robots");
   if (task.subject.clips.size() > 1 && options.video.contact_sheet()) plan_sheet_of_clips(task.subject, task.plan);
   task.view.interop = options.video.interop();
+  if (options.video.aperture() > 0) task.view.aperture = options.video.aperture();
+  if (options.video.hero()) show_as_hero(options, task);
   task.view.speed = options.video.single_picture() ? 1 : options.video.speed();
   return task;
 }

@@ -45,6 +45,13 @@ void VideoOptions::add_to(const Command& command) {
           .on_first_screen());
   add(add_value(command, "--contact-sheet", contact_sheet_,
                 "Columns and rows of moments of --seconds in one picture (.png), as wide as --size", "CxR", grid_from));
+  add(add_choice(command, "--style", style_, {"usual", "hero"},
+                 "hero: a still of the first robot, against the light, with others behind it (default usual)")
+          .on_first_screen());
+  add(add_number(command, "--aperture", aperture_,
+                 "Of a still: blur what is nearer or farther than the robot that the camera follows; diameter of the "
+                 "lens over its distance, as in 0.05 (default 0: all is sharp)",
+                 "X"));
   add(add_number(command, "--dpi", dpi_, "How large a picture is on paper: pixels per inch, as in 300", "N"));
   add(command.add_flag("--tight", tight_, "With --background: cut the picture off around what it shows"));
   add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4").on_first_screen());
@@ -68,11 +75,20 @@ void VideoOptions::validate() const {
     throw InputError("--still", fmt::format("{} is not accepted; give a finite number >= 0 s", *still_));
   if (dpi_ && !(*dpi_ >= 1 && *dpi_ <= 100000))
     throw InputError("--dpi", fmt::format("{} is not accepted; give 1 to 100000 pixels per inch", *dpi_));
+  if (!(aperture_ >= 0 && aperture_ <= 1))
+    throw InputError("--aperture", fmt::format("{} is not accepted; give 0 to 1", aperture_));
+  if (!still_ && hero()) throw InputError("--style", "hero is a picture; give --still, or -o FILE.png");
+  if (!still_ && aperture_ > 0) throw InputError("--aperture", "is of a picture; give --still, or -o FILE.png");
   if (dpi_ && !single_picture()) throw InputError("--dpi", "is of a picture; give --still, or -o FILE.png");
   if (still_ && contact_sheet_) throw InputError("--still", "not together with --contact-sheet; give one of them");
   if (contact_sheet_ && std::max(contact_sheet_->columns, contact_sheet_->rows) > most_moments)
     throw InputError("--contact-sheet", fmt::format("{}x{} is not accepted; give up to {} columns and rows",
                                                     contact_sheet_->columns, contact_sheet_->rows, most_moments));
+}
+
+render::Quality VideoOptions::quality() const {
+  const render::Quality quality = render::quality_named(quality_);
+  return quality == render::Quality::automatic && hero() ? render::Quality::medium : quality;
 }
 
 void VideoOptions::set_usual_still(double seconds) {

@@ -48,6 +48,8 @@ class VideoOptions {
   bool each() const { return each_; }
   std::optional<double> still() const { return still_; }  // [s]
   std::optional<Grid> contact_sheet() const { return contact_sheet_; }
+  bool hero() const { return style_ == "hero"; }
+  float aperture() const { return aperture_; }
   bool tight() const { return tight_; }
   double dpi() const { return dpi_.value_or(0); }
   // Whether the picture is a document (.svg, .pdf), whose text is text.
@@ -56,7 +58,7 @@ class VideoOptions {
   PictureSize asked_size() const;
   render::ContextKind context_kind() const { return render::context_kind_named(gl_); }
   bool interop() const { return !no_interop_; }
-  render::Quality quality() const { return render::quality_named(quality_); }
+  render::Quality quality() const;
 
  private:
   void validate() const;
@@ -70,7 +72,8 @@ class VideoOptions {
   std::optional<int> crf_;
   std::optional<double> dpi_;
   bool each_ = false, no_interop_ = false, tight_ = false;
-  std::string ffmpeg_, gl_ = "auto", quality_ = "auto";
+  float aperture_ = 0;
+  std::string ffmpeg_, gl_ = "auto", quality_ = "auto", style_ = "usual";
 };
 
 }  // namespace mercury

@@ -16,7 +16,7 @@
 namespace mercury {
 namespace {
 
-// Of strong arrows. Muscles are red, amber, yellow, teal, blue and violet.
+// Of strong arrows. Muscles are terracotta, ochre, yellow, teal, blue and violet.
 constexpr render::Color drag_color = render::rgb(0x3dff4e);
 constexpr render::Color lift_color = render::rgb(0x3d8bff);
 constexpr render::Color velocity_color = render::rgb(0xffffff);

@@ -6,17 +6,22 @@
 #include <variant>
 
 #include "app/scene/camera_controller.h"
+#include "app/scene/hero_style.h"
 #include "mercury/distance.h"
 
 namespace mercury {
 
 using render::Vector3;
 
-Layout motion_of(const ViewSettings& settings) { return settings.board ? Layout::grid : settings.layout; }
+Layout motion_of(const ViewSettings& settings) {
+  if (settings.hero) return Layout::cells;
+  return settings.board ? Layout::grid : settings.layout;
+}
 
 std::vector<Vector3> group_offsets(std::span<const render::Bounds> boxes, std::span<const Room> rooms,
                                    const ViewSettings& settings, const Environment& environment, float aspect) {
   if (boxes.empty()) return {};
+  if (settings.hero) return hero_layout(rooms, settings, environment);
   const bool land = has_ground(environment);
   const bool race = settings.layout == Layout::race;
   // From straight above, and in lanes, robots that swim are laid out as if on the ground.

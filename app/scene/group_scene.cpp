@@ -8,6 +8,7 @@
 
 #include "app/scene/camera_controller.h"
 #include "app/scene/group_look.h"
+#include "app/scene/hero_style.h"
 #include "mercury/origin.h"
 #include "render/text/overlay.h"
 
@@ -83,6 +84,8 @@ void GroupScene::show_surroundings() {
   scene_.catch_shadows = plain && land && tiles_.empty();
   scene_.flat_backdrop = settings_.flat_backdrop;
   scene_.text_aside = settings_.text_aside;
+  scene_.against_light.reset();
+  if (settings_.hero) scene_.against_light = hero_light(settings_, environment_);
   scene_.flow = render::Vector3(flow_of(environment_));
   scene_.show = {.skin = settings_.shown.skin, .springs = settings_.shown.springs, .masses = settings_.shown.masses};
   scene_.theme = settings_.theme;

@@ -81,7 +81,8 @@ void GroupScene::place_boxes() {
 // On land, the ground slides under each robot that stays in its cell.
 void GroupScene::place_patches() {
   patches_.clear();
-  if (motion_.layout() == Layout::cells && motion_.on_land() && scene_.surroundings == render::Surroundings::land)
+  if (!settings_.hero && motion_.layout() == Layout::cells && motion_.on_land() &&
+      scene_.surroundings == render::Surroundings::land)
     for (std::size_t i = 0; i < placements_.size(); ++i) {
       if (placements_[i].hidden) continue;
       const render::Vector2 middle = (offsets_[i] + rooms_[i].center).xy();

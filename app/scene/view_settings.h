@@ -43,6 +43,8 @@ struct ViewSettings {
   std::optional<float> flat_backdrop;       // while a figure is drawn, see render::Scene
   bool text_aside = false;                  // likewise
   bool smooth = false;
+  bool hero = false;               // a still of the first robot, see hero_style.h
+  float aperture = 0;              // diameter of a still's lens, as a share of the distance to what is in focus
   std::optional<render::Cut> cut;  // opens each robot
   Layout layout = Layout::grid;
   std::optional<Grid> grid;

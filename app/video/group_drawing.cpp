@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/video/group_drawing.h"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -10,6 +11,8 @@
 
 namespace mercury {
 namespace {
+
+constexpr int lens_samples = 128;  // enough for blur of a tenth of the picture's height
 
 bool on_land(const Simulation& simulation) { return has_ground(simulation.configuration().environment); }
 
@@ -38,6 +41,7 @@ GroupPlacement placement_of(const Simulation& simulation, const ViewSettings& se
 // The edges of the picture where text is written and no robot should be, as shares of its sides.
 render::Insets free_edges(const ViewSettings& settings) {
   render::Insets free;
+  if (settings.hero) free.left = 0.12f;  // the robot is to the right of the middle
   if (settings.shown.legend) free.right = 0.1f;
   if (settings.shown.labels || settings.shown.captions) free.top = 0.07f;
   if (settings.shown.clock || settings.shown.scale_bar) free.bottom = 0.03f;
@@ -87,6 +91,18 @@ FrameSnapshot GroupDrawing::between(const FrameSnapshot& earlier, const FrameSna
 void GroupDrawing::draw(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer, double elapsed) {
   show(snapshot, bridge, renderer);
   renderer.draw(scene(), camera(camera_boxes(), elapsed));
+}
+
+render::Camera GroupDrawing::camera(std::span<const render::Bounds> boxes, double elapsed) {
+  render::Camera camera = camera_.at(boxes, elapsed);
+  if (settings_.aperture == 0) return camera;
+  const float distance = (camera.target - camera.eye).norm();
+  // What is sharp of a robot begins with its nearer half.
+  const float nearer = settings_.hero && !boxes.empty() ? 0.3f * boxes.front().radius() : 0;
+  camera.lens.focus = std::max(0.1f * distance, distance - nearer);
+  camera.lens.radius = 0.5f * settings_.aperture * camera.lens.focus;
+  camera.lens.samples = lens_samples;
+  return camera;
 }
 
 void GroupDrawing::show(FrameSnapshot& snapshot, PositionBridge& bridge, render::Renderer& renderer) {

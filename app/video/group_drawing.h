@@ -58,7 +58,7 @@ class GroupDrawing {
   const render::Scene& scene() { return scene_.scene(); }
   std::span<const render::Bounds> camera_boxes() const { return scene_.camera_boxes(); }
   // The camera that keeps these boxes in view.
-  render::Camera camera(std::span<const render::Bounds> boxes, double elapsed) { return camera_.at(boxes, elapsed); }
+  render::Camera camera(std::span<const render::Bounds> boxes, double elapsed);
   // What is shown from the next show() on.
   void set_shown(const Shown& shown);
   // Takes the ends of the scale that another group with the same colors had in its last show().

@@ -43,6 +43,7 @@ QualitySettings settings_of(Quality quality) {
     s.skin_taps = 8;
     s.occlusion_taps = 12;
     s.particles = 900;
+    s.lens_samples = 64;
     s.front_light = true;
   } else if (quality == Quality::high) {
     s.shadow_side = 4096;
@@ -55,6 +56,7 @@ QualitySettings settings_of(Quality quality) {
     s.skin_taps = 24;
     s.occlusion_taps = 24;
     s.particles = 1500;
+    s.lens_samples = 128;
     s.front_light = true;
   }
   return s;

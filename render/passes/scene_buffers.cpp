@@ -107,7 +107,8 @@ Octave octave_of(float distance) {
   return t < 1 ? Octave{std::exp2(whole), t * t * (3 - 2 * t)} : Octave{std::exp2(whole + 1), 0};
 }
 
-FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, int width, int height) {
+FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, int width, int height,
+                       float noise) {
   FrameBlock b;
   const float aspect = float(width) / float(height);
   b.view = camera.view();
@@ -117,12 +118,12 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   b.eye = Vector4(camera.eye, float(std::fmod(scene.time, 3600.0)));
   b.to_key = Vector4(style.to_key.normalized(), style.key_size);
   b.key_light = Vector4(style.key_light, style.glow);
-  b.sky_light = Vector4(style.sky_light, 0);
+  b.sky_light = Vector4(style.sky_light, scene.against_light ? 7.0f : 4.2f);
   b.ground_light = Vector4(style.ground_light, 0);
   b.backdrop_high = Vector4(style.backdrop_high, 0);
   b.backdrop_low = Vector4(style.backdrop_low, 0);
   b.floor_color = Vector4(style.floor_color, 0);
-  b.line_color = Vector4(style.line_color, scene.patches.empty() ? 1 : 0);
+  b.line_color = Vector4(style.line_color, scene.patches.empty() && !scene.against_light ? 1 : 0);
   b.fog = Vector4(style.fog / distance, 0.55f * distance);
   b.screen = {float(width), float(height), 1 / float(width), 1 / float(height)};
   const float scale = 1 / std::tan(0.5f * camera.field_of_view);
@@ -132,6 +133,7 @@ FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& st
   b.water = {float(scene.surroundings), style.caustics, 0, distance};
   const Octave octave = octave_of(distance);
   b.octave = {octave.size, 2 * octave.size, octave.share_of_double, scene.catch_shadows ? 1.0f : 0.0f};
+  b.lens = {camera.shift.x, camera.shift.y, noise, 0};
   return b;
 }
 

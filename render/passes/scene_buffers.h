@@ -63,7 +63,7 @@ void attach_corners(GLuint array, const Bodies& bodies);
 struct FrameBlock {
   Matrix4 view_projection, inverse_view_projection, view, shadow = Matrix4::identity();
   Vector4 eye, to_key, key_light, sky_light, ground_light, backdrop_high, backdrop_low, floor_color, line_color, fog,
-      screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave;
+      screen, depth, shadow_size{1, 1, 0, 0}, ground, water, octave, lens;
 };
 
 // The size of a pattern that is fixed in the world and suits any viewing distance: a power of two, which fades into its
@@ -73,8 +73,10 @@ struct Octave {
 };
 Octave octave_of(float distance);
 
-// Everything except what FitPass fills in.
-FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, int width, int height);
+// Everything except what FitPass fills in, and how far light shines into bodies. `noise`: see pixel_noise() of the
+// shaders.
+FrameBlock frame_block(const Scene& scene, const Camera& camera, const Style& style, int width, int height,
+                       float noise = 0);
 
 // Fills Bodies::positions with positions between those of two other buffers.
 class MixPass {

@@ -80,6 +80,28 @@ void OcclusionPass::draw(GLuint depths, float radius) const {
   glBindTextureUnit(binding::occlusion, smooth_.get());
 }
 
+MeanPass::MeanPass(const QualitySettings& settings)
+    : add_(make_program({"accumulate.comp"}, settings.defines())), average_("average.frag") {}
+
+void MeanPass::resize(int width, int height) {
+  width_ = width;
+  height_ = height;
+  sum_ = {};
+}
+
+void MeanPass::add(GLuint samples, bool first) {
+  if (!sum_) sum_ = make_texture(GL_RGBA32F, width_, height_);
+  glBindTextureUnit(binding::source, samples);
+  glProgramUniform1i(add_.get(), 0, first ? 1 : 0);
+  compute_texels(add_.get(), sum_.get(), GL_RGBA32F, width_, height_);
+}
+
+void MeanPass::draw(GLuint framebuffer, int pictures) const {
+  glBindTextureUnit(binding::source, sum_.get());
+  glProgramUniform1f(average_.program(), 0, 1 / float(pictures));
+  average_.draw_into(framebuffer, width_, height_);
+}
+
 FinishPass::FinishPass(const QualitySettings& settings)
     : extract_("glow.frag"), blur_("blur.frag"), resolve_(make_program({"resolve.comp"}, settings.defines())) {}
 

@@ -72,6 +72,23 @@ class OcclusionPass {
   Program occlusion_, blur_;
 };
 
+// The mean of several pictures: of the same scene through a lens.
+class MeanPass {
+ public:
+  explicit MeanPass(const QualitySettings& settings);
+  void resize(int width, int height);
+  // `samples`: multisampled light. `first`: it starts a mean.
+  void add(GLuint samples, bool first);
+  // Draws the mean of the pictures into all samples of that framebuffer.
+  void draw(GLuint framebuffer, int pictures) const;
+
+ private:
+  int width_ = 0, height_ = 0;
+  Texture sum_;  // made when it is first needed
+  Program add_;
+  Fullscreen average_;
+};
+
 // From samples of light to the finished picture: spreads the glow, applies the tone curve, averages the samples.
 class FinishPass {
  public:

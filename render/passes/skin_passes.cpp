@@ -39,7 +39,7 @@ void SkinPass::attach(const Bodies& bodies) {
   seen_faces_.reserve(seen_face_bytes * bodies.face_count());
   face_normals_.reserve(4 * bodies.face_count());
   face_areas_.reserve(4 * bodies.face_count());
-  mass_normals_.reserve(16 * bodies.mass_count());
+  mass_normals_.reserve(32 * bodies.mass_count());
 }
 
 void SkinPass::deform(const Bodies& bodies, bool smooth, bool cut) {
@@ -100,6 +100,27 @@ void SkinPass::draw_shadow() const {
   if (cut_) glEnable(GL_CLIP_DISTANCE0);
   cull_.draw_lit(corners_.get());
   glDisable(GL_CLIP_DISTANCE0);
+}
+
+FineSkinPass::FineSkinPass(const FineSkin& skin, const std::string& defines)
+    : skin_(defines), program_(make_program({"subdivide.comp"})) {
+  points_.set(std::make_shared<const BodyData>(skin.bodies));
+  ends_.write(skin.means.ends);
+  masses_.write(skin.means.masses);
+  weights_.write(skin.means.weights);
+  skin_.attach(points_);
+}
+
+void FineSkinPass::follow(const Bodies& bodies) const {
+  bodies.positions.bind_storage(binding::positions);
+  ends_.bind_storage(binding::first_free);
+  masses_.bind_storage(binding::first_free + 1);
+  weights_.bind_storage(binding::first_free + 2);
+  points_.positions.bind_storage(binding::first_free + 3);
+  glUseProgram(program_.get());
+  glUniform1ui(0, GLuint(points_.mass_count()));
+  dispatch(points_.mass_count());
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
 }
 
 GhostPass::GhostPass() : empty_(make_vertex_array()), program_(make_program({"ghost.vert", "ghost.frag"})) {}

@@ -11,6 +11,7 @@
 #include "render/passes/scene_buffers.h"
 #include "render/passes/visibility_passes.h"
 #include "render/scene.h"
+#include "render/subdivision.h"
 
 namespace mercury::render {
 
@@ -43,6 +44,23 @@ class SkinPass {
   CullPass cull_;
   bool cut_ = false;
   Buffer seen_faces_, face_normals_, face_areas_, mass_normals_;
+};
+
+// A finer skin, whose points follow the masses of all bodies.
+class FineSkinPass {
+ public:
+  // `defines`: as of SkinPass.
+  FineSkinPass(const FineSkin& skin, const std::string& defines);
+  // Moves its points to where the bodies are.
+  void follow(const Bodies& bodies) const;
+  const Bodies& bodies() const { return points_; }
+  SkinPass& skin() { return skin_; }
+
+ private:
+  Bodies points_;
+  Buffer ends_, masses_, weights_;
+  SkinPass skin_;
+  Program program_;
 };
 
 inline constexpr const char* cut_variant = "#define CUT\n";

@@ -36,6 +36,29 @@ TEST(Camera, TargetIsInTheMiddleOfThePicture) {
   EXPECT_NEAR(seen.y, 180, 1e-3);
 }
 
+// From every point of the lens, points in the plane of focus are in the same place within a pixel; one twice as far
+// moves over a disc. Similar triangles: its diameter in the plane of focus is that of the lens times 1 - 1/2.
+TEST(Camera, TheLensBlursWhatIsOutOfFocus) {
+  constexpr int samples = 64, width = 640, height = 360;
+  const Camera camera{.eye = {3, -4, 2},
+                      .target = {0.5f, 0.2f, 0.1f},
+                      .field_of_view = 0.8f,
+                      .lens = {.radius = 0.2f, .focus = 3, .samples = samples}};
+  const Vector3 forward = (camera.target - camera.eye).normalized(), right = forward.cross(camera.up).normalized();
+  const Vector3 sharp = camera.eye + 3 * forward + 0.7f * right, blurred = camera.eye + 6 * forward;
+  const float pixel = 2 * std::tan(0.4f) / float(height);
+  Bounds spread;
+  for (int i = 0; i < samples; ++i) {
+    const Camera seen = camera.seen_through_lens(i, height);
+    const Vector3 off = seen.project(sharp, width, height) - camera.project(sharp, width, height);
+    EXPECT_LE(std::max(std::abs(off.x), std::abs(off.y)), 0.501f);
+    spread.extend(seen.project(blurred, width, height));
+  }
+  const float expected = 2 * 0.2f * 0.5f / 3 / pixel;
+  EXPECT_NEAR(spread.high.x - spread.low.x, expected, 0.08f * expected);
+  EXPECT_NEAR(spread.high.y - spread.low.y, expected, 0.08f * expected);
+}
+
 TEST(Camera, DepthIsOneAtTheNearestAndZeroAtTheFarthest) {
   const Camera camera{.eye = {0, 0, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .near = 0.5f, .far = 50};
   const auto depth = [&](float z) {

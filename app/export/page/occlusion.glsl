@@ -25,6 +25,6 @@ float open_sky(vec3 point, vec3 normal) {
 // For backdrop.frag: of the ground at a pixel, `range` along the camera's axis.
 float openness(vec2 pixel, float range) {
   vec2 uv = pixel * frame.screen.zw;
-  vec3 sight = transpose(mat3(frame.view)) * vec3((2.0 * uv - 1.0) * frame.depth.zw, -1.0);
+  vec3 sight = sight_through(uv);
   return range > 0.0 ? open_sky(frame.eye.xyz + range * sight, vec3(0.0, 0.0, 1.0)) : 1.0;
 }

@@ -9,6 +9,7 @@
 #include "shadow.glsl"
 #include "caustics.glsl"
 #include "occlusion.glsl"
+#include "skin_light.glsl"
 flat in vec4 along_u;
 flat in vec4 along_v;
 flat in uvec4 normals_around;
@@ -46,17 +47,20 @@ void main() {
   vec3 albedo = texture(colormap, vec2(COLOR_BY == 1 ? 0.5 + 0.5 * material.a : value, 0.5)).rgb;
 #endif
   albedo *= 1.0 - 0.28 * seam;
+  float facing = max(dot(normal, to_eye), 0.0);
+#if COLOR_BY == 0
+  albedo = under_skin(albedo, facing);
+#endif
 
   vec3 key = vec3(0.0);
   if (dot(normal, frame.to_key.xyz) > -0.25) {
     key = frame.key_light.rgb * key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
 #if AROUND == AROUND_WATER
-    key *= caustics(surface_point(world), 0.0, 1.0);
+    key *= caustics_on_skin(surface_point(world), 0.0);
 #endif
   }
   vec3 light = lit(Surface(albedo, normal, 0.42, 0.6), to_eye, key, open_sky(world, normal));
-  float strength = max(activation, 0.0);
-  vec3 glow = frame.key_light.w * strength * strength * albedo * (0.35 + 0.65 * albedo) *
-              (0.35 + 0.65 * max(dot(normal, to_eye), 0.0));
+  light += light_through(world, normal, to_eye, albedo);
+  vec3 glow = glow_inside(albedo, activation, facing);
   color = vec4(through_fog(light + glow, -to_eye, range), 1.0);
 }

@@ -18,7 +18,7 @@ class View {
     // Light of crossing rays adds up to more than 1.
     this.hasCaustics = this.around === 1 && Boolean(gl.getExtension("EXT_color_buffer_float") || gl.getExtension("EXT_color_buffer_half_float"));
     this.programs = new Map();
-    this.frame = new Float32Array(128);
+    this.frame = new Float32Array(132);
     this.frameBuffer = gl.createBuffer();
     gl.bindBuffer(gl.UNIFORM_BUFFER, this.frameBuffer);
     gl.bufferData(gl.UNIFORM_BUFFER, this.frame.byteLength, gl.DYNAMIC_DRAW);
@@ -263,12 +263,13 @@ ${defines}${text}`;
     frame.set(view, 32);
     frame.set(shadow.matrix, 48);
     const vectors = [
-      [...orbit.eye, time % 3600], [...toKey, style.key_size], [...style.key_light, style.glow], [...style.sky_light, 0],
+      [...orbit.eye, time % 3600], [...toKey, style.key_size], [...style.key_light, style.glow], [...style.sky_light, 4.2],
       [...style.ground_light, 0], [...style.backdrop_high, 0], [...style.backdrop_low, 0], [...style.floor_color, 0],
       [...style.line_color, 1], [...scaled(style.fog, 1 / distance), 0.55 * distance],
       [canvas.width, canvas.height, 1 / canvas.width, 1 / canvas.height],
       [orbit.near, orbit.far, orbit.halfHeight * orbit.aspect, orbit.halfHeight], [shadow.width, shadow.depth, 0, 0],
-      [...ground, floor], [this.around, this.hasCaustics ? style.caustics : 0, box.high[2], distance], [...octave, 0]];
+      [...ground, floor], [this.around, this.hasCaustics ? style.caustics : 0, box.high[2], distance], [...octave, 0],
+      [0, 0, 0, 0.2 * Math.max(...this.group.robots.map((robot) => robot.radius))]];
     vectors.forEach((vector, i) => frame.set(vector, 64 + 4 * i));
     gl.bindBuffer(gl.UNIFORM_BUFFER, this.frameBuffer);
     gl.bufferSubData(gl.UNIFORM_BUFFER, 0, frame);

@@ -55,6 +55,27 @@ TEST_F(RenderCommand, VideoHasTheRequestedFrames) {
   EXPECT_EQ(listing(), std::vector<std::string>{"a.mp4"});
 }
 
+TEST_F(RenderCommand, HeroShowsOneRobotAndCopiesBehindIt) {
+  const Outcome outcome = mercury(command("hero.png", {"--style", "hero", "--quality", "low", "--still", "0.1"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.messages, HasSubstr("simulating 10 robots (ocean) on "));
+  const render::Image first = render::read_png(path("hero.png"));
+  ASSERT_EQ(mercury(command("again.png", {"--style", "hero", "--quality", "low", "--still", "0.1"})).status, 0);
+  EXPECT_EQ(first.bytes, render::read_png(path("again.png")).bytes);
+}
+
+TEST_F(RenderCommand, ALensIsOfAPicture) {
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--style", "hero"}, std::vector<std::string>{"--aperture", "0.1"}}) {
+    const Outcome outcome = mercury(command("a.mp4", options));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.messages, HasSubstr(options[0] + ": "));
+    EXPECT_THAT(outcome.messages, HasSubstr("give --still, or -o FILE.png"));
+  }
+  EXPECT_EQ(mercury(command("a.png", {"--still", "0", "--aperture", "2"})).status, 2);
+  EXPECT_EQ(mercury(command("b.png", {"--still", "0", "--style", "hero", "--compare", "solver=xpbd"})).status, 2);
+}
+
 TEST_F(RenderCommand, SpeedShortensTheVideo) {
   ASSERT_EQ(mercury(command("a.mp4", {"--fps", "20", "--seconds", "1", "--speed", "4"})).status, 0);
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "5");
