@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "render/text/font.h"
 
 namespace mercury::render {
@@ -127,6 +129,31 @@ TEST(Overlay, EverythingStaysInsideThePicture) {
 }
 
 // Bars beside the scale, the first at the bottom, as long as their shares.
+// Names of robots that have exploded: they may lie anywhere, and several at one place.
+TEST(Overlay, FreeTextsStayInThePictureAndApart) {
+  const Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
+  const Camera camera = orbit.camera();
+  std::vector<Text> texts;
+  for (const Vector3 at : {Vector3(0, 0, 0), Vector3(0, 0, 0), Vector3(0.01f, 0, 0), Vector3(-9, 0, 0), Vector3(9, 0, 0),
+                           Vector3(0, 0, 9)})
+    texts.push_back({.at = at, .text = "voxel-1-7", .free = true});
+  Overlay overlay = make_overlay();
+  overlay.texts(texts, camera);
+  ASSERT_EQ(overlay.texts().size(), texts.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const OverlayText& a = overlay.texts()[i];
+    const float width = text_width(a.text, a.size);
+    EXPECT_GE(a.x, 0);
+    EXPECT_LE(a.x + width, 640);
+    EXPECT_GE(a.y, 0);
+    EXPECT_LE(a.y + a.size, 360);
+    for (std::size_t j = 0; j < i; ++j) {
+      const OverlayText& b = overlay.texts()[j];
+      EXPECT_TRUE(std::abs(a.x - b.x) >= width || std::abs(a.y - b.y) >= a.size) << i << " " << j;
+    }
+  }
+}
+
 TEST(Overlay, LegendHasAHistogram) {
   Overlay without = make_overlay(), with = make_overlay();
   Legend legend{"speed", "m/s", Scale{0, 1, Colormap::viridis}, {}, {}};
