@@ -19,6 +19,9 @@
 #include "app/commands/description.h"
 #include "app/commands/dry_run.h"
 #include "app/commands/evolution_progress.h"
+#include "app/commands/evolve_sweep.h"
+#include "app/commands/results_file.h"
+#include "app/commands/sweep.h"
 #include "app/options/evolution_options.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
@@ -40,8 +43,10 @@ struct EvolveOptions {
   std::string folder;
   std::string shard;  // "3/8"
   bool resume = false, prepare = false, merge = false;
+  bool brief = false;  // a run of a sweep
   OutputOptions output;
   EvolutionOptions run;
+  SweepOptions sweep;
 };
 
 double median_score(const Evolution& evolution) {
@@ -207,8 +212,10 @@ int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSetti
   const bool done = evolve(run, evolution, assessor, checks ? &*checks : nullptr);
   run.write_all();
   const bool all_checked = !checks || finish_checks(*checks);
-  report(options, run, evolution);
-  if (checks) report_checks(options, run.history(), checks->checks());
+  if (!options.brief) {
+    report(options, run, evolution);
+    if (checks) report_checks(options, run.history(), checks->checks());
+  }
   if (!done)
     warn(fmt::format("stopped in generation {}, which is lost; mercury evolve {} --resume goes on",
                      evolution.next_generation(), options.folder));
@@ -222,6 +229,69 @@ int evolve_here(const EvolveOptions& options, const Command& command) {
   if (options.prepare) return 0;
   const EvolutionSettings settings = settings_here(options, command, run.history().settings());
   return evolve_in(options, run, settings, *make_assessor(settings));
+}
+
+// --- A sweep
+
+void refuse_in_sweep(const EvolveOptions& options) {
+  if (options.merge || !options.shard.empty())
+    throw InputError(options.merge ? "--merge" : "--shard", "not for a sweep; give one of its runs");
+  if (Ranks::launched()) throw InputError(options.folder, "a sweep is no work for several processes; give each a run");
+}
+
+// Makes the folders of all runs, so that from then on the sweep is its folder.
+void make_sweep(const EvolveOptions& options, const Command& command) {
+  const std::filesystem::path folder = options.folder;
+  if (is_run_folder(folder)) throw InputError(folder.string(), "holds a run; give a new folder for a sweep");
+  const std::vector<std::filesystem::path> old = runs_of_sweep(folder);
+  if (!old.empty() && !options.output.force())
+    throw InputError(folder.string(), "holds a sweep; --resume goes on with it, --force replaces it");
+  std::vector<std::string> notes;
+  const std::vector<SweepOptions::Run> runs = options.sweep.runs(command, notes);
+  for (const std::string& note : notes) warn(note);
+  for (const std::filesystem::path& run : old) std::filesystem::remove_all(run);
+  for (const SweepOptions::Run& run : runs) {
+    std::filesystem::create_directories((folder / run.place).parent_path());
+    RunFolder::create(folder / run.place, run.settings, options.output.force());
+  }
+}
+
+// In the order of the seeds, so that a sweep that was stopped has as many of each variant.
+std::vector<std::filesystem::path> runs_in_turn(const std::filesystem::path& folder) {
+  std::vector<std::pair<std::uint64_t, std::filesystem::path>> runs;
+  for (const std::filesystem::path& run : runs_of_sweep(folder))
+    runs.emplace_back(RunHistory(run).settings().evolution.seed, run);
+  std::ranges::stable_sort(runs, {}, [](const auto& run) { return run.first; });
+  std::vector<std::filesystem::path> folders;
+  for (auto& [seed, run] : runs) folders.push_back(std::move(run));
+  return folders;
+}
+
+int evolve_sweep(const EvolveOptions& options, const Command& command) {
+  refuse_in_sweep(options);
+  if (options.resume)
+    options.run.require_only_what_may_change(command);
+  else
+    make_sweep(options, command);
+  if (options.prepare) return 0;
+  const std::filesystem::path folder = options.folder;
+  const std::vector<std::filesystem::path> runs = runs_in_turn(folder);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    EvolveOptions own = options;
+    own.folder = runs[i].string();
+    own.brief = true;
+    RunFolder run = RunFolder::open(runs[i]);
+    set_generations(own, run);
+    const EvolutionSettings settings = settings_here(own, command, run.history().settings());
+    say(fmt::format("run {} of {}: {}", i + 1, runs.size(), runs[i].lexically_relative(folder).string()));
+    const int status = evolve_in(own, run, settings, *make_assessor(settings));
+    const Sweep sweep = read_sweep(folder);
+    write_results((folder / "sweep.csv").string(), sweep_csv(sweep));
+    write_results((folder / "sweep.svg").string(), sweep_plot(sweep));
+    if (status != 0) return status;
+  }
+  fmt::print("{}", sweep_table(read_sweep(folder)));
+  return 0;
 }
 
 // --- By MPI
@@ -342,6 +412,16 @@ int describe_more(const EvolveOptions& options, const Command& command) {
                         {"on", device_text(settings.configuration.device)}});
 }
 
+int describe_sweep(const EvolveOptions& options, const Command& command) {
+  refuse_in_sweep(options);
+  std::vector<std::string> notes;
+  const std::size_t runs =
+      options.resume ? runs_of_sweep(options.folder).size() : options.sweep.runs(command, notes).size();
+  for (const std::string& note : notes) say(note);
+  return print_dry_run("evolve", {{options.resume ? "go on with" : "write", options.folder},
+                                  {"runs", fmt::format("{}, each in a folder of its own", runs)}});
+}
+
 int describe_work(const EvolveOptions& options, const Command& command) {
   if (options.resume || options.merge || !options.shard.empty()) return describe_more(options, command);
   require_new_folder(options.folder, options.output.force());
@@ -371,6 +451,11 @@ int describe_work(const EvolveOptions& options, const Command& command) {
 int evolve(const EvolveOptions& options, const Command& command) {
   if (options.resume + options.prepare + options.merge + !options.shard.empty() > 1)
     throw InputError("--resume, --prepare, --shard and --merge", "give one of them");
+  if (options.sweep.given() && options.resume)
+    throw InputError("--seeds and --vary", "a sweep that goes on keeps its runs; give --resume alone");
+  const bool is_sweep = options.sweep.given() || !runs_of_sweep(options.folder).empty();
+  if (is_sweep && (options.sweep.given() || options.resume || options.merge || !options.shard.empty()))
+    return options.output.dry_run() ? describe_sweep(options, command) : evolve_sweep(options, command);
   if (options.output.dry_run()) return rank_by_launcher() > 0 ? 0 : describe_work(options, command);
   if (!options.shard.empty()) return evolve_shard(options, command);
   const bool alone = options.merge || options.prepare;  // of several processes, only the first has something to do
@@ -395,6 +480,7 @@ void add_evolve_command(const Command& program, const Choose& choose) {
   command.add_flag("--merge", options->merge, "Select from the files of all parts").in_group("Several hosts");
   options->output.add_to(command);
   options->run.add_to(command);
+  options->sweep.add_to(command);
   command.set_footer(
       fmt::format("Quantities of a trial, for formulas and axes: {}.\n\n", fmt::join(names_of_quantities(), ", ")) +
       "A run that was stopped, by Ctrl-C or by a power cut, goes on with --resume as if it had never stopped.\n"
@@ -405,6 +491,7 @@ void add_evolve_command(const Command& program, const Choose& choose) {
       "  mercury evolve eels --from eel.json --genes muscles --seconds 20\n"
       "  mercury evolve map --from cppn:6x4x4 --axis masses:20:120 --axis muscle_share\n"
       "  mercury evolve swim --resume --generations 200\n"
+      "  mercury evolve which --from voxel:6x4x4 --seeds 1..10 --vary algorithm=ga,afpo\n"
       "  mpirun -n 8 mercury evolve swim --from voxel:6x4x4 --population 4096");
   command.when_chosen([options, choose, command] {
     choose([options, command] { return options->run.status(evolve(*options, command)); });

@@ -169,7 +169,7 @@ Verification verify(TrajectoryReader& recording, const Device& device) {
   return result;
 }
 
-nlohmann::ordered_json number(double value) {
+nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
@@ -177,8 +177,8 @@ nlohmann::ordered_json json_of(const FrameDifference& frame) {
   return {{"step", frame.step},
           {"time", frame.time},
           {"identical", frame.same},
-          {"position", number(frame.position)},
-          {"velocity", number(frame.velocity)},
+          {"position", number_or_null(frame.position)},
+          {"velocity", number_or_null(frame.velocity)},
           {"robot", frame.robot}};
 }
 
@@ -192,7 +192,7 @@ void print_json(const Verification& result, const TrajectoryReader& recording, c
                               {"identical", first == nullptr},
                               {"tolerance", options.tolerance},
                               {"same", result.same(options.tolerance)},
-                              {"largest_difference", number(result.largest())},
+                              {"largest_difference", number_or_null(result.largest())},
                               {"first_difference", first ? json_of(*first) : nlohmann::ordered_json()},
                               {"frames", nlohmann::ordered_json::array()}};
   for (const FrameDifference& frame : result.frames) json["frames"].push_back(json_of(frame));
