@@ -74,7 +74,9 @@ std::vector<Variant> variants_from(const std::vector<std::string>& varied) {
 std::string folder_name(std::string text) {
   constexpr std::string_view plain = "-_.,=+";
   for (char& c : text)
-    if (!(c >= '0' && c <= '9') && !(c >= 'A' && c <= 'Z') && !(c >= 'a' && c <= 'z') && plain.find(c) == std::string_view::npos) c = '_';
+    if (!(c >= '0' && c <= '9') && !(c >= 'A' && c <= 'Z') && !(c >= 'a' && c <= 'z') &&
+        plain.find(c) == std::string_view::npos)
+      c = '_';
   return text.starts_with('.') ? "_" + text : text;
 }
 

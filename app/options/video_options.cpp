@@ -39,14 +39,13 @@ void VideoOptions::add_to(const Command& command) {
           .on_first_screen());
   add(add_number(command, "--fps", frames_per_second_, "Frames per second of video (default 30; 25 for .gif)", "N")
           .on_first_screen());
-  add(add_number(command, "--speed", speed_, "Simulated seconds per second of video (default 1)", "X")
-          .on_first_screen());
+  add(add_number(command, "--speed", speed_, "Simulated seconds per second of video (default 1)", "X"));
   add(add_number(command, "--still", still_, "One picture (.png) of this moment rather than a video", "S")
           .on_first_screen());
   add(add_value(command, "--contact-sheet", contact_sheet_,
                 "Columns and rows of moments of --seconds in one picture (.png), as wide as --size", "CxR", grid_from));
   add(add_choice(command, "--style", style_, {"usual", "hero"},
-                 "hero: a still of the first robot, against the light, with others behind it (default usual)")
+                 "hero: a still of the first robot against the light (default usual)")
           .on_first_screen());
   add(add_number(command, "--aperture", aperture_,
                  "Of a still: blur what is nearer or farther than the robot that the camera follows; diameter of the "

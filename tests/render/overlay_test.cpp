@@ -134,8 +134,8 @@ TEST(Overlay, FreeTextsStayInThePictureAndApart) {
   const Orbit orbit{.azimuth = -1.57f, .elevation = 0.3f, .distance = 5};
   const Camera camera = orbit.camera();
   std::vector<Text> texts;
-  for (const Vector3 at : {Vector3(0, 0, 0), Vector3(0, 0, 0), Vector3(0.01f, 0, 0), Vector3(-9, 0, 0), Vector3(9, 0, 0),
-                           Vector3(0, 0, 9)})
+  for (const Vector3 at : {Vector3(0, 0, 0), Vector3(0, 0, 0), Vector3(0.01f, 0, 0), Vector3(-9, 0, 0),
+                           Vector3(9, 0, 0), Vector3(0, 0, 9)})
     texts.push_back({.at = at, .text = "voxel-1-7", .free = true});
   Overlay overlay = make_overlay();
   overlay.texts(texts, camera);
