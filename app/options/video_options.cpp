@@ -53,7 +53,7 @@ void VideoOptions::add_to(const Command& command) {
                  "X"));
   add(add_number(command, "--dpi", dpi_, "How large a picture is on paper: pixels per inch, as in 300", "N"));
   add(command.add_flag("--tight", tight_, "With --background: cut the picture off around what it shows"));
-  add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4").on_first_screen());
+  add(command.add_flag("--each", each_, "A video of each robot alone: FILE-ROBOT.mp4"));
   add(add_choice(command, "--quality", quality_, {"auto", "low", "medium", "high"},
                  "Quality of the drawing (default auto: high on a GPU, low without)"));
   add(add_choice(command, "--gl", gl_, {"auto", "egl", "mesa", "osmesa"},
