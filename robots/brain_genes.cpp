@@ -25,11 +25,13 @@ BrainGenes BrainGenes::mutated(double strength, std::uint64_t seed) const {
   BrainGenes child = *this;
   const double tau = 1 / std::sqrt(2 * static_cast<double>(std::max<std::size_t>(1, weights.size())));
   child.step = limited_step(step * portable_exp(tau * random.normal()));
-  for (float& weight : child.weights) {
-    const double moved = static_cast<double>(weight) + strength * child.step * random.normal();
-    weight = static_cast<float>(std::clamp(moved, -largest_weight, largest_weight));
-  }
+  for (float& weight : child.weights)
+    weight = limited_weight(static_cast<double>(weight) + strength * child.step * random.normal());
   return child;
+}
+
+float BrainGenes::limited_weight(double weight) {
+  return static_cast<float>(std::clamp(weight, -largest_weight, largest_weight));
 }
 
 BrainGenes BrainGenes::crossed(const BrainGenes& other, const Brain& brain, std::uint64_t seed) const {

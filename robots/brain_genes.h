@@ -29,6 +29,9 @@ struct BrainGenes {
   // from one of them, as networks cross. The step is the geometric mean of theirs.
   BrainGenes crossed(const BrainGenes& other, const Brain& brain, std::uint64_t seed) const;
 
+  // As a weight, which is finite.
+  static float limited_weight(double weight);
+
   void write(ByteWriter& writer) const;
   // Throws InputError for numbers that mutated() cannot give, or for another number of weights than `count`.
   static BrainGenes read(ByteReader& reader, std::size_t count);

@@ -7,12 +7,14 @@
 //   grown                   the robot
 //   write, read             the encoding without its head; read() throws InputError
 //   add_identity            what makes the robot what it is; without it, all that write() writes
+//   numbers, with_numbers   as of Genome (mercury/genome.h), for these genes; only kinds that are a list of numbers
 //
 // and names genes_kind<its struct>() in its entry of the registry (Generator::genes). Nothing else knows it.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +43,8 @@ class BodyGenes {
   virtual Robot grown(const std::string& name, const std::string& environment) const = 0;
   virtual void write(ByteWriter& writer) const = 0;
   virtual void add_identity(IdentityHash& hash) const = 0;
+  virtual std::vector<double> numbers(Genes) const { return {}; }
+  virtual std::shared_ptr<const BodyGenes> with_numbers(Genes, std::span<const double>) const { return nullptr; }
 };
 
 struct GenesKind {
@@ -71,6 +75,15 @@ class GenesOf : public BodyGenes {
       values_.write(writer);
       hash.add(std::move(writer).take());
     }
+  }
+  std::vector<double> numbers(Genes genes) const override {
+    if constexpr (requires { values_.numbers(genes); }) return values_.numbers(genes);
+    return {};
+  }
+  std::shared_ptr<const BodyGenes> with_numbers(Genes genes, std::span<const double> numbers) const override {
+    if constexpr (requires { values_.with_numbers(genes, numbers); })
+      return std::make_shared<GenesOf>(values_.with_numbers(genes, numbers));
+    return nullptr;
   }
 
  private:

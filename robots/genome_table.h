@@ -14,6 +14,7 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
+#include "robots/bounded_number.h"
 #include "robots/parameter_table.h"
 
 namespace mercury {
@@ -81,6 +82,17 @@ Genome moved(const Genome& genome, const ParameterTable<Genome>& table, double s
     row.set(child, value);
   }
   return child;
+}
+
+// A value as a number without bounds, and the reverse (bounded_number.h). Its unit is a step of moved() with this size.
+constexpr double usual_step = 0.02;
+inline double number_of(const GeneratorParameter& description, double value) {
+  const double low = description.lowest, high = *description.highest;
+  return unbounded(value, low, high) / (usual_step * (high - low));
+}
+inline double value_of(const GeneratorParameter& description, double number) {
+  const double low = description.lowest, high = *description.highest;
+  return bounded(number * (usual_step * (high - low)), low, high);
 }
 
 // moved(), drawn again where it changes nothing; at last the number `nudged` moves by a millionth of its range, towards

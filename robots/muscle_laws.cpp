@@ -9,13 +9,27 @@
 
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "robots/bounded_number.h"
 
 namespace mercury {
 namespace {
 
 constexpr double share = 0.25, own_share = 0.025;  // of the numbers that a mutation moves
+constexpr double amplitude_step = 0.04, frequency_step = 0.5, phase_step = 0.4;  // [1], [rad/s], [rad]
 
 bool is_muscle(const Material& material) { return material.amplitude != 0; }
+
+// What a search may give a muscle: beyond the limits only where it was from the start.
+struct Range {
+  double lowest, highest;
+};
+Range amplitudes_of(const Material& muscle) {
+  const double strongest = std::max(max_muscle_amplitude, std::abs(muscle.amplitude));
+  return {-strongest, strongest};
+}
+Range frequencies_of(const Material& muscle) {
+  return {std::min(0.f, muscle.frequency), std::max(max_muscle_frequency, muscle.frequency)};
+}
 
 // Mirrors a value that left the range at the end that it crossed, so that muscles do not gather there.
 double folded(double value, double lowest, double highest) {
@@ -41,17 +55,17 @@ std::vector<Material> moved(std::span<const Material> bases, double strength, st
   std::map<float, double> together;  // steps by frequency
   for (Material& material : materials) {
     if (!is_muscle(material)) continue;
-    const auto [frequency_step, is_first] = together.try_emplace(material.frequency, 0);
-    if (is_first) frequency_step->second = step(share, 0.5);
-    const double by_frequency = frequency_step->second + step(own_share, 0.5);
-    const double by_amplitude = step(share, 0.04), by_phase = step(share, 0.4);
-    const double strongest = std::max(max_muscle_amplitude, std::abs(material.amplitude));
-    const double fastest = std::max(max_muscle_frequency, material.frequency),
-                 slowest = std::min(0.f, material.frequency);
+    const auto [of_frequency, is_first] = together.try_emplace(material.frequency, 0);
+    if (is_first) of_frequency->second = step(share, frequency_step);
+    const double by_frequency = of_frequency->second + step(own_share, frequency_step);
+    const double by_amplitude = step(share, amplitude_step), by_phase = step(share, phase_step);
+    const Range amplitudes = amplitudes_of(material), frequencies = frequencies_of(material);
     if (by_amplitude != 0)
-      material.amplitude = static_cast<float>(folded(material.amplitude + by_amplitude, -strongest, strongest));
+      material.amplitude =
+          static_cast<float>(folded(material.amplitude + by_amplitude, amplitudes.lowest, amplitudes.highest));
     if (by_frequency != 0)
-      material.frequency = static_cast<float>(folded(material.frequency + by_frequency, slowest, fastest));
+      material.frequency =
+          static_cast<float>(folded(material.frequency + by_frequency, frequencies.lowest, frequencies.highest));
     if (by_phase != 0) material.phase = wrapped_phase(material.phase + by_phase);
   }
   return materials;
@@ -126,6 +140,61 @@ std::vector<Material> mutate_muscle_laws(std::span<const Material> bases, double
   // Steps below the precision of a float.
   Material& material = materials[muscles[Random(seed).below(muscles.size())]];
   material.amplitude = std::nextafter(material.amplitude, 0.f);
+  return materials;
+}
+
+namespace {
+
+// Muscles in use, and those of them that are the first of their frequency.
+struct MuscleList {
+  std::vector<std::size_t> muscles, firsts;
+
+  MuscleList(std::span<const Material> bases, const std::vector<bool>& in_use) {
+    for (std::size_t i = 0; i < bases.size(); ++i) {
+      if (!is_muscle(bases[i]) || !(in_use.empty() || (i < in_use.size() && in_use[i]))) continue;
+      muscles.push_back(i);
+      const auto same = [&](std::size_t first) { return bases[first].frequency == bases[i].frequency; };
+      if (std::ranges::none_of(firsts, same)) firsts.push_back(i);
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<double> muscle_numbers(std::span<const Material> bases, const std::vector<bool>& in_use,
+                                   std::span<const Material> like) {
+  const MuscleList list(bases, in_use);
+  std::vector<double> numbers;
+  for (const std::size_t i : list.firsts) {
+    const Range range = frequencies_of(bases[i]);
+    numbers.push_back(unbounded(like[i].frequency, range.lowest, range.highest) / frequency_step);
+  }
+  for (const std::size_t i : list.muscles) {
+    const Range range = amplitudes_of(bases[i]);
+    numbers.push_back(unbounded(like[i].amplitude, range.lowest, range.highest) / amplitude_step);
+    numbers.push_back(like[i].phase / phase_step);
+  }
+  return numbers;
+}
+
+std::vector<Material> with_muscle_numbers(std::span<const Material> bases, const std::vector<bool>& in_use,
+                                          std::span<const double> numbers) {
+  const MuscleList list(bases, in_use);
+  if (numbers.size() != list.firsts.size() + 2 * list.muscles.size())
+    throw InputError("muscles", std::to_string(numbers.size()) + " numbers do not fit");
+  std::vector<Material> materials(bases.begin(), bases.end());
+  const auto value = [](double number, double step, Range range) {
+    return static_cast<float>(bounded(number * step, range.lowest, range.highest));
+  };
+  std::map<float, float> frequencies;
+  const double* number = numbers.data();
+  for (const std::size_t i : list.firsts)
+    frequencies[bases[i].frequency] = value(*number++, frequency_step, frequencies_of(bases[i]));
+  for (const std::size_t i : list.muscles) {
+    materials[i].frequency = frequencies.at(bases[i].frequency);
+    materials[i].amplitude = value(*number++, amplitude_step, amplitudes_of(bases[i]));
+    materials[i].phase = std::max(0.f, wrapped_phase(*number++ * phase_step));  // rounding of huge numbers
+  }
   return materials;
 }
 

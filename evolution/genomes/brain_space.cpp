@@ -93,6 +93,24 @@ class BrainGenome : public Genome {
     return std::move(writer).take();
   }
 
+  // Those of the body, then the weights, whose unit is the first step of a mutation.
+  std::vector<double> numbers() const override {
+    std::vector<double> numbers;
+    if (context_->bodies_change) numbers = body_->numbers();
+    if (context_->bodies_change && numbers.empty()) return {};
+    if (context_->weights_change)
+      for (const float weight : brain_.weights) numbers.push_back(weight / BrainGenes::first_step);
+    return numbers;
+  }
+  GenomePointer with_numbers(std::span<const double> numbers) const override {
+    BrainGenes brain = brain_;
+    const std::size_t weights = context_->weights_change ? brain.weights.size() : 0;
+    const std::size_t of_body = numbers.size() - weights;
+    for (std::size_t i = 0; i < weights; ++i)
+      brain.weights[i] = BrainGenes::limited_weight(numbers[of_body + i] * BrainGenes::first_step);
+    return make(of_body > 0 ? body_->with_numbers(numbers.first(of_body)) : body_, std::move(brain));
+  }
+
  private:
   const Donor& donor() const { return context_->donors[donor_]; }
   GenomePointer make(GenomePointer body, BrainGenes brain) const {

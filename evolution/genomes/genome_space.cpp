@@ -61,6 +61,11 @@ class BodyGenome : public Genome {
     return std::move(writer).take();
   }
 
+  std::vector<double> numbers() const override { return genes_->numbers(context_->genes); }
+  GenomePointer with_numbers(std::span<const double> numbers) const override {
+    return std::make_shared<BodyGenome>(genes_->with_numbers(context_->genes, numbers), context_);
+  }
+
  private:
   GenesPointer genes_;
   std::shared_ptr<const GenomeContext> context_;

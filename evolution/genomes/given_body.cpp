@@ -52,6 +52,11 @@ class GivenBodyGenome : public Genome {
     write(writer, materials_);
     return std::move(writer).take();
   }
+  std::vector<double> numbers() const override { return muscle_numbers(body().materials, body().in_use, materials_); }
+  GenomePointer with_numbers(std::span<const double> numbers) const override {
+    return std::make_shared<GivenBodyGenome>(bodies_, body_,
+                                             with_muscle_numbers(body().materials, body().in_use, numbers));
+  }
 
  private:
   const GivenBody& body() const { return (*bodies_)[body_]; }

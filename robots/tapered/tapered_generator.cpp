@@ -100,7 +100,7 @@ bool is_of_muscles(std::string_view number) {
 
 TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed,
                      bool (*chosen)(std::string_view)) {
-  constexpr double step = 0.02, share = 1.0 / 3;
+  constexpr double step = usual_step, share = 1.0 / 3;
   Random random(seed_of(seed, 1));
   const auto moves = [&](std::string_view number) { return random.chance(share) && chosen(number); };
   // What moves where everything else is at the end of its range.

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "mercury/error.h"
 #include "robots/genes.h"
+#include "robots/genome_table.h"
 #include "robots/tapered/tapered.h"
 
 namespace mercury {
@@ -12,6 +16,10 @@ namespace {
 struct TaperedGenes {
   static constexpr std::uint8_t tag = 6;
   TaperedGenome genome;
+
+  static bool changes(Genes genes, std::string_view number) {
+    return (genes != Genes::muscles && is_of_body(number)) || (genes != Genes::body && is_of_muscles(number));
+  }
 
   static TaperedGenes of(const Robot& robot) {
     std::optional<TaperedGenome> genome = tapered_genome_of(robot);
@@ -30,9 +38,7 @@ struct TaperedGenes {
     const TaperedGenome child = crossover(genome, other.genome, seed);
     TaperedGenome kept = genome;
     for (const auto& row : tapered_genome_table())
-      if ((genes != Genes::muscles && is_of_body(row.description.name)) ||
-          (genes != Genes::body && is_of_muscles(row.description.name)))
-        row.set(kept, row.get(child));
+      if (changes(genes, row.description.name)) row.set(kept, row.get(child));
     return {std::move(kept)};
   }
 
@@ -40,6 +46,21 @@ struct TaperedGenes {
     TaperedGenome whole = genome;
     whole.environment = environment;
     return grow(whole, name);
+  }
+
+  std::vector<double> numbers(Genes genes) const {
+    std::vector<double> numbers;
+    for (const auto& row : tapered_genome_table())
+      if (changes(genes, row.description.name))
+        numbers.push_back(number_of(row.description, std::get<double>(row.get(genome))));
+    return numbers;
+  }
+  TaperedGenes with_numbers(Genes genes, std::span<const double> numbers) const {
+    TaperedGenes child = *this;
+    auto number = numbers.begin();
+    for (const auto& row : tapered_genome_table())
+      if (changes(genes, row.description.name)) row.set(child.genome, value_of(row.description, *number++));
+    return child;
   }
 
   // The bending, then each number in the order of the table, which is kept.

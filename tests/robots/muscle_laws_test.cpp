@@ -8,7 +8,9 @@
 #include <numbers>
 
 #include "mercury/error.h"
+#include "mercury/random.h"
 #include "mercury/random_voxel.h"
+#include "robots/bounded_number.h"
 #include "tests/refusal.h"
 
 namespace mercury {
@@ -191,6 +193,74 @@ TEST(MuscleCrossover, OfRobotsMixesPairsToo) {
   EXPECT_NE(base_materials_of(child), base_materials_of(a));
   EXPECT_NE(base_materials_of(child), base_materials_of(b));
   EXPECT_EQ(with_crossed_muscles(own_robot(), b, 2), own_robot());
+}
+
+TEST(BoundedNumbers, AreThemselvesInsideAndSmoothAtTheBounds) {
+  constexpr double low = -1, high = 3, margin = (high - low) / 20;
+  for (double number = low + margin; number <= high - margin; number += 0.1)
+    EXPECT_NEAR(bounded(number, low, high), number, 1e-14);
+  EXPECT_EQ(bounded(low - margin, low, high), low);
+  EXPECT_NEAR(bounded(high + margin, low, high), high, 1e-15);
+  constexpr double h = 1e-5;
+  double before = 0;
+  for (double number = -9; number < 9; number += 0.01) {
+    const double value = bounded(number, low, high);
+    EXPECT_GE(value, low);
+    EXPECT_LE(value, high);
+    const double slope = (bounded(number + h, low, high) - bounded(number - h, low, high)) / (2 * h);
+    if (number > -9) EXPECT_NEAR(slope, before, 0.01 / (2 * margin) + 1e-6);  // the parabola's curvature
+    before = slope;
+    EXPECT_NEAR(bounded(number + 2 * (high - low + 2 * margin), low, high), value, 1e-12);  // a period
+    EXPECT_NEAR(bounded(unbounded(value, low, high), low, high), value, 1e-14);
+  }
+  for (const double far : {1e20, -1e300, 12345678.9}) {
+    EXPECT_GE(bounded(far, low, high), low);
+    EXPECT_LE(bounded(far, low, high), high);
+  }
+}
+
+TEST(MuscleNumbers, AreOneForEachFrequencyAndTwoForEachMuscle) {
+  Robot robot = own_robot();
+  const std::vector<Material> bases = base_materials_of(robot);
+  EXPECT_EQ(muscle_numbers(bases, {}, bases).size(), 2u + 2 * 2);
+  EXPECT_EQ(muscle_numbers(bases, {true, true, false}, bases).size(), 1u + 2);
+  EXPECT_EQ(muscle_numbers(own_bases(), {}, own_bases()).size(), 5u + 2 * 20);
+  EXPECT_EQ(with_muscle_numbers(bases, {}, muscle_numbers(bases, {}, bases)), bases);
+  EXPECT_EQ(with_muscle_numbers(own_bases(), {}, muscle_numbers(own_bases(), {}, own_bases())), own_bases());
+}
+
+TEST(MuscleNumbers, MoveWhatTheyAreForByTheStepOfAMutation) {
+  const std::vector<Material> bases = own_bases();
+  const std::vector<double> numbers = muscle_numbers(bases, {}, bases);
+  const auto moved = [&](std::size_t which) {
+    std::vector<double> other = numbers;
+    other[which] += 1;
+    return with_muscle_numbers(bases, {}, other);
+  };
+  const std::vector<Material> faster = moved(0), stronger = moved(5), later = moved(6);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_FLOAT_EQ(faster[i].frequency, bases[i].frequency + 0.5f);  // muscles of 1 rad/s stay together
+  EXPECT_EQ(faster[4], bases[4]);
+  EXPECT_FLOAT_EQ(stronger[0].amplitude, bases[0].amplitude + 0.04f);
+  EXPECT_FLOAT_EQ(later[0].phase, bases[0].phase + 0.4f);
+  EXPECT_EQ(later[1], bases[1]);
+}
+
+TEST(MuscleNumbers, OfAnySizeGiveValidMuscles) {
+  Random random(1);
+  const std::vector<Material> bases = own_bases();
+  for (const double size : {1.0, 100.0, 1e9}) {
+    std::vector<double> numbers = muscle_numbers(bases, {}, bases);
+    for (double& number : numbers) number = size * random.normal();
+    for (const Material& material : with_muscle_numbers(bases, {}, numbers)) {
+      EXPECT_NO_THROW(validate(material, "material"));
+      EXPECT_LE(std::abs(material.amplitude), max_muscle_amplitude);
+      EXPECT_LE(material.frequency, max_muscle_frequency);
+      EXPECT_GE(material.frequency, 0);
+      EXPECT_GE(material.phase, 0);
+      EXPECT_LT(material.phase, 2 * std::numbers::pi_v<float>);
+    }
+  }
 }
 
 }  // namespace

@@ -47,6 +47,16 @@ std::vector<Material> mutate_muscle_laws(std::span<const Material> bases, double
 // Base materials of a child: each from either parent with probability 1/2. Throws InputError if their numbers differ.
 std::vector<Material> cross_muscle_laws(std::span<const Material> a, std::span<const Material> b, std::uint64_t seed);
 
+// The muscles in use as numbers, for searches among these (mercury/genome.h): one for each frequency that muscles of
+// `bases` have, then amplitude and phase of each. Muscles of one frequency keep one. The unit of a number is the step of
+// mutate_muscle_laws() with strength 1. `like` has the muscles of `bases` with other laws.
+std::vector<double> muscle_numbers(std::span<const Material> bases, const std::vector<bool>& in_use,
+                                   std::span<const Material> like);
+// The reverse: base materials with the laws of any finite numbers, which are brought into the ranges above, phases by
+// whole turns, the others by reflection.
+std::vector<Material> with_muscle_numbers(std::span<const Material> bases, const std::vector<bool>& in_use,
+                                          std::span<const double> numbers);
+
 // The same for robots. Only materials change: a child of two has the body of the first. It has the table of the first
 // if either of them has no base materials, as above.
 Robot with_mutated_muscles(Robot robot, double strength, std::uint64_t seed);

@@ -209,6 +209,31 @@ TEST_P(EveryGenome, DamagedBytesGiveAGenomeOrALine) {
   EXPECT_GT(refused, 100);
 }
 
+// Numbers for CMA-ES: all genomes of a space have as many, they give the genome back, and any numbers give one.
+TEST_P(EveryGenome, NumbersGiveTheGenomeBack) {
+  const GenomePointer start = space_->random(1, 0);
+  const std::vector<double> numbers = start->numbers();
+  const bool is_list = GetParam().kind == "given" || GetParam().kind == "tapered";
+  EXPECT_EQ(!numbers.empty(), is_list);
+  if (!is_list) return;
+  for (std::uint64_t index = 0; index < 10; ++index) {
+    const GenomePointer genome = space_->random(1, index)->mutate(3, index);
+    const std::vector<double> its_own = genome->numbers();
+    ASSERT_EQ(its_own.size(), numbers.size());
+    const std::vector<double> again = start->with_numbers(its_own)->numbers();
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      EXPECT_NEAR(again[i], its_own[i], 1e-4 * std::max(1.0, std::abs(its_own[i])));
+  }
+  Random random(1);
+  for (const double size : {1.0, 100.0, 1e6}) {
+    std::vector<double> any = numbers;
+    for (double& number : any) number += size * random.normal();
+    const GenomePointer genome = start->with_numbers(any);
+    EXPECT_EQ(space_->decode(genome->encode())->identity(), genome->identity());
+    EXPECT_EQ(genome->numbers().size(), numbers.size());
+  }
+}
+
 std::vector<Case> cases() {
   std::vector<Case> all{{"given", Genes::muscles}, {"given", Genes::brain}, {"given", Genes::muscles | Genes::brain}};
   for (const std::string kind : {"voxel", "cppn", "shell", "nn", "tapered"})
