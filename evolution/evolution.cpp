@@ -28,6 +28,11 @@ std::uint64_t seed_of_child(std::uint64_t run, int generation, std::size_t child
   return seed_of(seed_of(seed_of_generation(run, generation), child + 1), static_cast<std::uint64_t>(attempt));
 }
 
+// `start` = the genome with which a search among numbers begins.
+GenomePointer genome_of(const ChildPlan& plan, const GenomePointer& start) {
+  return plan.numbers.empty() ? start : start->with_numbers(plan.numbers);
+}
+
 std::size_t children_per_generation(const EvolutionSettings& settings) {
   return settings.children > 0 ? settings.children : settings.algorithm.population;
 }
@@ -42,15 +47,75 @@ bool operator==(const Generation& a, const Generation& b) {
   return a.number == b.number && a.living == b.living && std::ranges::equal(a.born, b.born, same);
 }
 
+namespace {
+
+// The founder, or the first random genome that can be made.
+GenomePointer start_of_search(const GenomeSpace& space, std::uint64_t seed) {
+  for (int attempt = 0;; ++attempt) {
+    try {
+      return space.random(seed_of_child(seed, 0, 0, attempt), space.founders() > 0 ? 0 : static_cast<std::uint64_t>(attempt));
+    } catch (const InputError&) {
+      if (attempt + 1 == tries_for_a_new_genome) throw;
+    }
+  }
+}
+
+}  // namespace
+
+void validate(const EvolutionSettings& settings, const GenomeSpace& space) {
+  const AlgorithmDescription& algorithm = algorithm_named(settings.algorithm.name);
+  if (!algorithm.of_numbers) return;
+  const std::string name(algorithm.name);
+  if (space.founders() > 1)
+    throw ParameterError("algorithm",
+                         name + " begins with one robot, and there are " + std::to_string(space.founders()));
+  if (start_of_search(space, settings.seed)->numbers().empty())
+    throw ParameterError("algorithm", name +
+                                          " needs genomes that are a fixed list of numbers: the muscles of a robot "
+                                          "file, the weights of its brain, or a tapered robot");
+}
+
+std::size_t usual_population(std::string_view algorithm, const GenomeSpace& space, std::uint64_t seed) {
+  if (!algorithm_named(algorithm).of_numbers) return AlgorithmSettings{}.population;
+  const std::size_t n = start_of_search(space, seed)->numbers().size();
+  return 4 + static_cast<std::size_t>(3 * portable_log(static_cast<double>(std::max<std::size_t>(1, n))));
+}
+
 Evolution::Evolution(const EvolutionSettings& settings, const GenomeSpace& space)
     : settings_(settings), space_(space), algorithm_(make_algorithm(settings.algorithm)) {
   validate(settings);
+  validate(settings, space);
+  if (!algorithm_named(settings.algorithm.name).of_numbers) return;
+  start_ = start_of_search(space, settings.seed);
+  algorithm_->begin(start_->numbers(), settings.mutation);
 }
 
-void Evolution::restore(int generation, std::vector<Individual> living, std::uint64_t next_id) {
+void Evolution::restore(int generation, std::vector<Individual> living, std::span<const Individual> born) {
   next_generation_ = generation + 1;
   living_ = std::move(living);
-  next_id_ = next_id;
+  next_id_ = born.size();
+  if (!start_) return;
+  algorithm_->begin(start_->numbers(), settings_.mutation);
+  std::size_t first = 0;
+  for (int number = 0; number <= generation; ++number) {
+    std::size_t end = first;
+    while (end < born.size() && born[end].generation == number) ++end;
+    const Random random(seed_of_plan(settings_.seed, number));
+    if (number == generation) {
+      Random again = random;
+      const std::vector<ChildPlan> plans = algorithm_->plan({}, settings_.algorithm.population, again);
+      for (const Individual& individual : living_) {
+        if (individual.generation != number) continue;
+        const std::size_t child = static_cast<std::size_t>(individual.id) - first;
+        if (child >= plans.size() || genome_of(plans[child], start_)->identity() != individual.genome->identity())
+          throw InputError("generation " + std::to_string(number),
+                           "is not what the scores before it lead to here; go on with the version of Mercury and on "
+                           "the kind of processor that made it");
+      }
+    }
+    algorithm_->learn(born.subspan(first, end - first), random);
+    first = end;
+  }
 }
 
 namespace {
@@ -58,17 +123,19 @@ namespace {
 // Makes the children of a generation on all cores, and makes those again that are not new.
 class Breeding {
  public:
-  Breeding(const EvolutionSettings& settings, const GenomeSpace& space, std::span<const Individual> living,
-           int generation, std::vector<ChildPlan> plans)
-      : settings_(settings), space_(space), living_(living), generation_(generation), plans_(std::move(plans)),
-        seeds_(plans_.size()), genomes_(plans_.size()), identities_(plans_.size()) {}
+  // `start` = of a search among numbers, or nullptr.
+  Breeding(const EvolutionSettings& settings, const GenomeSpace& space, GenomePointer start,
+           std::span<const Individual> living, int generation, std::vector<ChildPlan> plans)
+      : settings_(settings), space_(space), start_(std::move(start)), living_(living), generation_(generation),
+        plans_(std::move(plans)), seeds_(plans_.size()), genomes_(plans_.size()), identities_(plans_.size()) {}
 
   std::vector<Individual> children(const Watch& watch) {
     std::unordered_set<std::uint64_t> known;
     for (const Individual& individual : living_) known.insert(individual.genome->identity());
     std::vector<std::size_t> missing(plans_.size());
     std::iota(missing.begin(), missing.end(), std::size_t{0});
-    for (int attempt = 0; !missing.empty() && attempt < tries_for_a_new_genome; ++attempt) {
+    const int tries = start_ ? 1 : tries_for_a_new_genome;  // a plan of numbers gives one genome
+    for (int attempt = 0; !missing.empty() && attempt < tries; ++attempt) {
       for (std::size_t first = 0; first < missing.size(); first += portion) {
         if (watch) watch(0, plans_.size());
         oneapi::tbb::parallel_for(first, std::min(first + portion, missing.size()),
@@ -95,6 +162,7 @@ class Breeding {
   }
 
   GenomePointer make_genome(std::size_t i, int attempt, std::uint64_t seed) const {
+    if (start_) return genome_of(plans_[i], start_);
     const std::vector<std::size_t>& parents = plans_[i].parents;
     if (parents.empty()) {
       const bool may_be_founder = generation_ == 0 && attempt == 0;
@@ -124,6 +192,7 @@ class Breeding {
 
   const EvolutionSettings& settings_;
   const GenomeSpace& space_;
+  const GenomePointer start_;
   const std::span<const Individual> living_;
   const int generation_;
   const std::vector<ChildPlan> plans_;
@@ -134,16 +203,16 @@ class Breeding {
 
 }  // namespace
 
+std::vector<ChildPlan> Evolution::plans() const {
+  if (next_generation_ == 0 && !start_)
+    return std::vector<ChildPlan>(std::max(settings_.algorithm.population, space_.founders()));
+  Random random(seed_of_plan(settings_.seed, next_generation_));
+  return algorithm_->plan(living_, children_per_generation(settings_), random);
+}
+
 std::vector<Individual> Evolution::children(const Watch& watch) const {
-  std::vector<ChildPlan> plans;
-  if (next_generation_ == 0) {
-    plans.resize(std::max(settings_.algorithm.population, space_.founders()));
-  } else {
-    Random random(seed_of_plan(settings_.seed, next_generation_));
-    plans = algorithm_->plan(living_, children_per_generation(settings_), random);
-  }
   std::vector<Individual> children =
-      Breeding(settings_, space_, living_, next_generation_, std::move(plans)).children(watch);
+      Breeding(settings_, space_, start_, living_, next_generation_, plans()).children(watch);
   for (std::size_t i = 0; i < children.size(); ++i) children[i].id = next_id_ + i;
   return children;
 }
@@ -174,6 +243,7 @@ Generation Evolution::select(std::vector<Individual> children) {
   living_.clear();
   for (const std::size_t i : algorithm_->survivors(pool, before)) living_.push_back(std::move(pool.at(i)));
   for (const Individual& individual : living_) generation.living.push_back(individual.id);
+  algorithm_->learn(generation.born, Random(seed_of_plan(settings_.seed, next_generation_)));
   ++next_generation_;
   return generation;
 }

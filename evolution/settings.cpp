@@ -66,6 +66,8 @@ void validate(const EvolutionSettings& settings) {
   for (const AlgorithmDescription& algorithm : algorithms())
     require(algorithm.name != settings.algorithm.name || algorithm.many_objectives || settings.objectives.size() == 1,
             "algorithm", std::string(algorithm.name) + " takes one objective; with several, give nsga2");
+  require(settings.children == 0 || !algorithm_named(settings.algorithm.name).of_numbers, "children",
+          settings.algorithm.name + " makes as many as its population; give that alone");
   require(!trials.racing || (trials.trials == 1 && settings.objectives.size() == 1), "racing",
           "works with one objective and one trial per robot");
 }

@@ -160,6 +160,10 @@ AlgorithmSettings EvolutionOptions::algorithm() const {
   } else if (!algorithm.axes.empty()) {
     throw InputError("--axis", "goes with --algorithm map-elites");
   }
+  if (algorithm_named(algorithm.name).of_numbers)
+    for (const char* option : {"--tournament", "--elites", "--crossover", "--children"})
+      if (command_->is_given(option))
+        throw InputError(option, fmt::format("does not go with --algorithm {}", algorithm.name));
   return algorithm;
 }
 
@@ -191,6 +195,9 @@ RunSettings EvolutionOptions::settings(std::vector<std::string>& notes) const {
                        fmt::format("\"{}\": {}; give another --environment or --objective", formula, why));
   settings.space.environment = name_of(evolution.configuration.environment);
   const std::unique_ptr<GenomeSpace> space = make_genome_space(settings.space);  // throws if it cannot be used
+  validate(evolution, *space);
+  if (!command_->is_given("--population"))
+    evolution.algorithm.population = usual_population(evolution.algorithm.name, *space, evolution.seed);
   try {
     Configuration one = evolution.configuration;
     one.device = {.kind = DeviceKind::cpu, .threads = 1};

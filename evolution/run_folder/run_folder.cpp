@@ -76,7 +76,7 @@ RunFolder& RunFolder::operator=(RunFolder&&) noexcept = default;
 
 RunFolder RunFolder::create(const std::filesystem::path& folder, const RunSettings& settings, bool force,
                             GenomeSpaceMaker make_space) {
-  make_space(settings.space);  // throws before anything is written or removed
+  validate(settings.evolution, *make_space(settings.space));  // throws before anything is written or removed
   JournalWriter journal = make_run_folder(folder, settings, force);
   return RunFolder(std::make_unique<Parts>(folder, std::move(journal), std::move(make_space)));
 }
@@ -113,7 +113,7 @@ void restore(const RunHistory& history, Evolution& evolution) {
     living[i] = history.individuals()[ids[i]];
     living[i].genome = history.genome(ids[i]);
   });
-  evolution.restore(history.generations().back().number, std::move(living), history.individuals().size());
+  evolution.restore(history.generations().back().number, std::move(living), history.individuals());
 }
 
 void RunFolder::append(const Generation& generation, const GenerationTimes& times) {

@@ -11,20 +11,24 @@
 namespace mercury {
 
 std::span<const AlgorithmDescription> algorithms() {
-  static const std::array all{ga(), afpo(), nsga2(), map_elites(), random_search()};
+  static const std::array all{ga(), afpo(), nsga2(), map_elites(), cma_es(), sep_cma_es(), random_search()};
   return all;
 }
 
-std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings) {
+const AlgorithmDescription& algorithm_named(std::string_view name) {
   std::vector<std::string> names;
   for (const AlgorithmDescription& algorithm : algorithms()) {
-    if (algorithm.name == settings.name) {
-      validate(settings);
-      return algorithm.make(settings);
-    }
+    if (algorithm.name == name) return algorithm;
     names.emplace_back(algorithm.name);
   }
-  throw ParameterError("algorithm", "\"" + settings.name + "\" is not an algorithm; give one of " + list_of(names));
+  throw ParameterError("algorithm",
+                       "\"" + std::string(name) + "\" is not an algorithm; give one of " + list_of(names));
+}
+
+std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings) {
+  const AlgorithmDescription& algorithm = algorithm_named(settings.name);
+  validate(settings);
+  return algorithm.make(settings);
 }
 
 // Random search, the baseline: every robot is new, the best ones live on.

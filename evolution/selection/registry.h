@@ -13,6 +13,8 @@ AlgorithmDescription ga();
 AlgorithmDescription afpo();
 AlgorithmDescription nsga2();
 AlgorithmDescription map_elites();
+AlgorithmDescription cma_es();
+AlgorithmDescription sep_cma_es();
 AlgorithmDescription random_search();
 
 }  // namespace mercury

@@ -38,9 +38,9 @@ class Settings(TypedDict, total=False):
     """How robots are searched: the options of `mercury evolve`, all of them optional."""
 
     objective: str | Sequence[str]  # formulas of quantities, more is better; default "distance"
-    algorithm: str  # "afpo" (default), "ga", "nsga2", "map-elites", "random"
+    algorithm: str  # "afpo" (default), "ga", "nsga2", "map-elites", "cma-es", "sep-cma-es", "random"
     axes: Sequence[str | tuple[str] | tuple[str, float, float] | tuple[str, float, float, int]]  # of map-elites
-    population: int  # robots that live on after each generation
+    population: int  # robots that live on after each generation; of cma-es by default 4 + 3 ln n
     children: int  # born in a generation; 0 = as many as the population
     generations: int  # after the first, random one
     mutation: float  # strength of mutations

@@ -138,7 +138,7 @@ EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space
   EvolutionSettings settings;
   settings.configuration = usual_configuration(space);
   AlgorithmSettings& algorithm = settings.algorithm;
-  bool has_algorithm = false, has_trials = false;
+  bool has_algorithm = false, has_trials = false, has_population = false;
   nb::object device = nb::str("auto");
   int threads = 0;
   std::vector<std::string> names{"objective", "algorithm", "axes",   "environment", "solver",
@@ -182,6 +182,7 @@ EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space
       throw nb::type_error(("there is no setting " + name + suggestion(name, names)).c_str());
     }
     has_trials = has_trials || name == "trials";
+    has_population = has_population || name == "population";
   }
   settings.configuration.device = device_named(nb::str(device).c_str());
   settings.configuration.device.threads = threads;
@@ -196,6 +197,9 @@ EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space
     if (const std::string why = why_meaningless(Objective(formula), settings.configuration.environment); !why.empty())
       throw InputError("objective", "\"" + formula + "\": " + why + "; give another environment or objective");
   space.environment = name_of(settings.configuration.environment);
+  const std::unique_ptr<GenomeSpace> genomes = make_genome_space(space);
+  validate(settings, *genomes);
+  if (!has_population) algorithm.population = usual_population(algorithm.name, *genomes, settings.seed);
   return settings;
 }
 

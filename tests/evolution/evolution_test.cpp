@@ -52,14 +52,17 @@ double best_score(std::string_view algorithm, std::uint64_t seed) {
 class AnyEvolution : public testing::TestWithParam<std::string_view> {};
 
 std::string suite_name(const testing::TestParamInfo<std::string_view>& test) {
-  return test.param == "map-elites" ? "map_elites" : std::string(test.param);
+  std::string name(test.param);
+  std::ranges::replace(name, '-', '_');
+  return name;
 }
-INSTANTIATE_TEST_SUITE_P(Algorithms, AnyEvolution, testing::Values("ga", "afpo", "nsga2", "map-elites", "random"),
+INSTANTIATE_TEST_SUITE_P(Algorithms, AnyEvolution, testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es", "random"),
                          suite_name);
 
 // Algorithms whose children have parents.
 class Inheritance : public testing::TestWithParam<std::string_view> {};
-INSTANTIATE_TEST_SUITE_P(Algorithms, Inheritance, testing::Values("ga", "afpo", "nsga2", "map-elites"), suite_name);
+INSTANTIATE_TEST_SUITE_P(Algorithms, Inheritance, testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es"),
+                         suite_name);
 
 // The squared distance to the optimum that is left is less than half of what random search leaves.
 TEST_P(Inheritance, BeatsRandomSearchAtAsManyTrials) {
@@ -83,20 +86,22 @@ TEST_P(AnyEvolution, AnEvolutionThatIsRestoredGoesOnBitForBit) {
   const EvolutionSettings settings = settings_of(GetParam());
   const std::vector<Generation> whole = run(settings);
   VectorAssessor assessor;
-  // Interrupted after every generation: the next one is made by an evolution that knows the living alone, and those by
-  // what a file would hold of them.
-  std::vector<Individual> living;
-  std::uint64_t next_id = 0;
+  // Interrupted after every generation: the next one is made by an evolution that knows what files would hold: the
+  // genomes of the living, and of all the rest.
+  std::vector<Individual> living, born;
   for (int number = 0; number <= settings.generations; ++number) {
     Evolution evolution(settings, space);
-    if (number > 0) evolution.restore(number - 1, living, next_id);
+    if (number > 0) evolution.restore(number - 1, living, born);
     EXPECT_EQ(evolution.next_generation(), number);
     const std::optional<Generation> generation = evolution.advance(assessor);
     ASSERT_TRUE(generation);
     EXPECT_EQ(*generation, whole.at(static_cast<std::size_t>(number)));
     living = evolution.living();
     for (Individual& individual : living) individual.genome = space.decode(individual.genome->encode());
-    next_id += generation->born.size();
+    for (Individual individual : generation->born) {
+      individual.genome = nullptr;
+      born.push_back(individual);
+    }
   }
 }
 

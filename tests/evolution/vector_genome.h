@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,17 @@ namespace mercury {
 class VectorGenome : public Genome {
  public:
   explicit VectorGenome(std::vector<double> numbers) : numbers_(std::move(numbers)) {}
-  const std::vector<double>& numbers() const { return numbers_; }
+  std::vector<double> numbers() const override {
+    std::vector<double> numbers = numbers_;
+    for (double& x : numbers) x /= step;
+    return numbers;
+  }
+  GenomePointer with_numbers(std::span<const double> numbers) const override {
+    std::vector<double> scaled(numbers.begin(), numbers.end());
+    for (double& x : scaled) x *= step;
+    return std::make_shared<VectorGenome>(scaled);
+  }
+  const std::vector<double>& values() const { return numbers_; }
 
   Robot grow(const std::string&) const override { throw InputError("genome", "has no robot"); }
 
@@ -31,7 +42,7 @@ class VectorGenome : public Genome {
     Random random(seed);
     std::vector<double> numbers = numbers_;
     for (double& x : numbers)
-      if (random.chance(1.0 / 3)) x += 0.1 * strength * random.normal();
+      if (random.chance(1.0 / 3)) x += step * strength * random.normal();
     return std::make_shared<VectorGenome>(numbers);
   }
   GenomePointer cross(const Genome& other, std::uint64_t seed) const override {
@@ -50,6 +61,7 @@ class VectorGenome : public Genome {
   }
 
  private:
+  static constexpr double step = 0.1;  // of a mutation
   std::vector<double> numbers_;
 };
 
@@ -110,12 +122,12 @@ class VectorAssessor : public Assessor {
     for (std::size_t o = 0; o < objectives_; ++o) {
       const double target = o == 0 ? 0.5 : -0.5;
       double score = 0;
-      for (const double x : genome.numbers()) score -= (x - target) * (x - target);
+      for (const double x : genome.values()) score -= (x - target) * (x - target);
       assessment.scores.push_back(score);
     }
     assessment.values.assign(quantities().size(), 0);
-    assessment.values[find_quantity("size").value()] = genome.numbers()[0];
-    assessment.values[find_quantity("symmetry").value()] = genome.numbers()[1];
+    assessment.values[find_quantity("size").value()] = genome.values()[0];
+    assessment.values[find_quantity("symmetry").value()] = genome.values()[1];
     assessment.hash = genome.identity();
     return assessment;
   }

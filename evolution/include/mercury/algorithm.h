@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Algorithms of evolution. An algorithm keeps no state: it sees the living individuals, says what children to make, and
-// then who lives on. So a run can be continued from its living individuals alone.
+// Algorithms of evolution. An algorithm sees the living individuals, says what children to make, and then who lives on.
+// Most keep no state, so a run can be continued from its living individuals alone. The state of those that search among
+// numbers (CMA-ES) follows from the seeds and scores of all generations, from which it is computed again.
 #pragma once
 
 #include <cstddef>
@@ -47,9 +48,12 @@ struct AlgorithmSettings {
           .with_form("0..1")};
 };
 
-// What a child is made from: indices of its parents among the living. None = a new random genome.
+// What a child is made from: indices of its parents among the living. None = a new random genome. Algorithms that search
+// among numbers give these (Genome::with_numbers), or none for the genome with which the search begins; then the parent
+// is that of the lineage alone.
 struct ChildPlan {
   std::vector<std::size_t> parents;
+  std::vector<double> numbers;
 };
 
 class Algorithm {
@@ -62,15 +66,25 @@ class Algorithm {
   // Who lives on: indices in `pool`, which holds the living (the first `living` of it) and then their children, all
   // assessed; the best first. In generation 0, `living` is 0. The order of equal ones is that of their ids.
   virtual std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t living) const = 0;
+
+  // Of algorithms that search among numbers; others have nothing to do.
+  // Begins at these numbers, with children about `step` from them in each.
+  virtual void begin(std::span<const double> /*numbers*/, double /*step*/) {}
+  // Learns from the children that plan() gave, in its order, assessed, and with `random` as plan() had it. Called after
+  // each generation; when a run goes on, after begin(), for each generation that it has.
+  virtual void learn(std::span<const Individual> /*born*/, Random /*random*/) {}
 };
 
 struct AlgorithmDescription {
   std::string_view name, help;
   bool many_objectives = false;  // whether it takes more than one
+  bool of_numbers = false;       // whether it searches among numbers: its genomes need Genome::numbers()
   std::unique_ptr<Algorithm> (*make)(const AlgorithmSettings& settings) = nullptr;
 };
-// ga, afpo, nsga2, map-elites, random.
+// ga, afpo, nsga2, map-elites, cma-es, sep-cma-es, random.
 std::span<const AlgorithmDescription> algorithms();
+// Throws ParameterError("algorithm", ...) for an unknown name.
+const AlgorithmDescription& algorithm_named(std::string_view name);
 // Throws ParameterError("algorithm", ...) for an unknown name, or ("population", ...), ("axes", ...) and so on for
 // settings out of range.
 std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings);

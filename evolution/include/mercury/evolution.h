@@ -8,13 +8,15 @@
 //     while (const auto generation = evolution.advance(*assessor, watch)) use(generation->living.front());
 //
 // Everything depends on the settings alone, bit for bit: each generation draws from a seed of its own, so an evolution
-// that is restored from its living individuals goes on as if it had never stopped.
+// that is restored goes on as if it had never stopped.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -32,7 +34,7 @@ struct EvolutionSettings {
   std::vector<std::string> objectives{"distance"};
   TrialSettings trials = search_trials();
   Configuration configuration;
-  std::size_t children = 0;  // per generation; 0 = as many as the population
+  std::size_t children = 0;  // per generation; 0 = as many as the population, or as the algorithm makes
   int generations = 100;     // after generation 0, which is random
   double mutation = 1;       // strength
   bool confirm = false;      // only champions whose results hold are in a run's best/ (mercury/confirmation.h)
@@ -52,6 +54,12 @@ struct EvolutionSettings {
 
 // Throws ParameterError for settings out of range or that do not go together.
 void validate(const EvolutionSettings& settings);
+// Throws ParameterError("algorithm", ...) if the algorithm cannot search among these genomes.
+void validate(const EvolutionSettings& settings, const GenomeSpace& space);
+
+// The population that an algorithm has where nothing else is said: 4 + 3 ln n for those that search among n numbers
+// (Hansen 2016, table 1), else that of AlgorithmSettings.
+std::size_t usual_population(std::string_view algorithm, const GenomeSpace& space, std::uint64_t seed);
 
 std::unique_ptr<Assessor> make_assessor(const EvolutionSettings& settings);
 
@@ -68,8 +76,9 @@ class Evolution {
   // The space must outlive it. Throws as validate().
   Evolution(const EvolutionSettings& settings, const GenomeSpace& space);
 
-  // Continues after a generation: `living` as it left them, `next_id` = the number of individuals born so far.
-  void restore(int generation, std::vector<Individual> living, std::uint64_t next_id);
+  // Continues after a generation: `living` as it left them; `born` = all individuals so far, by id, whose genomes are not
+  // needed. Throws InputError if an algorithm that learns does not come to the same robots again.
+  void restore(int generation, std::vector<Individual> living, std::span<const Individual> born);
 
   const EvolutionSettings& settings() const { return settings_; }
   int next_generation() const { return next_generation_; }
@@ -90,8 +99,11 @@ class Evolution {
   std::optional<Generation> advance(Assessor& assessor, const Watch& watch = {});
 
  private:
+  std::vector<ChildPlan> plans() const;
+
   EvolutionSettings settings_;
   const GenomeSpace& space_;
+  GenomePointer start_;  // where a search among numbers begins; else nullptr
   std::unique_ptr<Algorithm> algorithm_;
   int next_generation_ = 0;
   std::uint64_t next_id_ = 0;

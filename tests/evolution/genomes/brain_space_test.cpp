@@ -208,10 +208,10 @@ TEST(BrainEvolution, GoesOnBitForBitAfterItWasStopped) {
     settings.algorithm.crossover = 0.5;
     const auto assessor = make_assessor(settings);
     Evolution whole(settings, *space), stopped(settings, *space);
-    std::uint64_t born = 0;
+    std::vector<Individual> born;
     for (int i = 0; i < 2; ++i) {
       whole.advance(*assessor);
-      born += stopped.advance(*assessor)->born.size();
+      std::ranges::move(stopped.advance(*assessor)->born, std::back_inserter(born));
     }
     const auto again = make_genome_space({.genes = genes, .founders = {thinking_robot(3), thinking_robot(4)}});
     std::vector<Individual> living = stopped.living();

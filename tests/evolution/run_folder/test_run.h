@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "mercury/error.h"
 #include "mercury/evolution.h"
@@ -45,8 +47,20 @@ class ByteGenome : public Genome {
   }
   std::uint64_t identity() const override { return std::hash<std::string>{}(bytes_); }
   std::string encode() const override { return bytes_; }
+  std::vector<double> numbers() const override {
+    std::vector<double> numbers;
+    for (const char byte : bytes_) numbers.push_back(static_cast<unsigned char>(byte) / step);
+    return numbers;
+  }
+  GenomePointer with_numbers(std::span<const double> numbers) const override {
+    std::string bytes;
+    for (const double number : numbers)
+      bytes.push_back(static_cast<char>(static_cast<unsigned char>(std::clamp(number * step, 0.0, 255.0))));
+    return std::make_shared<ByteGenome>(bytes);
+  }
 
  private:
+  static constexpr double step = 30;
   std::string bytes_;
 };
 
