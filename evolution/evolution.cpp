@@ -53,7 +53,8 @@ namespace {
 GenomePointer start_of_search(const GenomeSpace& space, std::uint64_t seed) {
   for (int attempt = 0;; ++attempt) {
     try {
-      return space.random(seed_of_child(seed, 0, 0, attempt), space.founders() > 0 ? 0 : static_cast<std::uint64_t>(attempt));
+      return space.random(seed_of_child(seed, 0, 0, attempt),
+                          space.founders() > 0 ? 0 : static_cast<std::uint64_t>(attempt));
     } catch (const InputError&) {
       if (attempt + 1 == tries_for_a_new_genome) throw;
     }

@@ -14,7 +14,7 @@
 namespace mercury {
 namespace {
 
-constexpr double share = 0.25, own_share = 0.025;  // of the numbers that a mutation moves
+constexpr double share = 0.25, own_share = 0.025;                                // of the numbers that a mutation moves
 constexpr double amplitude_step = 0.04, frequency_step = 0.5, phase_step = 0.4;  // [1], [rad/s], [rad]
 
 bool is_muscle(const Material& material) { return material.amplitude != 0; }

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // CMA-ES: evolution with a normal distribution whose mean, step size and covariance adapt themselves (Hansen 2016, "The
 // CMA Evolution Strategy: A Tutorial", arXiv:1604.00772, appendix A; parameters are those of its table 1, negative
-// weights included). Separable CMA-ES has a diagonal covariance, which learns (n + 2) / 3 times as fast, and no negative
-// weights (Ros and Hansen 2008, "A Simple Modification in CMA-ES Achieving Linear Time and Space Complexity").
+// weights included). Separable CMA-ES has a diagonal covariance, which learns (n + 2) / 3 times as fast, and no
+// negative weights (Ros and Hansen 2008, "A Simple Modification in CMA-ES Achieving Linear Time and Space Complexity").
 //
 // Four things are as this project needs them:
 // - Children are m + sigma C^1/2 z with the symmetric root of C, where the tutorial has B D z. Both have one
-//   distribution, but the root does not depend on signs and order of eigenvectors, which rounding decides while C is near
-//   the identity.
+//   distribution, but the root does not depend on signs and order of eigenvectors, which rounding decides while C is
+//   near the identity.
 // - What learn() needs of the children it draws again, so that the state follows from seeds and scores.
 // - The first individual is the start itself, z = 0. It counts as any other.
-// - A search that stands still begins again with twice as many children (Auger and Hansen 2005, "A Restart CMA Evolution
-//   Strategy With Increasing Population Size"): if the best score is the same for 10 + 30 n / lambda generations, if the
-//   condition of C is above 1e14, or if all steps are below 1e-12 of the first ones. Unlike theirs, it begins at the same
-//   mean, and no criterion reads differences of scores: their order is all that counts.
+// - A search that stands still begins again with twice as many children (Auger and Hansen 2005, "A Restart CMA
+// Evolution
+//   Strategy With Increasing Population Size"): if the best score is the same for 10 + 30 n / lambda generations, if
+//   the condition of C is above 1e14, or if all steps are below 1e-12 of the first ones. Unlike theirs, it begins at
+//   the same mean, and no criterion reads differences of scores: their order is all that counts.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -55,8 +56,7 @@ struct Rates {
     c_c = (4 + mass / dimensions) / (dimensions + 4 + 2 * mass / dimensions);
     const double faster = separable ? (dimensions + 2) / 3 : 1;
     c_1 = std::min(1.0, faster * 2 / ((dimensions + 1.3) * (dimensions + 1.3) + mass));
-    c_mu = std::min(1 - c_1,
-                    faster * 2 * (0.25 + mass + 1 / mass - 2) / ((dimensions + 2) * (dimensions + 2) + mass));
+    c_mu = std::min(1 - c_1, faster * 2 * (0.25 + mass + 1 / mass - 2) / ((dimensions + 2) * (dimensions + 2) + mass));
     expected_length = std::sqrt(dimensions) * (1 - 1 / (4 * dimensions) + 1 / (21 * dimensions * dimensions));
     double below = 0;  // the negative weights sum to minus this
     if (c_mu > 0 && negative > 0 && !separable)
@@ -93,8 +93,8 @@ auto& at(Matrix& matrix, std::size_t i, std::size_t k) {
 class FullCovariance : public Covariance {
  public:
   explicit FullCovariance(std::size_t n)
-      : matrix_(Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n))),
-        root_(matrix_) {}
+      : matrix_(Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n))), root_(matrix_) {
+  }
 
   Vector stretched(const Vector& z) const override {
     Vector y(z.size(), 0);
@@ -221,8 +221,7 @@ class CovarianceMatrixAdaptation : public Algorithm {
     for (std::size_t k = 0; k < n; ++k) mean_[k] += sigma_ * mean_y[k];
     // C^-1/2 of the mean step is the mean of z.
     const double of_sigma = std::sqrt(rates.c_sigma * (2 - rates.c_sigma) * rates.mass);
-    for (std::size_t k = 0; k < n; ++k)
-      sigma_path_[k] = (1 - rates.c_sigma) * sigma_path_[k] + of_sigma * mean_z[k];
+    for (std::size_t k = 0; k < n; ++k) sigma_path_[k] = (1 - rates.c_sigma) * sigma_path_[k] + of_sigma * mean_z[k];
     const double length = std::sqrt(squared_length(sigma_path_));
     forgotten_ *= (1 - rates.c_sigma) * (1 - rates.c_sigma);
     const bool stalls = length / std::sqrt(1 - forgotten_) >=

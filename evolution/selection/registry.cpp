@@ -21,8 +21,7 @@ const AlgorithmDescription& algorithm_named(std::string_view name) {
     if (algorithm.name == name) return algorithm;
     names.emplace_back(algorithm.name);
   }
-  throw ParameterError("algorithm",
-                       "\"" + std::string(name) + "\" is not an algorithm; give one of " + list_of(names));
+  throw ParameterError("algorithm", "\"" + std::string(name) + "\" is not an algorithm; give one of " + list_of(names));
 }
 
 std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings) {

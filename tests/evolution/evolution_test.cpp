@@ -56,13 +56,14 @@ std::string suite_name(const testing::TestParamInfo<std::string_view>& test) {
   std::ranges::replace(name, '-', '_');
   return name;
 }
-INSTANTIATE_TEST_SUITE_P(Algorithms, AnyEvolution, testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es", "random"),
+INSTANTIATE_TEST_SUITE_P(Algorithms, AnyEvolution,
+                         testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es", "random"),
                          suite_name);
 
 // Algorithms whose children have parents.
 class Inheritance : public testing::TestWithParam<std::string_view> {};
-INSTANTIATE_TEST_SUITE_P(Algorithms, Inheritance, testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es"),
-                         suite_name);
+INSTANTIATE_TEST_SUITE_P(Algorithms, Inheritance,
+                         testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es"), suite_name);
 
 // The squared distance to the optimum that is left is less than half of what random search leaves.
 TEST_P(Inheritance, BeatsRandomSearchAtAsManyTrials) {

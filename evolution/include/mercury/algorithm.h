@@ -48,9 +48,9 @@ struct AlgorithmSettings {
           .with_form("0..1")};
 };
 
-// What a child is made from: indices of its parents among the living. None = a new random genome. Algorithms that search
-// among numbers give these (Genome::with_numbers), or none for the genome with which the search begins; then the parent
-// is that of the lineage alone.
+// What a child is made from: indices of its parents among the living. None = a new random genome. Algorithms that
+// search among numbers give these (Genome::with_numbers), or none for the genome with which the search begins; then the
+// parent is that of the lineage alone.
 struct ChildPlan {
   std::vector<std::size_t> parents;
   std::vector<double> numbers;

@@ -76,8 +76,8 @@ class Evolution {
   // The space must outlive it. Throws as validate().
   Evolution(const EvolutionSettings& settings, const GenomeSpace& space);
 
-  // Continues after a generation: `living` as it left them; `born` = all individuals so far, by id, whose genomes are not
-  // needed. Throws InputError if an algorithm that learns does not come to the same robots again.
+  // Continues after a generation: `living` as it left them; `born` = all individuals so far, by id, whose genomes are
+  // not needed. Throws InputError if an algorithm that learns does not come to the same robots again.
   void restore(int generation, std::vector<Individual> living, std::span<const Individual> born);
 
   const EvolutionSettings& settings() const { return settings_; }

@@ -41,11 +41,12 @@ class Genome {
   // of the same length that differ in few bytes: a run folder stores what differs from the parent.
   virtual std::string encode() const = 0;
 
-  // The genome as numbers, for algorithms that search among these (CMA-ES): without bounds, and scaled so that 1 is about
-  // the step of a mutation. As many for all genomes of a space, with one meaning. Empty where that is not possible.
+  // The genome as numbers, for algorithms that search among these (CMA-ES): without bounds, and scaled so that 1 is
+  // about the step of a mutation. As many for all genomes of a space, with one meaning. Empty where that is not
+  // possible.
   virtual std::vector<double> numbers() const { return {}; }
-  // The genome with other finite numbers, of which those that it has give this genome, up to rounding. Throws nothing but
-  // lack of memory.
+  // The genome with other finite numbers, of which those that it has give this genome, up to rounding. Throws nothing
+  // but lack of memory.
   virtual GenomePointer with_numbers(std::span<const double> /*numbers*/) const { return nullptr; }
 };
 

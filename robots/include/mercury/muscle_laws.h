@@ -48,11 +48,11 @@ std::vector<Material> mutate_muscle_laws(std::span<const Material> bases, double
 std::vector<Material> cross_muscle_laws(std::span<const Material> a, std::span<const Material> b, std::uint64_t seed);
 
 // The muscles in use as numbers, for searches among these (mercury/genome.h): one for each frequency that muscles of
-// `bases` have, then amplitude and phase of each. Muscles of one frequency keep one. The unit of a number is the step of
-// mutate_muscle_laws() with strength 1. `like` has the muscles of `bases` with other laws.
+// `bases` have, then amplitude and phase of each. Muscles of one frequency keep one. The unit of a number is the step
+// of mutate_muscle_laws() with strength 1. `like` has the muscles of `bases`, moved.
 std::vector<double> muscle_numbers(std::span<const Material> bases, const std::vector<bool>& in_use,
                                    std::span<const Material> like);
-// The reverse: base materials with the laws of any finite numbers, which are brought into the ranges above, phases by
+// The reverse, for any finite numbers: they are brought into the ranges above, phases by
 // whole turns, the others by reflection.
 std::vector<Material> with_muscle_numbers(std::span<const Material> bases, const std::vector<bool>& in_use,
                                           std::span<const double> numbers);

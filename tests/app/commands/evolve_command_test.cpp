@@ -331,16 +331,14 @@ TEST_F(EvolveCommand, CmaEsGoesOnBitForBitAndSaysWhatItCannotSearch) {
   for (const char* algorithm : {"cma-es", "sep-cma-es"}) {
     const auto run = [&](const char* folder, const char* generations) {
       return evolve(folder, {"--from", "sample:eel", "--genes", "muscles", "--algorithm", algorithm, "--seconds", "0.1",
-                             "--trials", "1", "--generations", generations, "--no-confirm", "--quiet",
-                             "--force"});
+                             "--trials", "1", "--generations", generations, "--no-confirm", "--quiet", "--force"});
     };
     const Outcome whole = run("whole", "5");
     ASSERT_EQ(whole.status, 0) << whole.messages;
     const RunHistory history(path("whole"));
     const std::size_t numbers = history.genome(0)->numbers().size();
     EXPECT_GE(numbers, 4u);
-    EXPECT_EQ(history.generations()[0].born,
-              4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(numbers))));
+    EXPECT_EQ(history.generations()[0].born, 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(numbers))));
     ASSERT_EQ(run("parts", "2").status, 0);
     ASSERT_EQ(evolve("parts", {"--resume", "--generations", "5", "--quiet"}).status, 0);
     EXPECT_EQ(lineage("parts"), lineage("whole"));
@@ -357,9 +355,10 @@ TEST_F(EvolveCommand, CmaEsGoesOnBitForBitAndSaysWhatItCannotSearch) {
     EXPECT_EQ(outcome.status, 2);
     return outcome.messages;
   };
-  EXPECT_EQ(refused({"--from", "voxel:2x2x2"}),
-            "mercury: --algorithm: cma-es needs genomes that are a fixed list of numbers: the muscles of a robot file, the "
-            "weights of its brain, or a tapered robot\n");
+  EXPECT_EQ(
+      refused({"--from", "voxel:2x2x2"}),
+      "mercury: --algorithm: cma-es needs genomes that are a fixed list of numbers: the muscles of a robot file, the "
+      "weights of its brain, or a tapered robot\n");
   EXPECT_EQ(refused({"--from", "sample:eel", "sample:fish", "--genes", "muscles"}),
             "mercury: --algorithm: cma-es begins with one robot, and there are 2\n");
   EXPECT_EQ(refused({"--from", "sample:eel", "--genes", "muscles", "--tournament", "3"}),

@@ -125,8 +125,9 @@ class Tutorial {
  public:
   Tutorial(const Problem& problem, bool separable)
       : n_(static_cast<double>(problem.start.size())), lambda_(static_cast<double>(problem.population)),
-        separable_(separable), mean_(Eigen::Map<const Eigen::VectorXd>(problem.start.data(), std::ssize(problem.start))),
-        sigma_(problem.step), covariance_(Eigen::MatrixXd::Identity(mean_.size(), mean_.size())),
+        separable_(separable),
+        mean_(Eigen::Map<const Eigen::VectorXd>(problem.start.data(), std::ssize(problem.start))), sigma_(problem.step),
+        covariance_(Eigen::MatrixXd::Identity(mean_.size(), mean_.size())),
         sigma_path_(Eigen::VectorXd::Zero(mean_.size())), path_(sigma_path_) {}
 
   Eigen::VectorXd child(const Eigen::VectorXd& z) const { return mean_ + sigma_ * root() * z; }
@@ -150,9 +151,8 @@ class Tutorial {
     const double faster = separable_ ? (n_ + 2) / 3 : 1;
     const double c_1 = faster * 2 / (std::pow(n_ + 1.3, 2) + mass);
     const double c_mu = std::min(1 - c_1, faster * 2 * (0.25 + mass + 1 / mass - 2) / (std::pow(n_ + 2, 2) + mass));
-    const double below = separable_ ? 0
-                                    : std::min({1 + c_1 / c_mu, 1 + 2 * negative_mass / (mass + 2),
-                                                (1 - c_1 - c_mu) / (n_ * c_mu)});
+    const double below =
+        separable_ ? 0 : std::min({1 + c_1 / c_mu, 1 + 2 * negative_mass / (mass + 2), (1 - c_1 - c_mu) / (n_ * c_mu)});
     for (double& weight : w) weight *= weight >= 0 ? 1 / positive : below / negative;
 
     const Eigen::MatrixXd inverse = root().inverse();
@@ -180,9 +180,7 @@ class Tutorial {
   }
 
  private:
-  Eigen::MatrixXd root() const {
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance_).operatorSqrt();
-  }
+  Eigen::MatrixXd root() const { return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance_).operatorSqrt(); }
 
   const double n_, lambda_;
   const bool separable_;
@@ -194,9 +192,8 @@ class Tutorial {
 };
 
 class CmaEs : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Both, CmaEs, testing::Values("cma-es", "sep-cma-es"), [](const auto& test) {
-  return test.param == "cma-es" ? "full" : "separable";
-});
+INSTANTIATE_TEST_SUITE_P(Both, CmaEs, testing::Values("cma-es", "sep-cma-es"),
+                         [](const auto& test) { return test.param == "cma-es" ? "full" : "separable"; });
 
 // In 5 dimensions C is decomposed in every generation, as in the tutorial.
 TEST_P(CmaEs, IsThatOfTheTutorial) {
@@ -347,7 +344,8 @@ TEST_P(CmaEs, BeginsAgainWithTwiceThePopulationWhereItStandsStill) {
     Search search(GetParam(), problem, seed);
     EXPECT_LT(search.evaluations_to(1e-10, 100'000), 100'000u) << seed;
   }
-  Search flat(GetParam(), {.function = [](const Numbers&) { return 1.0; }, .start = Numbers(5, 0.0), .population = 8}, 1);
+  Search flat(GetParam(), {.function = [](const Numbers&) { return 1.0; }, .start = Numbers(5, 0.0), .population = 8},
+              1);
   for (int generation = 0; generation < 35; ++generation) flat.advance();
   EXPECT_EQ(flat.children().size(), 16u);  // after 10 + 30 * 5 / 8 generations without a change
 }
@@ -399,9 +397,8 @@ TEST_P(CmaEs, BeginsWithTheFounder) {
   EXPECT_EQ(first->born[0].genome->numbers().size(), 4u);
   EXPECT_THAT(first->born[0].parents, testing::IsEmpty());
   const std::optional<Generation> second = evolution.advance(assessor);
-  const std::uint64_t best = std::ranges::max_element(first->born, {}, [](const Individual& child) {
-                               return child.score();
-                             })->id;
+  const std::uint64_t best =
+      std::ranges::max_element(first->born, {}, [](const Individual& child) { return child.score(); })->id;
   for (const Individual& child : second->born) EXPECT_THAT(child.parents, testing::ElementsAre(best));
 }
 
@@ -431,7 +428,7 @@ TEST_P(CmaEs, ARunIsNotContinuedWhereItsRobotsWouldBeOthers) {
 }
 
 TEST(CmaEsPopulation, IsThatOfTheTutorialWhereNoneIsGiven) {
-  EXPECT_EQ(usual_population("cma-es", VectorSpace(10), 1), 10u);      // 4 + 3 ln 10 = 10.9
+  EXPECT_EQ(usual_population("cma-es", VectorSpace(10), 1), 10u);       // 4 + 3 ln 10 = 10.9
   EXPECT_EQ(usual_population("sep-cma-es", VectorSpace(100), 1), 17u);  // 17.8
   EXPECT_EQ(usual_population("ga", VectorSpace(10), 1), AlgorithmSettings{}.population);
 }
