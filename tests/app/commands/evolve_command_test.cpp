@@ -359,8 +359,6 @@ TEST_F(EvolveCommand, CmaEsGoesOnBitForBitAndSaysWhatItCannotSearch) {
       refused({"--from", "voxel:2x2x2"}),
       "mercury: --algorithm: cma-es needs genomes that are a fixed list of numbers: the muscles of a robot file, the "
       "weights of its brain, or a tapered robot\n");
-  EXPECT_EQ(refused({"--from", "sample:eel", "sample:fish", "--genes", "muscles"}),
-            "mercury: --algorithm: cma-es begins with one robot, and there are 2\n");
   EXPECT_EQ(refused({"--from", "sample:eel", "--genes", "muscles", "--tournament", "3"}),
             "mercury: --tournament: does not go with --algorithm cma-es\n");
   EXPECT_FALSE(std::filesystem::exists(path("refused")));
