@@ -202,14 +202,16 @@ TEST(BoundedNumbers, AreThemselvesInsideAndSmoothAtTheBounds) {
   EXPECT_EQ(bounded(low - margin, low, high), low);
   EXPECT_NEAR(bounded(high + margin, low, high), high, 1e-15);
   constexpr double h = 1e-5;
-  double before = 0;
+  const auto slope_at = [&](double number) {
+    return (bounded(number + h, low, high) - bounded(number - h, low, high)) / (2 * h);
+  };
+  double before = slope_at(-9);
   for (double number = -9; number < 9; number += 0.01) {
     const double value = bounded(number, low, high);
     EXPECT_GE(value, low);
     EXPECT_LE(value, high);
-    const double slope = (bounded(number + h, low, high) - bounded(number - h, low, high)) / (2 * h);
-    if (number > -9) EXPECT_NEAR(slope, before, 0.01 / (2 * margin) + 1e-6);  // the parabola's curvature
-    before = slope;
+    EXPECT_NEAR(slope_at(number), before, 0.01 / (2 * margin) + 1e-6);  // the parabola's curvature
+    before = slope_at(number);
     EXPECT_NEAR(bounded(number + 2 * (high - low + 2 * margin), low, high), value, 1e-12);  // a period
     EXPECT_NEAR(bounded(unbounded(value, low, high), low, high), value, 1e-14);
   }
