@@ -245,11 +245,13 @@ void make_sweep(const EvolveOptions& options, const Command& command) {
   if (is_run_folder(folder)) throw InputError(folder.string(), "holds a run; give a new folder for a sweep");
   const std::vector<std::filesystem::path> old = runs_of_sweep(folder);
   if (!old.empty() && !options.output.force())
-    throw InputError(folder.string(), "holds a sweep; --resume goes on with it, --force replaces it");
+    throw InputError(folder.string(), "holds a sweep; --resume goes on with it, --force replaces its runs");
   std::vector<std::string> notes;
   const std::vector<SweepOptions::Run> runs = options.sweep.runs(command, notes);
   for (const std::string& note : notes) warn(note);
-  for (const std::filesystem::path& run : old) std::filesystem::remove_all(run);
+  for (const std::filesystem::path& run : old)
+    if (std::ranges::none_of(runs, [&](const SweepOptions::Run& one) { return folder / one.place == run; }))
+      throw InputError(run.string(), "is a run that this sweep does not have; remove it, or give a new folder");
   for (const SweepOptions::Run& run : runs) {
     std::filesystem::create_directories((folder / run.place).parent_path());
     RunFolder::create(folder / run.place, run.settings, options.output.force());
