@@ -195,6 +195,41 @@ void SharedActuation::hold(const Backend& backend, std::span<const HeldDrive> he
   backend.copy_shared(arrays_.driven.data.get(), driven.data(), driven.size());
 }
 
+DrivenMaterials SharedActuation::driven_materials(const Backend& backend) const {
+  DrivenMaterials now;
+  if (!made_) return now;
+  const auto amplitude = read(backend, arrays_.amplitude), frequency = read(backend, arrays_.frequency),
+             phase = read(backend, arrays_.phase), drive = read(backend, arrays_.drive);
+  std::vector<std::uint8_t> driven = read(backend, arrays_.driven);
+  DrivenMaterials::Arrays arrays{.columns = arrays_.drive.columns, .actuator_of = actuator_of_};
+  arrays.settings.reserve(drive.size());
+  for (std::size_t at = 0; at < drive.size(); ++at)
+    arrays.settings.push_back({amplitude[at], frequency[at], phase[at], drive[at], is_driven(driven[at], drive[at])});
+  now.arrays_ = std::make_shared<const DrivenMaterials::Arrays>(std::move(arrays));
+  return now;
+}
+
+std::span<const DrivenMaterials::Setting> DrivenMaterials::settings(std::size_t robot) const {
+  if (!arrays_ || (robot + 1) * arrays_->columns > arrays_->settings.size()) return {};
+  return std::span(arrays_->settings).subspan(robot * arrays_->columns, arrays_->columns);
+}
+
+bool DrivenMaterials::drives(std::size_t robot) const { return std::ranges::any_of(settings(robot), &Setting::driven); }
+
+std::vector<Material> DrivenMaterials::of(std::size_t robot, std::span<const Material> own) const {
+  std::vector<Material> table(own.begin(), own.end());
+  const std::span<const Setting> all = settings(robot);
+  if (all.empty()) return table;
+  const auto actuators = std::span(arrays_->actuator_of).subspan(robot * max_materials, max_materials);
+  for (std::size_t id = 0; id < std::min<std::size_t>(table.size(), max_materials); ++id) {
+    if (actuators[id] == ActuationSources::no_actuator) continue;
+    const Setting& setting = all[actuators[id]];
+    table[id] =
+        actuated(table[id], {setting.amplitude, setting.frequency, setting.phase, setting.drive, setting.driven});
+  }
+  return table;
+}
+
 ActuatorSetting SharedActuation::setting(std::size_t at) const {
   const float drive = arrays_.drive.data.get()[at];
   return {arrays_.amplitude.data.get()[at], arrays_.frequency.data.get()[at], arrays_.phase.data.get()[at], drive,
@@ -251,6 +286,10 @@ void Simulation::hold_drives(std::span<const HeldDrive> held) {
   if (held.empty() && !parts_->shared_actuation.is_made()) return;
   (void)actuation();
   parts_->shared_actuation.hold(*parts_->backend, held);
+}
+
+DrivenMaterials Simulation::driven_materials() const {
+  return parts_->shared_actuation.driven_materials(*parts_->backend);
 }
 
 }  // namespace mercury

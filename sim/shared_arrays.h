@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mercury/backend.h"
+#include "mercury/driven_materials.h"
 #include "mercury/shared_array.h"
 #include "sim/physics/actuation.h"
 
@@ -59,6 +60,8 @@ class SharedActuation {
   void set_drives(const Backend& backend, std::span<const DriveSetting> settings);
   // Simulation::hold_drives(), into arrays that have been made.
   void hold(const Backend& backend, std::span<const HeldDrive> held);
+  // The arrays as they are now.
+  DrivenMaterials driven_materials(const Backend& backend) const;
   bool is_made() const { return made_; }
   // Lets the backend read the arrays again, after it failed to exchange robots.
   void attach(Backend& backend);

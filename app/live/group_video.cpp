@@ -15,21 +15,6 @@
 namespace mercury {
 namespace {
 
-Simulation simulation_of(const std::vector<LiveRobot>& live, const Configuration& configuration) {
-  std::vector<Robot> robots;
-  for (const LiveRobot& robot : live) {
-    robots.push_back(*robot.robot);
-    robots.back().name = robot.name;
-  }
-  Simulation simulation(configuration, robots);
-  for (std::size_t i = 0; i < live.size(); ++i) {
-    for (std::size_t id = 1; live[i].materials && id < live[i].materials->size(); ++id)
-      simulation.set_material(i, static_cast<MaterialId>(id), (*live[i].materials)[id]);
-  }
-  simulation.hold_drives(held_drives(live));
-  return simulation;
-}
-
 constexpr std::size_t most_waiting = 8;  // frames
 constexpr double longest_stay = 10;      // of one frame in the video [s]
 

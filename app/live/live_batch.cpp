@@ -171,7 +171,7 @@ std::shared_ptr<Snapshot> LiveBatch::snapshot(bool with_velocities) {
   take_positions(next->positions);
   if (with_velocities) simulation_.read_velocities(next->velocities);
   next->telemetry = telemetry_;
-  next->details = details_ ? details_->observe(telemetry_) : SceneDetails{};
+  next->details = details_ ? details_->observe(telemetry_) : SceneDetails{.driven = simulation_.driven_materials()};
   next->color = details_ ? &details_->color() : &material_color();
   next->perturbations.clear();
   for (const LivePerturbation& perturbation : perturbations_)

@@ -28,10 +28,12 @@ namespace fs = std::filesystem;
 
 // As frames show it: with its colors, its name and its materials as they are in the window.
 struct Exported {
+  LiveRobot live;
   Robot robot;
   std::vector<Material> materials;
-  Exported(const LiveRobot& live)
-      : robot(*live.robot), materials(mercury::materials_of(live).begin(), mercury::materials_of(live).end()) {
+  Exported(const LiveRobot& given)
+      : live(given), robot(*given.robot),
+        materials(mercury::materials_of(given).begin(), mercury::materials_of(given).end()) {
     robot.name = live.name;
   }
   ExportedRobot in(const Environment& environment) const {
@@ -61,12 +63,9 @@ void require_going(const WorkControl& control) {
 // Simulates the robots from time 0. Returns the number of frames.
 std::int64_t record(const std::vector<Exported>& exported, const Configuration& configuration, const fs::path& path,
                     double seconds, WorkControl& control) {
-  std::vector<Robot> robots;
-  for (const Exported& one : exported) robots.push_back(one.robot);
-  Simulation simulation(configuration, robots);
-  for (std::size_t robot = 0; robot < exported.size(); ++robot)
-    for (std::size_t id = 1; id < exported[robot].materials.size(); ++id)
-      simulation.set_material(robot, static_cast<MaterialId>(id), exported[robot].materials[id]);
+  std::vector<LiveRobot> robots;
+  for (const Exported& one : exported) robots.push_back(one.live);
+  Simulation simulation = simulation_of(robots, configuration);
   return record_motion(simulation, seconds, path, std::nullopt,
                        [&](std::int64_t frames) {
                          require_going(control);
@@ -262,7 +261,8 @@ SaveResult LiveScene::export_pose(RobotId robot, const fs::path& path, bool over
   const Snapshot& snapshot = *parts_->snapshot;
   try {
     const ExportFormat& format = format_for(path, "");
-    const Exported exported(found->body);
+    Exported exported(found->body);
+    exported.materials = snapshot.details.driven.of(*index, exported.materials);
     require_pose(format, exported.robot, false);
     const Pose pose{.time = snapshot.time,
                     .positions = snapshot.positions_of(*index),

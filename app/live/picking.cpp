@@ -264,7 +264,7 @@ HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t index,
   const LiveRobot& live = snapshot.robots->robots[index];
   const Robot& robot = *live.robot;
   const Spring& spring = robot.springs[spring_index];
-  const Material material = driven_material(live, spring.material);
+  const Material material = snapshot.details.driven.of(index, materials_of(live))[spring.material];
   const auto positions = snapshot.positions_of(index);
   const double time = snapshot.telemetry[index].exploded ? snapshot.telemetry[index].exploded_at : snapshot.time;
   const MaterialNow now = materials_at({&material, 1}, snapshot.configuration.environment, time).front();

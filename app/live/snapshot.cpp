@@ -22,6 +22,20 @@ std::vector<HeldDrive> held_drives(std::span<const LiveRobot> robots) {
   return held;
 }
 
+Simulation simulation_of(std::span<const LiveRobot> live, const Configuration& configuration) {
+  std::vector<Robot> robots;
+  for (const LiveRobot& robot : live) {
+    robots.push_back(*robot.robot);
+    robots.back().name = robot.name;
+  }
+  Simulation simulation(configuration, robots);
+  for (std::size_t i = 0; i < live.size(); ++i)
+    for (std::size_t id = 1; live[i].materials && id < live[i].materials->size(); ++id)
+      simulation.set_material(i, static_cast<MaterialId>(id), (*live[i].materials)[id]);
+  simulation.hold_drives(held_drives(live));
+  return simulation;
+}
+
 std::span<const Material> materials_of(const LiveRobot& robot) {
   return robot.materials ? std::span<const Material>(*robot.materials) : materials_of(*robot.robot);
 }
@@ -33,20 +47,6 @@ std::optional<std::size_t> LiveRobots::index_of(RobotId id) const {
   }
   const auto found = std::ranges::find(robots, id, &LiveRobot::id);
   return found == robots.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - robots.begin()));
-}
-
-Material driven_material(const LiveRobot& robot, MaterialId id) {
-  Material material = materials_of(robot)[id];
-  if (!robot.drives) return material;
-  const std::vector<Actuator> actuators = actuators_of(*robot.robot);
-  for (std::size_t a = 0; a < std::min(actuators.size(), robot.drives->size()); ++a) {
-    const float drive = (*robot.drives)[a];
-    if (std::isnan(drive) || std::ranges::count(actuators[a].materials, id) == 0) continue;
-    material.frequency = 0;
-    material.phase = std::asin(drive);
-    material.half_wave = false;
-  }
-  return material;
 }
 
 std::span<const Vec3> Snapshot::positions_of(std::size_t robot) const {

@@ -39,11 +39,12 @@ struct LiveRobot {
 
 // The table in use, indexed by material id.
 std::span<const Material> materials_of(const LiveRobot& robot);
-// One of them as it is while its actuator is driven by hand.
-Material driven_material(const LiveRobot& robot, MaterialId id);
 
 // What drives these robots by hand, for Simulation::hold_drives().
 std::vector<HeldDrive> held_drives(std::span<const LiveRobot> robots);
+
+// The robots as the window has them, at rest: with their names, materials and drives.
+Simulation simulation_of(std::span<const LiveRobot> robots, const Configuration& configuration);
 
 // The robots of a snapshot, in the order of the window's list of robots.
 struct LiveRobots {

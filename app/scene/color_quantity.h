@@ -23,8 +23,8 @@ struct RobotState {
   double time;                                 // [s]
   std::span<const Vec3> positions;             // per mass [m]
   std::span<const Vec3> velocities;            // per mass [m/s]
-  std::span<const Material> material_table;    // by material id, as the simulation has it now
-  std::span<const MaterialNow> materials;      // the same at `time`
+  std::span<const Material> material_table;    // by material id, as the simulation has it now, without drives
+  std::span<const MaterialNow> materials;      // the same at `time`, with what drives them
   std::span<const MaterialId> face_materials;  // per face, see face_materials()
 };
 

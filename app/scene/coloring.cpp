@@ -59,7 +59,7 @@ void Coloring::fill(ColorValues& values, std::size_t index, const GroupState& st
   const std::size_t first_mass = simulation_.mass_offsets()[index];
   const Environment& environment = simulation_.configuration().environment;
   const std::vector<Material> table = materials_of(simulation_, index);
-  const std::vector<MaterialNow> materials = materials_at(table, environment, state.time);
+  const std::vector<MaterialNow> materials = materials_at(simulation_, index, state);
   const RobotState robot_state{
       .robot = robot,
       .environment = environment,

@@ -129,16 +129,21 @@ void GroupScene::set_materials(std::size_t robot, std::span<const Material> mate
   use_table(robot, table_for(own, materials, defaults));
 }
 
-// A table with these materials: an existing one, or a free or new one filled with them.
+// A table with these materials, which robots may share.
 std::size_t GroupScene::table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults) {
   const auto same = [&](const Table& table) {
-    return table.robots > 0 && table.defaults == defaults && std::ranges::equal(table.materials, materials) &&
-           std::ranges::equal(table.own, own);
+    return table.robots > 0 && !table.driven && table.defaults == defaults &&
+           std::ranges::equal(table.materials, materials) && std::ranges::equal(table.own, own);
   };
+  const auto found = std::ranges::find_if(tables_, same);
+  return found == tables_.end() ? new_table(own, materials, defaults)
+                                : static_cast<std::size_t>(found - tables_.begin());
+}
+
+// A free or new table, filled with these materials.
+std::size_t GroupScene::new_table(std::span<const Material> own, std::span<const Material> materials, bool defaults) {
   const auto free = [&](const Table& table) { return table.robots == 0 && table.own.size() == own.size(); };
-  auto found = std::ranges::find_if(tables_, same);
-  if (found != tables_.end()) return static_cast<std::size_t>(found - tables_.begin());
-  found = std::ranges::find_if(tables_, free);
+  auto found = std::ranges::find_if(tables_, free);
   if (found == tables_.end()) {
     tables_.push_back({.first_material = materials_.size()});
     materials_.resize(materials_.size() + own.size());

@@ -95,13 +95,16 @@ class GroupScene {
   struct Table {
     std::size_t first_material = 0;
     std::vector<Material> own, materials;
-    bool defaults = true;    // `own` is the default table
-    std::size_t robots = 0;  // that use it; 0 = free
+    bool defaults = true;                    // `own` is the default table
+    std::size_t robots = 0;                  // that use it; 0 = free
+    std::optional<std::size_t> driven = {};  // the only robot that uses it, whose muscles do not follow their sines
   };
   void add(const Robot& robot, std::span<const Material> materials, const RobotShape& shape,
            const render::Vector3& offset);
   std::size_t table_for(std::span<const Material> own, std::span<const Material> materials, bool defaults);
+  std::size_t new_table(std::span<const Material> own, std::span<const Material> materials, bool defaults);
   void use_table(std::size_t robot, std::size_t table);
+  void activate(double time, const DrivenMaterials& driven);
   void show_surroundings();
   void place_floor();
   void place(std::span<const Telemetry> telemetry);

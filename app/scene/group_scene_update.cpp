@@ -30,8 +30,7 @@ std::string clock_of(double time, double speed) {
 }  // namespace
 
 void GroupScene::update(double time, std::span<const Telemetry> telemetry, SceneDetails details) {
-  for (const Table& table : tables_)
-    set_activations(table.materials, time, std::span(materials_).subspan(table.first_material, table.materials.size()));
+  activate(time, details.driven);
   scene_.materials = materials_;
   scene_.time = time;
   if (settings_.shown.clock) scene_.clock = clock_of(time, settings_.speed);
@@ -46,6 +45,24 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
   mark_targets();
   if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
   color(time, std::move(details));
+}
+
+// The glow of the muscles.
+void GroupScene::activate(double time, const DrivenMaterials& driven) {
+  for (std::size_t i = 0; i < table_of_.size(); ++i) {
+    if (tables_[table_of_[i]].driven || !driven.drives(i)) continue;
+    const Table shared = tables_[table_of_[i]];
+    --tables_[table_of_[i]].robots;
+    use_table(i, new_table(shared.own, shared.materials, shared.defaults));
+    tables_[table_of_[i]].driven = i;
+  }
+  for (const Table& table : tables_) {
+    const auto drawn = std::span(materials_).subspan(table.first_material, table.materials.size());
+    if (table.driven)
+      set_activations(driven.of(*table.driven, table.materials), time, drawn);
+    else
+      set_activations(table.materials, time, drawn);
+  }
 }
 
 void GroupScene::place(std::span<const Telemetry> telemetry) {

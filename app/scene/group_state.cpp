@@ -8,7 +8,8 @@ namespace mercury {
 GroupState read_state(const Simulation& simulation) {
   GroupState state{.time = simulation.time(),
                    .positions = std::vector<Vec3>(simulation.mass_count()),
-                   .velocities = std::vector<Vec3>(simulation.mass_count())};
+                   .velocities = std::vector<Vec3>(simulation.mass_count()),
+                   .driven = simulation.driven_materials()};
   simulation.read_positions(state.positions);
   simulation.read_velocities(state.velocities);
   return state;
@@ -24,11 +25,15 @@ std::vector<Material> materials_of(const Simulation& simulation, std::size_t rob
   return table;
 }
 
+std::vector<MaterialNow> materials_at(const Simulation& simulation, std::size_t robot, const GroupState& state) {
+  return materials_at(state.driven.of(robot, materials_of(simulation, robot)), simulation.configuration().environment,
+                      state.time);
+}
+
 std::vector<FloorForce> floor_forces(const Simulation& simulation, std::size_t robot, const GroupState& state) {
   const Configuration& configuration = simulation.configuration();
-  const auto materials = materials_at(materials_of(simulation, robot), configuration.environment, state.time);
-  return floor_forces(simulation.robot(robot), configuration, materials, masses_of(simulation, robot, state.positions),
-                      masses_of(simulation, robot, state.velocities));
+  return floor_forces(simulation.robot(robot), configuration, materials_at(simulation, robot, state),
+                      masses_of(simulation, robot, state.positions), masses_of(simulation, robot, state.velocities));
 }
 
 std::vector<Vec3> net_forces(const Simulation& simulation, std::size_t index, const GroupState& state) {
@@ -36,8 +41,7 @@ std::vector<Vec3> net_forces(const Simulation& simulation, std::size_t index, co
   const Environment& environment = simulation.configuration().environment;
   const auto positions = masses_of(simulation, index, state.positions);
   const auto velocities = masses_of(simulation, index, state.velocities);
-  const auto materials = materials_at(materials_of(simulation, index), environment, state.time);
-  std::vector<Vec3> forces = spring_forces(robot, materials, positions);
+  std::vector<Vec3> forces = spring_forces(robot, materials_at(simulation, index, state), positions);
   const Vec3 gravity = gravity_of(environment);
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = forces[i] + mass_of(robot, i) * gravity;
   if (const auto* water = std::get_if<PointDrag>(&environment.water))

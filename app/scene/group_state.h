@@ -15,14 +15,17 @@ struct GroupState {
   double time = 0;              // [s]
   std::vector<Vec3> positions;  // as Simulation::read_positions [m]
   std::vector<Vec3> velocities;
+  DrivenMaterials driven;
 };
 GroupState read_state(const Simulation& simulation);
 
 // A robot's part of a list with one element per mass of all robots.
 std::span<const Vec3> masses_of(const Simulation& simulation, std::size_t robot, std::span<const Vec3> all);
 
-// A robot's material table as the simulation has it now, by id.
+// A robot's material table as the simulation has it now without what drives it, by id.
 std::vector<Material> materials_of(const Simulation& simulation, std::size_t robot);
+// The same with what drives it, at the time of the state.
+std::vector<MaterialNow> materials_at(const Simulation& simulation, std::size_t robot, const GroupState& state);
 
 // floor_forces() of mercury/observables.h for one robot.
 std::vector<FloorForce> floor_forces(const Simulation& simulation, std::size_t robot, const GroupState& state);

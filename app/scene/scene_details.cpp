@@ -21,14 +21,15 @@ DetailObserver::DetailObserver(const Simulation& simulation, const ViewSettings&
 }
 
 SceneDetails DetailObserver::observe(std::span<const Telemetry> telemetry) {
-  if (!coloring_ && !arrows_) return {};
-  const GroupState state = read_state(simulation_);
+  if (!coloring_ && !arrows_) return {.driven = simulation_.driven_materials()};
+  GroupState state = read_state(simulation_);
   SceneDetails details;
   if (coloring_) details.values = coloring_->values(state);
   if (arrows_) {
     details.arrows = arrows_->at(state, telemetry);
     details.arrow_key = arrows_->key();
   }
+  details.driven = std::move(state.driven);
   return details;
 }
 

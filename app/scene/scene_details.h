@@ -17,6 +17,7 @@ struct SceneDetails {
   ColorValues values;
   std::vector<render::Arrow> arrows;
   std::string arrow_key;  // what their lengths mean
+  DrivenMaterials driven;
 };
 
 // The settings without what the environment does not have: its color quantity becomes the material, its arrows go.

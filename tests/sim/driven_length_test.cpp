@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "bodies.h"
+#include "mercury/observables.h"
 #include "shared_batch.h"
 #include "sim/physics/actuation.h"
 
@@ -95,6 +96,26 @@ TEST_P(DrivenLength, FollowsTheSineWithoutADrive) {
   EXPECT_NEAR(length_of(*batch, 0), expected(3, 2), 8e-6);
   EXPECT_NEAR(length_of(*batch, 1), expected(5, double{0.4f}), 8e-6);
   EXPECT_NEAR(length_of(*batch, 2), expected(3, double{0.4f}), 8e-6);
+}
+
+// One robot each with a drive, with a drive and an amplitude, with another sine, and as its file has it.
+TEST_P(DrivenLength, IsWhatDrivenMaterialsSay) {
+  const std::vector<Robot> robots(4, bodies::pair({50, amplitude, 3, 0.4f}));
+  SharedBatch batch = this->batch(configuration(), robots);
+  EXPECT_FALSE(batch->driven_materials().drives(0));
+  const Actuation& arrays = batch->actuation();
+  batch.write(arrays.drive, {-0.5f, 0.75f, nan_value, nan_value});
+  batch.write(arrays.amplitude, {nan_value, 0.5f, 0.25f, nan_value});
+  batch.write(arrays.frequency, {nan_value, nan_value, 5, nan_value});
+  batch->step();
+  const double begin = 0;  // of the step
+  const DrivenMaterials driven = batch->driven_materials();
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    EXPECT_EQ(driven.drives(i), i < 2) << i;
+    const auto now = materials_at(driven.of(i, materials_of(robots[i])), batch->configuration().environment, begin);
+    EXPECT_NEAR(double{now[robots[i].springs[0].material].length_factor}, length_of(*batch, i), 8e-6) << i;
+  }
+  EXPECT_FALSE(driven.drives(robots.size()));
 }
 
 // Robot 1 has no second actuator: what is in its second column is ignored.

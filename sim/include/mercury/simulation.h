@@ -13,6 +13,7 @@
 #include "mercury/backend.h"
 #include "mercury/clock.h"
 #include "mercury/configuration.h"
+#include "mercury/driven_materials.h"
 #include "mercury/folding.h"
 #include "mercury/material.h"
 #include "mercury/perturbation.h"
@@ -151,6 +152,8 @@ class Simulation {
   // actuation(), the amplitude, frequency and phase of all actuators become NaN: materials keep their own. Throws
   // std::out_of_range for an actuator that its robot does not have.
   void hold_drives(std::span<const HeldDrive> held);
+  // What drives the materials now. It copies five arrays of actuation() to the host, or nothing if none is there.
+  DrivenMaterials driven_materials() const;
 
   // Brains (mercury/brain.h) think by themselves while the simulation steps: on the device if that is one CUDA device,
   // else on the host. They drive their actuators through actuation(), where what a program writes for these lasts until
@@ -195,8 +198,8 @@ class Simulation {
   // Of all robots, on all cores.
   std::vector<std::uint64_t> hashes() const;
 
-  // A robot's current material, without what actuation() changes. Throws std::out_of_range if the robot's table has no
-  // such id.
+  // A robot's current material, without what actuation() changes (driven_materials()). Throws std::out_of_range if the
+  // robot's table has no such id.
   Material material(std::size_t robot, MaterialId id) const;
   // Applies to all springs of that material from the next step on. Throws InputError if the material is not valid.
   void set_material(std::size_t robot, MaterialId id, const Material& material);

@@ -15,7 +15,9 @@
 
 #include "app/scene/arrows.h"
 #include "app/scene/color_scale.h"
+#include "app/scene/group_scene.h"
 #include "app/scene/group_state.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 
@@ -338,6 +340,50 @@ TEST(Arrows, TakeTheirColorFromTheirValue) {
     const render::Color muscle = render::muscle_color(phase, 0.5f), arrow = strong[0].color;
     EXPECT_GT(std::abs(muscle.r - arrow.r) + std::abs(muscle.g - arrow.g) + std::abs(muscle.b - arrow.b), 150) << phase;
   }
+}
+
+// A muscle that is driven by u instead of its sine: L = L0 (1 + amplitude u).
+class DrivenOn : public testing::TestWithParam<DeviceKind> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == DeviceKind::cuda && cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+    simulation_.emplace(
+        Configuration{.dt = 1e-6, .environment = OceanSimple{.point_drag = 0}, .device = {.kind = GetParam()}},
+        std::vector<Robot>(2, pair()));
+    const HeldDrive held{.robot = 1, .actuator = 0, .drive = -0.5f};
+    simulation_->hold_drives(std::span(&held, 1));
+    simulation_->step();  // so short that the masses hardly move
+  }
+  std::optional<Simulation> simulation_;
+};
+INSTANTIATE_TEST_SUITE_P(All, DrivenOn, testing::Values(DeviceKind::cpu, DeviceKind::cuda),
+                         [](const auto& test) { return std::string(name_of(Device{.kind = test.param})); });
+
+TEST_P(DrivenOn, ForcesFollowTheDrive) {
+  const GroupState now = read_state(*simulation_);
+  const ColorValues values = Coloring(*simulation_, color_quantity("force")).values(now);
+  EXPECT_NEAR(values.spring[0], 50 * -0.1f, 1e-3);        // sin(pi/2) = 1: 10 % longer, it pushes
+  EXPECT_NEAR(values.spring[1], 50 * 0.1f * 0.5f, 1e-3);  // 5 % shorter, it pulls
+  const std::vector<Vec3> forces = net_forces(*simulation_, 1, now);
+  EXPECT_NEAR(forces[0].x, 2.5f, 1e-3);
+  EXPECT_NEAR(forces[1].x, -2.5f, 1e-3);
+}
+
+TEST_P(DrivenOn, MusclesGlowAsTheyAreDriven) {
+  GroupScene scene(group_of(*simulation_), {{0, 0, 0}, {5, 0, 0}}, {});
+  DetailObserver observer(*simulation_, {});
+  const auto telemetry = simulation_->telemetry();
+  const auto glow = [&](std::size_t robot) {
+    const render::Scene& drawn = scene.scene();
+    return drawn.materials[drawn.placements[robot].first_material + 1].activation;
+  };
+  scene.update(simulation_->time(), telemetry, observer.observe(telemetry));
+  EXPECT_NEAR(glow(0), -1, 1e-5);
+  EXPECT_NEAR(glow(1), 0.5, 1e-5);
+  simulation_->hold_drives({});
+  simulation_->step();
+  scene.update(simulation_->time(), telemetry, observer.observe(telemetry));
+  EXPECT_NEAR(glow(1), -1, 1e-5);
 }
 
 TEST(RoundUp, GivesOneTwoFive) {
