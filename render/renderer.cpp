@@ -41,6 +41,10 @@ bool draws_inside(const Scene& scene) {
   return scene.cut && scene.show.skin && !scene.show.springs && !scene.show.masses;
 }
 
+bool has_ground_cover(const Scene& scene) {
+  return scene.ground_cover && scene.surroundings != Surroundings::none && scene.ground_cover->height > 0;
+}
+
 std::string skin_variant(const Scene& scene) {
   const bool rounded = any_placement(scene, [](const Placement& p) { return p.smooth; });
   const bool marked = any_placement(scene, [](const Placement& p) { return p.faulty; });
@@ -197,6 +201,7 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
   fit.fit(frame.last(), bounds.boxes(), bodies.body_count(), settings.shadow_side, settings.ground_side);
   frame.bind_uniform(0);
   variant = surroundings_variant(scene, block);
+  if (has_ground_cover(scene)) ground_cover.place(scene, camera, bounds, bodies.body_count());
   if (is_fine) {
     fine->follow(bodies);
     scene_buffers.bind(fine->bodies());
@@ -246,7 +251,7 @@ void Renderer::Parts::draw_light(const Scene& scene) {
   timer.mark("light on skins");
 }
 
-void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
+void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera, const Style& style) {
   glBindTextureUnit(binding::colormap, colormaps.get());
   if (draws_inside(scene)) section.draw(bodies, scene);
   glBindFramebuffer(GL_FRAMEBUFFER, targets.drawing.get());
@@ -265,9 +270,11 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera) {
   passes->lattice.draw(bodies, scene);
   passes->annotation.draw_arrows(scene.arrows);
   timer.mark("springs and masses");
+  if (has_ground_cover(scene)) ground_cover.draw(scene, style, variant);
   glDepthFunc(GL_GEQUAL);
   passes->backdrop.draw(variant + (shows_horizon(camera, width, height) ? "#define HORIZON\n" : ""));
   if (scene.surroundings == Surroundings::land) patches.draw(scene.patches, variant);
+  if (has_ground_cover(scene)) ground_cover.draw_shades(scene);
   timer.mark("surroundings");
 }
 
@@ -286,7 +293,7 @@ void Renderer::Parts::draw_light_of(const Scene& scene, const Camera& camera, co
   prepare(scene, camera, style, noise);
   timer.mark("positions");
   draw_light(scene);
-  draw_solid(scene, camera);
+  draw_solid(scene, camera, style);
   if (scene.against_light && scene.surroundings != Surroundings::none) draw_beams();
   glDepthFunc(GL_GREATER);
   passes->annotation.draw_tiles(scene.tiles);

@@ -25,6 +25,7 @@
 
 #include "render/passes/annotation_pass.h"
 #include "render/passes/cut_passes.h"
+#include "render/passes/ground_cover_pass.h"
 #include "render/passes/lattice_pass.h"
 #include "render/passes/light_pass.h"
 #include "render/passes/outline_pass.h"
@@ -91,6 +92,7 @@ struct Renderer::Parts {
   FitPass fit;
   CutPass cut;
   PatchPass patches;
+  GroundCoverPass ground_cover;
   SectionPass section;
   OutlinePass outline;
   GhostPass ghosts;
@@ -108,7 +110,7 @@ struct Renderer::Parts {
   void draw_light(const Scene& scene);
   SkinPass& skin() { return is_fine ? fine->skin() : passes->skin; }
   void choose_skin(const Scene& scene);
-  void draw_solid(const Scene& scene, const Camera& camera);
+  void draw_solid(const Scene& scene, const Camera& camera, const Style& style);
   void draw_beams() const;
 };
 

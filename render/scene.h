@@ -112,6 +112,12 @@ struct Patch {
   Vector2 slide{0, 0};   // added to the picture's coordinates for the ground's texture and lines [m]
 };
 
+// Plants and stones on the floor of water and land, never in a body or higher than the room below it.
+struct GroundCover {
+  float height = 0.3f;  // of the tallest plants; stones and distances follow from it [m]
+  Vector2 bare_low{1e9f, 1e9f}, bare_high{1e9f, 1e9f};  // a rectangle where nothing grows [m]
+};
+
 // A body in one translucent color, without a shadow. What is nearer hides it.
 struct Ghost {
   std::span<const float> positions;      // 3 per mass
@@ -161,6 +167,7 @@ struct Scene {
   double time = 0;          // moves caustics and particles [s]
 
   std::span<const Patch> patches;  // on land
+  std::optional<GroundCover> ground_cover;
   std::span<const Tile> tiles;
   std::span<const Text> texts;
   std::span<const Arrow> arrows;

@@ -20,6 +20,9 @@ Style dark_water() {
   s.caustics = 0.55f;
   s.glow = 1.5f;
   s.vignette = 0.45f;
+  s.plant_low = {0.008f, 0.040f, 0.045f};
+  s.plant_high = {0.050f, 0.175f, 0.125f};
+  s.stone = {0.050f, 0.085f, 0.100f};
   return s;
 }
 
@@ -37,6 +40,9 @@ Style light_water() {
   s.caustics = 0.40f;
   s.glow = 0.6f;
   s.vignette = 0.15f;
+  s.plant_low = {0.06f, 0.16f, 0.13f};
+  s.plant_high = {0.22f, 0.42f, 0.25f};
+  s.stone = {0.26f, 0.29f, 0.28f};
   return s;
 }
 
@@ -87,6 +93,9 @@ Style dark_land() {
   s.floor_color = {0.150f, 0.122f, 0.088f};
   s.line_color = {0.26f, 0.26f, 0.25f};
   s.fog = {0.10f, 0.11f, 0.13f};
+  s.plant_low = {0.075f, 0.070f, 0.034f};
+  s.plant_high = {0.270f, 0.225f, 0.095f};
+  s.stone = {0.190f, 0.160f, 0.130f};
   return s;
 }
 
@@ -102,6 +111,9 @@ Style light_land() {
   s.floor_color = {0.45f, 0.41f, 0.335f};
   s.line_color = {0.20f, 0.19f, 0.17f};
   s.fog = {0.10f, 0.11f, 0.13f};
+  s.plant_low = {0.17f, 0.19f, 0.09f};
+  s.plant_high = {0.40f, 0.42f, 0.19f};
+  s.stone = {0.36f, 0.34f, 0.31f};
   return s;
 }
 
@@ -117,6 +129,9 @@ Style style_of(Surroundings surroundings, Theme theme, bool values) {
     s.backdrop_high *= dimmed_water;
     s.backdrop_low *= dimmed_water;
     s.floor_color *= dimmed_water;
+    s.plant_low *= dimmed_water;
+    s.plant_high *= dimmed_water;
+    s.stone *= dimmed_water;
   }
   s.text = dark ? rgb(0xf2f6f8) : rgb(0x16232c);
   s.text_edge_opacity = dark ? 0.85f : 0.0f;
@@ -138,6 +153,9 @@ void set_against_light(Style& s, const KeyLight& light, Surroundings surrounding
     s.sky_light = {0.22f, 0.27f, 0.40f};
     s.ground_light = {0.16f, 0.12f, 0.08f};
     s.floor_color = {0.30f, 0.225f, 0.150f};
+    s.plant_low = {0.11f, 0.085f, 0.040f};
+    s.plant_high = {0.34f, 0.245f, 0.090f};
+    s.stone = {0.20f, 0.155f, 0.115f};
     s.backdrop_high = {0.52f, 0.31f, 0.18f};
     s.backdrop_low = {0.030f, 0.080f, 0.230f};
     s.fog = {0.045f, 0.050f, 0.058f};

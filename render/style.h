@@ -14,6 +14,8 @@ struct Style {
   float key_size = 0.08f;               // tangent of the key light's half angle; larger = softer shadows
   Vector3 backdrop_high, backdrop_low;  // far away: level and above; straight down (on land straight up)
   Vector3 floor_color, line_color;
+  Vector3 plant_low{0.02f, 0.05f, 0.03f}, plant_high{0.10f, 0.22f, 0.12f};  // at their feet and tips
+  Vector3 stone{0.12f, 0.12f, 0.12f};
   Vector3 fog{0, 0, 0};  // extinction of each color [1 / distance from eye to target]
   float caustics = 0;    // contrast of the light pattern under water
   float glow = 1;        // of contracting muscles

@@ -30,6 +30,15 @@ float sand_below(std::span<const render::Bounds> robots) {
   return group.empty() ? 0 : group.low.z - 0.5f * (group.high.z - group.low.z) - 2 * tallest;
 }
 
+// Plants that suit the robots: in water about as tall as they are wide, on land short grass.
+render::GroundCover ground_cover_for(std::span<const Room> rooms, bool land) {
+  std::vector<float> radii;
+  for (const Room& room : rooms) radii.push_back(room.radius);
+  if (radii.empty()) radii.push_back(0.5f);
+  std::ranges::nth_element(radii, radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2));
+  return {.height = (land ? 0.35f : 1.15f) * std::max(1e-3f, radii[radii.size() / 2])};
+}
+
 // Between marks on trails and in lanes: a round length of about one robot.
 float mark_distance_for(std::span<const Room> rooms) {
   float sum = 0;
@@ -73,7 +82,11 @@ GroupScene::GroupScene(const Group& given, std::vector<render::Vector3> offsets,
   place_floor();
 }
 
-void GroupScene::place_floor() { scene_.floor = has_ground(environment_) ? 0 : sand_below(bounds_); }
+void GroupScene::place_floor() {
+  const bool land = has_ground(environment_);
+  scene_.floor = land ? 0 : sand_below(bounds_);
+  scene_.ground_cover = ground_cover_for(rooms_, land);
+}
 
 // The parts of the scene that depend only on the settings and the environment.
 void GroupScene::show_surroundings() {

@@ -73,6 +73,7 @@ TEST_P(GoldenTest, PictureMatchesItsReference) {
   scene.theme = c.theme;
   scene.show = c.show;
   scene.floor = -0.45f;
+  if (c.show.skin) scene.ground_cover = GroundCover{.height = 0.3f};
   scene.time = 1.7;
   std::vector<Bounds> boxes;
   for (std::size_t i = 0; i < group.bodies.size(); ++i)
