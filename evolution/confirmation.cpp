@@ -42,7 +42,7 @@ std::string chaos(const Confirmation& checked, double same) {
 }
 
 // Empty = it does not depend on dt.
-std::string dependence(const Confirmation& checked, double same) {
+std::string dependence(const Confirmation& checked, double same, const std::string& what) {
   for (const CheckedStep& step : checked.steps)
     if (!is_sound(step)) return fate_text(step);
   const CheckedStep &coarse = checked.steps.front(), &fine = checked.steps.back();
@@ -50,7 +50,7 @@ std::string dependence(const Confirmation& checked, double same) {
   const double accepted =
       std::max({most_change_with_dt * scale, same, coarse.score.between_quartiles(), fine.score.between_quartiles()});
   if (change <= accepted) return "";
-  return "the median is " + fixed_text(coarse.score.median, 4) + " " + at(coarse) + " and " +
+  return "the " + what + " is " + fixed_text(coarse.score.median, 4) + " " + at(coarse) + " and " +
          fixed_text(fine.score.median, 4) + " " + at(fine);
 }
 
@@ -72,7 +72,7 @@ CheckedStep checked_step(std::span<const Evaluation> trials, const EvaluationReq
     steady_trials += values[steady];
   }
   if (!is_sound(step)) return step;
-  step.score = spread_of(std::move(scores));
+  step.score = settings.mean ? mean_and_error(scores) : spread_of(std::move(scores));
   step.steady_share = steady_trials / static_cast<double>(trials.size());
   return step;
 }
@@ -87,7 +87,7 @@ std::optional<Verdict> verdict_named(std::string_view name) {
   return static_cast<Verdict>(found - std::begin(names));
 }
 
-void judge(Confirmation& checked, double same, bool travels) {
+void judge(Confirmation& checked, double same, bool travels, bool of_means) {
   const auto decide = [&](Verdict verdict, std::string reason) {
     checked.verdict = verdict;
     checked.reason = std::move(reason);
@@ -95,8 +95,9 @@ void judge(Confirmation& checked, double same, bool travels) {
   const CheckedStep& first = checked.steps.front();
   if (first.fate == Fate::failed) return decide(Verdict::failed, std::move(checked.reason));
   if (!is_sound(first)) return decide(Verdict::unsound, fate_text(first));
-  if (std::string reason = chaos(checked, same); !reason.empty()) return decide(Verdict::chaotic, std::move(reason));
-  if (std::string reason = dependence(checked, same); !reason.empty())
+  if (std::string reason = of_means ? "" : chaos(checked, same); !reason.empty())
+    return decide(Verdict::chaotic, std::move(reason));
+  if (std::string reason = dependence(checked, same, of_means ? "mean" : "median"); !reason.empty())
     return decide(Verdict::depends_on_dt, std::move(reason));
   if (travels && first.steady_share < 0.5)
     return decide(Verdict::transient, "the speeds in the second and the last third differ by more than 20 % in " +
@@ -139,10 +140,11 @@ std::optional<std::vector<Confirmation>> check_robots(
     if (watch && !watch(done, all)) return std::nullopt;
     if (device_name) *device_name = evaluator.device_name();
   }
-  constexpr std::string_view distances[] = {"distance", "-target_distance", "target_approach"};
+  constexpr std::string_view distances[] = {"distance", "-target_distance", "target_approach", "-target_nearest"};
   const bool is_distance = std::ranges::find(distances, objective.formula()) != std::end(distances);
   const bool travels = std::ranges::any_of(objective.uses(), [](std::size_t q) { return quantities()[q].of_travel; });
-  for (std::size_t i = 0; i < count; ++i) judge(checked[i], is_distance ? same_place * lengths[i] : 0, travels);
+  for (std::size_t i = 0; i < count; ++i)
+    judge(checked[i], is_distance ? same_place * lengths[i] : 0, travels, trials.mean);
   return checked;
 }
 

@@ -56,9 +56,12 @@ class Tally {
   }
 
   Assessment result(std::vector<double> interim_scores) {
-    if (assessment_.fate != Fate::failed) assessment_.values = together(values_);
+    if (assessment_.fate != Fate::failed)
+      for (std::size_t q = 0; q < values_.size(); ++q)
+        assessment_.values.push_back(settings_.median ? together(quantities()[q], values_[q]) : mean_of(values_[q]));
     if (is_scored(assessment_.fate)) {
-      assessment_.scores = together(scores_);
+      for (const std::vector<double>& row : scores_)
+        assessment_.scores.push_back(mean_counts() ? mean_of(row) : median_of(row));
       if (settings_.median && trials_ > 1) add_quartiles();
     } else {
       assessment_.scores.assign(objectives_.size(), worst_score);
@@ -74,17 +77,13 @@ class Tally {
     assessment_.violation = std::numeric_limits<double>::infinity();
     if (assessment_.problem.empty()) assessment_.problem = objective.undefined_text();
   }
-  // Of each row, one number per trial.
-  std::vector<double> together(const std::vector<std::vector<double>>& rows) const {
-    std::vector<double> numbers;
-    for (const std::vector<double>& row : rows)
-      numbers.push_back(settings_.median ? median_of(row)
-                                         : std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(trials_));
-    return numbers;
+  bool mean_counts() const { return settings_.mean || !settings_.median; }
+  double mean_of(const std::vector<double>& row) const {
+    return std::accumulate(row.begin(), row.end(), 0.0) / static_cast<double>(trials_);
   }
   void add_quartiles() {
     for (const std::vector<double>& scores : scores_) {
-      const Spread spread = spread_of(scores);
+      const Spread spread = settings_.mean ? mean_and_error(scores) : spread_of(scores);
       assessment_.lower_quartiles.push_back(spread.lower_quartile);
       assessment_.upper_quartiles.push_back(spread.upper_quartile);
     }

@@ -2,6 +2,7 @@
 #include "mercury/trials.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/real_body.h"
+#include "robots/portable_math.h"
 
 namespace mercury {
 namespace {
@@ -70,6 +72,27 @@ class TrialSource {
   std::mutex mutex_;
   std::map<std::size_t, std::shared_ptr<Taken>> taken_;
 };
+
+// Of the masses at these positions [m].
+std::array<double, 3> center_of(const Robot& robot, std::span<const Vec3> positions) {
+  std::array<double, 3> sum{};
+  double mass = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto m = static_cast<double>(mass_of(robot, i));
+    mass += m;
+    sum[0] += m * static_cast<double>(positions[i].x);
+    sum[1] += m * static_cast<double>(positions[i].y);
+    sum[2] += m * static_cast<double>(positions[i].z);
+  }
+  for (double& each : sum) each /= mass;
+  return sum;
+}
+
+// The first trial has the noise of a robot outside of trials.
+std::uint64_t noise_seed_of(std::uint64_t seed, std::size_t trial) {
+  constexpr std::uint64_t of_noise = 0x6e6f697365000u;
+  return trial == 0 ? 0 : seed_of(seed_of(seed, trial), of_noise);
+}
 
 float shortest_rest_length(const Robot& robot) {
   if (robot.springs.empty()) return 0;
@@ -138,10 +161,14 @@ EvaluationRequest trial_request(const TrialSettings& settings, const Configurati
                             .sample_every = std::max<std::int64_t>(1, steps_in(trial_sample_period)),
                             .folding = measured_folding(settings),
                             .hashes = true};
-  if (settings.jitter > 0)
-    request.start = [settings, seed](std::size_t index, const Robot& robot, std::span<Vec3> positions) {
-      add_jitter(robot, settings, seed, index % static_cast<std::size_t>(settings.trials), positions);
+  const auto trials = static_cast<std::size_t>(settings.trials);
+  if (begins_elsewhere(settings))
+    request.start = [=, environment = configuration.environment](std::size_t index, const Robot& robot,
+                                                                 std::span<Vec3> positions) {
+      begin_trial(robot, settings, environment, seed, index % trials, positions);
     };
+  if (settings.noise_per_trial && trials > 1)
+    request.noise_seed = [=](std::size_t index) { return noise_seed_of(seed, index % trials); };
   return request;
 }
 
@@ -163,6 +190,42 @@ void add_jitter(const Robot& robot, const TrialSettings& settings, std::uint64_t
       const double displacement = deviation * random.normal();
       if (!is_fixed[i]) positions[i].*axis = static_cast<float>(static_cast<double>(positions[i].*axis) + displacement);
     }
+}
+
+bool begins_elsewhere(const TrialSettings& settings) {
+  return settings.jitter > 0 || settings.target_radius > 0 || settings.turned;
+}
+
+void begin_trial(const Robot& robot, const TrialSettings& settings, const Environment& environment, std::uint64_t seed,
+                 std::size_t trial, std::span<Vec3> positions) {
+  constexpr std::uint64_t of_turn = 0x7475726e0000u, of_place = 0x706c616365000u;
+  const auto move = [&](const auto& moved) {
+    for (Vec3& position : positions) {
+      const std::array<double, 3> at =
+          moved(static_cast<double>(position.x), static_cast<double>(position.y), static_cast<double>(position.z));
+      position = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+    }
+  };
+  std::array<double, 3> center = center_of(robot, positions);
+  if (settings.turned) {
+    const auto [sine, cosine] = wave(Random(seed_of(seed_of(seed, trial), of_turn)).uniform());
+    move([&, s = sine, c = cosine](double x, double y, double z) -> std::array<double, 3> {
+      const double dx = x - center[0], dy = y - center[1];
+      return {center[0] + c * dx - s * dy, center[1] + s * dx + c * dy, z};
+    });
+  }
+  if (settings.target_radius > 0) {
+    Random random(seed_of(seed_of(seed, trial), of_place));
+    const auto [sine, cosine] = wave(random.uniform());
+    const double radius = settings.target_radius * (1 - settings.target_spread * random.uniform());
+    const double up = settings.target_sphere ? random.uniform(-1, 1) : 0, along = std::sqrt(1 - up * up);
+    const Vec3 target = environment.target;
+    const std::array<double, 3> by{static_cast<double>(target.x) + radius * along * cosine - center[0],
+                                   static_cast<double>(target.y) + radius * along * sine - center[1],
+                                   static_cast<double>(target.z) + radius * up - center[2]};
+    move([&](double x, double y, double z) -> std::array<double, 3> { return {x + by[0], y + by[1], z + by[2]}; });
+  }
+  if (settings.jitter > 0) add_jitter(robot, settings, seed, trial, positions);
 }
 
 std::span<const Limit> limits() { return limits_table; }

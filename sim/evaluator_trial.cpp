@@ -57,10 +57,14 @@ bool PortionTrial::run() {
   if (simulation_.size() == 0) return true;
   simulation_.measure_folding(request_.folding);
   if (request_.start) place();
+  if (request_.noise_seed && simulation_.has_brains())
+    for (std::size_t i = 0; i < simulation_.size(); ++i)
+      simulation_.set_noise_seed(i, request_.noise_seed(results_[candidates_[i]].index));
   if (!settle()) return false;
   settled_ = simulation_.steps();
   measures_.reserve(simulation_.size());
-  for (const Telemetry& start : simulation_.telemetry()) measures_.emplace_back(start);
+  for (const Telemetry& start : simulation_.telemetry())
+    measures_.emplace_back(start, simulation_.configuration().environment);
   for (const std::int64_t check : request_.checks) {
     if (!advance(check)) return false;
     if (steps_done() < check) break;  // it stops, or no robot is left

@@ -293,8 +293,41 @@ bool Simulation::Parts::host_thinks() {
   return !brains.think_in_backend(*backend);
 }
 
+std::optional<std::int64_t> Simulation::Parts::push_step() const {
+  const Environment& environment = configuration.environment;
+  if (environment.push == Vec3{}) return std::nullopt;
+  const double steps = (static_cast<double>(environment.push_at) - clock.base_time) / clock.dt;
+  if (!(steps > -0.5 && steps < 1e15)) return std::nullopt;
+  const std::int64_t step = clock.base_step + std::llround(steps);
+  return step < clock.step ? std::nullopt : std::optional(step);
+}
+
+bool Simulation::Parts::pushes_within(std::int64_t steps) const {
+  const std::optional<std::int64_t> at = push_step();
+  return at && *at < clock.step + steps;
+}
+
+void Simulation::Parts::push() {
+  std::vector<Vec3> positions(offsets.back()), velocities(offsets.back());
+  backend->read_positions(positions);
+  backend->read_velocities(velocities);
+  const std::vector<RobotStatus> statuses = backend->statuses();
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (statuses[i].exploded_step >= 0) continue;
+    const auto own = [&](std::vector<Vec3>& all) { return std::span(all).subspan(offsets[i], masses(i)); };
+    const std::span<Vec3> moving = own(velocities);
+    std::vector<bool> is_fixed(moving.size());
+    for (const std::uint16_t mass : robots[i]->fixed) is_fixed[mass] = true;
+    for (std::size_t k = 0; k < moving.size(); ++k)
+      if (!is_fixed[k]) moving[k] = moving[k] + configuration.environment.push;
+    backend->write(i, own(positions), moving);
+  }
+}
+
 std::int64_t Simulation::Parts::before_step() {
   std::int64_t steps = std::numeric_limits<std::int64_t>::max();
+  const std::optional<std::int64_t> pushed_at = push_step();
+  if (pushed_at == clock.step) push();
   const bool on_host = host_thinks();
   if (!brains.empty()) {
     if (on_host && brains.steps_until_thought(clock) == 0) {
@@ -316,6 +349,7 @@ std::int64_t Simulation::Parts::before_step() {
     }
   }
   shared_actuation.apply(*backend, clock.step, robots, changed_tables);
+  if (pushed_at && *pushed_at > clock.step) steps = std::min(steps, *pushed_at - clock.step);
   return steps;
 }
 
@@ -329,7 +363,7 @@ void Simulation::Parts::advance(std::int64_t steps) {
 }
 
 void Simulation::step_in_stream(std::int64_t steps, void* cuda_stream) {
-  if (cuda_device() < 0 || parts_->host_thinks()) return step(steps);
+  if (cuda_device() < 0 || parts_->host_thinks() || parts_->pushes_within(steps)) return step(steps);
   if (steps < 0) throw std::invalid_argument("the number of steps must be 0 or more");
   if (steps > 0 && size() > 0) {
     parts_->before_step();
@@ -342,7 +376,8 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
   if (every <= 0 || steps < 0 || steps % every != 0)
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
-  if (measures_folding() || parts_->host_thinks()) {  // which may need the positions between samples
+  // These may need the positions between samples.
+  if (measures_folding() || parts_->host_thinks() || parts_->pushes_within(steps)) {
     for (std::size_t first = 0; first < samples.size(); first += size()) {
       step(every);
       std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));

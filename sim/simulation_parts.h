@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -82,6 +83,12 @@ struct Simulation::Parts {
     out.culprit_spring = known.culprit_spring;
   }
   void change_clock(const Clock& changed);
+
+  // Adds the environment's push to the velocities of all robots that have not exploded.
+  void push();
+  // When the environment pushes; nothing = it does not, or not any more.
+  std::optional<std::int64_t> push_step() const;
+  bool pushes_within(std::int64_t steps) const;
 
   // Whether there are brains that think here, between calls of the backend.
   bool host_thinks();

@@ -92,6 +92,11 @@ constexpr Column table[] = {
      figure_of<&RobotResult::inverted>},
     {{"overlap", "1", "largest share of the masses that were within other parts of the body; the same"},
      figure_of<&RobotResult::overlap>},
+    {{"reached", "1",
+      "share of the trials in which the center of mass came within `--reach` of the target; of robots that sense it, "
+      "and "
+      "of all where the options name a target"},
+     figure_of<&RobotResult::reached>},
     {{"exploded", "", "`true` or `false`"},
      [](const RobotResult& robot) { return robot.was_stepped() ? robot.exploded() : Cell(); }},
     {{"exploded_at", "s", "time of the explosion, settling included"}, figure_of<&RobotResult::exploded_at>},
@@ -143,6 +148,14 @@ double quantity(std::string_view name, const Evaluation& evaluation, const Confi
       {.robot = *evaluation.robot, .evaluation = evaluation, .configuration = configuration});
 }
 
+bool has_target(const Robot& robot, const Environment& environment, const TrialSettings& settings) {
+  constexpr Environment usual{};
+  return settings.target_radius > 0 || environment.target != usual.target || environment.reach != usual.reach ||
+         std::ranges::any_of(robot.sensors, [](const Sensor& sensor) {
+           return sensor.kind == SensorKind::target_direction || sensor.kind == SensorKind::target_distance;
+         });
+}
+
 RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationRequest& request,
                             const TrialSettings& settings) {
   RobotResult result{.fate = fate_of(evaluation, request, settings), .failure = evaluation.failure};
@@ -176,6 +189,8 @@ RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationReques
   result.strained_share = evaluation.strained_share;
   result.inverted = evaluation.inverted;
   result.overlap = evaluation.overlap;
+  if (has_target(*evaluation.robot, configuration.environment, settings))
+    result.reached = quantity("reached", evaluation, configuration);
   return result;
 }
 
@@ -193,6 +208,9 @@ void take_medians(RobotResult& result, std::span<const RobotResult> trials) {
   for (Vec3 RobotResult::*place : {&RobotResult::start, &RobotResult::end})
     for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z})
       result.*place.*axis = static_cast<float>(median([&](const RobotResult& trial) { return trial.*place.*axis; }));
+  std::vector<double> reached;
+  for (const RobotResult& trial : trials) reached.push_back(trial.reached);
+  result.reached = mean_and_error(reached).median;
   result.steady = median([](const RobotResult& trial) { return trial.steady; }) > 0.5 ? 1 : 0;
   std::vector<double> distances;
   for (const RobotResult& trial : trials) distances.push_back(trial.distance);

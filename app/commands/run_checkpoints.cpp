@@ -77,7 +77,8 @@ ResumedRun resumed_run(Checkpoint checkpoint, const std::filesystem::path& file,
   for (const CheckpointRobot& robot : checkpoint.notes.failed)
     run.failed.push_back({.identity = identity_of(robot), .failure = robot.failure});
   run.progress.sampled = checkpoint.notes.sampled;
-  for (const TrialMeasures::Sums& sums : checkpoint.notes.measures) run.progress.measures.emplace_back(sums);
+  for (const TrialMeasures::Sums& sums : checkpoint.notes.measures)
+    run.progress.measures.emplace_back(sums, run.simulation.configuration().environment);
   run.notes = std::move(checkpoint.notes);
   return run;
 }

@@ -271,7 +271,7 @@ int run_in_one(const RunOptions& options, const RobotSequence& robots, const Con
   GatheredRobots gathered = gather(robots);
   Simulation simulation(configuration, std::move(gathered.robots), shown_work());
   print_notes(simulation.notes());
-  begin_with_jitter(simulation, trials, seed);
+  begin_first_trial(simulation, trials, seed);
   std::optional<Checkpoints> checkpoints =
       checkpoints_of(options, notes_of(options, configuration, trials, gathered.identities, gathered.failed));
   return run_watched(options, open_recorder(options, simulation), std::move(checkpoints), std::move(gathered.failed),

@@ -127,7 +127,8 @@ RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities,
                    .resumed = simulation.steps(),
                    .interrupted = trial.sampled < 0 && !advance.to(start)};
   if (trial.sampled < 0 && !report.interrupted) {
-    for (const Telemetry& telemetry : simulation.telemetry()) trial.measures.emplace_back(telemetry);
+    for (const Telemetry& telemetry : simulation.telemetry())
+      trial.measures.emplace_back(telemetry, simulation.configuration().environment);
     trial.sampled = simulation.steps();
   }
   const auto add_sample = [&] {
@@ -219,13 +220,14 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   return report;
 }
 
-void begin_with_jitter(Simulation& simulation, const TrialSettings& trials, std::uint64_t seed) {
-  if (trials.jitter == 0) return;
+void begin_first_trial(Simulation& simulation, const TrialSettings& trials, std::uint64_t seed) {
+  if (!begins_elsewhere(trials)) return;
   std::vector<Vec3> positions;
   for (std::size_t i = 0; i < simulation.size(); ++i) {
     const std::vector<Vec3>& rest = simulation.robot(i).masses;
     positions.insert(positions.end(), rest.begin(), rest.end());
-    add_jitter(simulation.robot(i), trials, seed, 0, std::span(positions).last(rest.size()));
+    begin_trial(simulation.robot(i), trials, simulation.configuration().environment, seed, 0,
+                std::span(positions).last(rest.size()));
   }
   simulation.reset_to(positions);
 }

@@ -62,7 +62,11 @@ std::string trials_text(const TrialSettings& trials) {
   if (trials.trials > 1 && trials.delay > 0) text += fmt::format(", started up to {:g} s later", trials.delay);
   if (trials.noise > 0) text += fmt::format(", noise {:g}", trials.noise);
   if (trials.damage > 0) text += fmt::format(", damage {:g}", trials.damage);
-  if (trials.trials > 1) text += trials.median ? ", the median counts" : ", the mean counts";
+  if (trials.trials > 1) text += trials.median && !trials.mean ? ", the median counts" : ", the mean counts";
+  if (trials.target_radius > 0)
+    text += fmt::format(", {:g} m from the target", trials.target_radius * (1 - trials.target_spread)) +
+            (trials.target_spread > 0 ? fmt::format(" to {:g} m", trials.target_radius) : "");
+  if (trials.turned) text += ", turned at random";
   text += fmt::format(", strain limit {:g}", trials.strain_limit);
   return text + (trials.racing ? ", racing" : "");
 }

@@ -14,13 +14,13 @@ constexpr const char* trials_group = "Trials";
 
 // --seconds is an option of the simulation; what else is left out has no option.
 bool is_of_every_measurement(std::string_view name) {
-  constexpr std::string_view names[] = {"settle",        "trials",         "jitter",
-                                        "strain_limit",  "strained_limit", "inverted_limit",
-                                        "overlap_limit", "least_masses",   "folding"};
+  constexpr std::string_view names[] = {
+      "settle",       "trials",  "jitter", "strain_limit",  "strained_limit", "inverted_limit", "overlap_limit",
+      "least_masses", "folding", "mean",   "target_radius", "target_spread",  "target_sphere",  "turned"};
   return std::ranges::find(names, name) != std::end(names);
 }
 bool is_of_evolution(std::string_view name) {
-  return !is_of_every_measurement(name) && name != "seconds" && name != "median";
+  return !is_of_every_measurement(name) && name != "seconds" && name != "median" && name != "noise_per_trial";
 }
 
 }  // namespace

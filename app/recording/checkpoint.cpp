@@ -147,18 +147,26 @@ void read_foldings(hid_t parent, std::span<TrialMeasures::Sums> measures) {
   }
 }
 
-// Earlier versions wrote none: it is unknown then.
-void write_positive_work(hid_t parent, std::span<const TrialMeasures::Sums> measures) {
-  std::vector<double> numbers;
-  for (const TrialMeasures::Sums& sums : measures) numbers.push_back(sums.positive_work);
-  write_dataset(parent, "positive_work", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {numbers.size()}, numbers.data());
+// Earlier versions wrote none: they are unknown then.
+constexpr std::pair<const char*, double TrialMeasures::Sums::*> later_numbers[] = {
+    {"positive_work", &TrialMeasures::Sums::positive_work}, {"nearest", &TrialMeasures::Sums::nearest}};
+
+void write_later_numbers(hid_t parent, std::span<const TrialMeasures::Sums> measures) {
+  for (const auto& [name, member] : later_numbers) {
+    std::vector<double> numbers;
+    for (const TrialMeasures::Sums& sums : measures) numbers.push_back(sums.*member);
+    write_dataset(parent, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {numbers.size()}, numbers.data());
+  }
 }
 
-void read_positive_work(hid_t parent, std::span<TrialMeasures::Sums> measures) {
-  std::vector<double> numbers(measures.size(), std::numeric_limits<double>::quiet_NaN());
-  if (has_member(parent, "positive_work")) numbers = read_rows<double>(parent, "positive_work", H5T_NATIVE_DOUBLE, {});
-  if (numbers.size() != measures.size()) throw Error("/checkpoint/positive_work: it has another length than measures");
-  for (std::size_t i = 0; i < measures.size(); ++i) measures[i].positive_work = numbers[i];
+void read_later_numbers(hid_t parent, std::span<TrialMeasures::Sums> measures) {
+  for (const auto& [name, member] : later_numbers) {
+    std::vector<double> numbers(measures.size(), std::numeric_limits<double>::quiet_NaN());
+    if (has_member(parent, name)) numbers = read_rows<double>(parent, name, H5T_NATIVE_DOUBLE, {});
+    if (numbers.size() != measures.size())
+      throw Error(fmt::format("/checkpoint/{}: it has another length than measures", name));
+    for (std::size_t i = 0; i < measures.size(); ++i) measures[i].*member = numbers[i];
+  }
 }
 
 // The states of all brains, robot after robot. Earlier versions wrote none.
@@ -258,7 +266,7 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   write_dataset(group, "measures", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {rows.size(), row_numbers}, rows.data());
   write_ways(group, notes.measures);
   write_foldings(group, notes.measures);
-  write_positive_work(group, notes.measures);
+  write_later_numbers(group, notes.measures);
   write_brain_states(group, simulation);
   if (!notes.recording) return;
   const Handle recording = create_group(group, "recording");
@@ -285,7 +293,7 @@ CheckpointNotes read_notes(hid_t group) {
     notes.measures.push_back(sums_from(row));
   read_ways(group, notes.measures);
   read_foldings(group, notes.measures);
-  read_positive_work(group, notes.measures);
+  read_later_numbers(group, notes.measures);
   if (!has_member(group, "recording")) return notes;
   const Handle recording = open_group(group, "recording");
   notes.recording = {.path = read_text(recording, "path"),

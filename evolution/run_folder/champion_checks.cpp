@@ -108,6 +108,7 @@ TrialSettings check_settings_of(const EvolutionSettings& settings) {
   trials.damage = 0;
   trials.racing = false;
   trials.median = true;
+  trials.noise_per_trial = true;
   return trials;
 }
 

@@ -6,6 +6,7 @@
 #include "mercury/distance.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/quantity.h"
+#include "mercury/spread.h"
 
 namespace mercury {
 namespace {
@@ -31,6 +32,11 @@ double speed_along(const Trial& trial) {
   return ratio(displacement(trial).*axis, seconds(trial));
 }
 
+double length_at_rest(const Trial& trial) {
+  const Vec3 box = box_of(trial.robot);
+  return std::max({box.x, box.y, box.z});
+}
+
 double target_distance(const Trial& trial) {
   return distance_between(center_at_end(trial), trial.configuration.environment.target,
                           trial.configuration.environment);
@@ -40,6 +46,12 @@ double target_approach(const Trial& trial) {
   const Environment& environment = trial.configuration.environment;
   return distance_between(trial.evaluation.start.center_of_mass, environment.target, environment) -
          target_distance(trial);
+}
+
+double reached(const Trial& trial) {
+  const double nearest = trial.evaluation.nearest, reach = static_cast<double>(trial.configuration.environment.reach);
+  if (std::isnan(nearest)) return nearest;
+  return nearest <= (reach > 0 ? reach : length_at_rest(trial) / 2) ? 1 : 0;
 }
 
 double straightness(const Trial& trial) {
@@ -54,11 +66,6 @@ double direction(const Trial& trial) {
 
 double height(const Trial& trial) {
   return std::max(0.0, trial.evaluation.highest - static_cast<double>(trial.evaluation.start.center_of_mass.z));
-}
-
-double length_at_rest(const Trial& trial) {
-  const Vec3 box = box_of(trial.robot);
-  return std::max({box.x, box.y, box.z});
 }
 
 double muscle_share(const Trial& trial) {
@@ -97,7 +104,7 @@ double efficiency(const Trial& trial) {
 }
 
 // name, unit, help, of the body alone, usual range, value, whether it grows with how far the robot gets, whether
-// it needs EvaluationRequest::folding
+// it needs EvaluationRequest::folding, whether it is a share of the trials
 constexpr Quantity table[] = {
     {"distance", "m", "how far the center of mass went from start to end; on land along the ground", false, 0, 5,
      distance, true},
@@ -119,6 +126,10 @@ constexpr Quantity table[] = {
     {"target_distance", "m", "distance of the center of mass from the target at the end; on land along the ground",
      false, 0, 5, target_distance},
     {"target_approach", "m", "by how much target_distance is less than at the start", false, 0, 5, target_approach},
+    {"target_nearest", "m", "least distance of the center of mass from the target; on land along the ground", false, 0,
+     5, [](const Trial& trial) { return trial.evaluation.nearest; }},
+    {"reached", "", "1 if target_nearest came within --reach, else 0; of several trials their share", false, 0, 1,
+     reached, false, false, true},
     {"height", "m", "how far the center of mass rose above its start", false, 0, 1, height},
     {"work", "J", "that the muscles did, less what they took back", false, 0, 100,
      [](const Trial& trial) { return trial.evaluation.work; }},
@@ -167,6 +178,10 @@ std::optional<std::size_t> find_quantity(std::string_view name) {
   const auto* found = std::ranges::find(table, name, &Quantity::name);
   if (found == std::end(table)) return std::nullopt;
   return static_cast<std::size_t>(found - std::begin(table));
+}
+
+double together(const Quantity& quantity, std::vector<double> values) {
+  return quantity.is_share ? mean_and_error(values).median : median_of(std::move(values));
 }
 
 std::vector<double> quantities_of(const Trial& trial) {

@@ -61,6 +61,12 @@ class Settings(TypedDict, total=False):
     overlap_limit: float
     least_masses: float
     median: bool  # of the trials counts, not their mean
+    mean: bool  # their mean counts after all, with all else as in runs whose median counts
+    target_radius: float  # each trial starts this far from the target, in a random direction [m]
+    target_spread: float  # or nearer by up to this share of it
+    target_sphere: bool  # the direction may point up and down, too
+    turned: bool  # each trial starts turned about the vertical by a random angle
+    noise_per_trial: bool  # senses have other noise in each trial but the first
     folding: bool
     racing: bool  # stop robots early that are clearly behind
     confirm: bool  # best/ waits for checks of champions, which `mercury evolve --resume` makes

@@ -50,7 +50,12 @@ sample_every: time between two samples [s]; path, work, highest and the strains 
 environment, solver, dt, damping, device, threads: as in Batch; with "cuda:all", each robot goes to one of the devices.
 trials, jitter: how often each robot is tried, with masses that begin displaced by a normal deviate of this standard
 deviation per coordinate, per shortest rest length; numbers are medians. None = 0.001 with several trials, else 0.
-seed: of the jitter, which is the same for all robots.
+target_radius, target_spread: each trial starts at this distance from the environment's target, in a random direction,
+or nearer by up to this share of it [m]; 0 = where the robot has its masses. quantities["reached"] is the share of the
+trials that came within the environment's `reach` of it.
+target_sphere: whether the direction may point up and down.
+turned: whether each trial starts turned about the vertical by a random angle.
+seed: of jitter, directions and angles, which are the same for all robots. Senses have other noise in each trial.
 folding: whether results have `inverted` and `overlap`, which take all positions from the device.
 hashes, states: whether results have the hash and the masses of the final state.
 memory_limit: of the host, for robots that are made and not yet returned [bytes]; None = a quarter of what is free.
@@ -250,8 +255,9 @@ std::int64_t steps_in(double seconds, double dt, const char* name) {
 
 nb::object evaluate(nb::object source, double seconds, nb::handle environment, const std::string& solver, double dt,
                     double damping, nb::handle device, int threads, double settle, std::optional<double> sample_every,
-                    int trials, std::optional<double> jitter, std::uint64_t seed, bool folding, bool hashes,
-                    bool states, std::optional<std::size_t> memory_limit, std::optional<std::size_t> portion) {
+                    int trials, std::optional<double> jitter, double target_radius, double target_spread,
+                    bool target_sphere, bool turned, std::uint64_t seed, bool folding, bool hashes, bool states,
+                    std::optional<std::size_t> memory_limit, std::optional<std::size_t> portion) {
   const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
   validate(configuration);
   const std::int64_t steps = steps_in(seconds, dt, "seconds"), settling = steps_in(settle, dt, "settle");
@@ -263,6 +269,10 @@ nb::object evaluate(nb::object source, double seconds, nb::handle environment, c
   settings.trials = trials;
   settings.folding = folding;
   settings.jitter = jitter.value_or(trials > 1 ? usual_jitter : 0);
+  settings.target_radius = target_radius;
+  settings.target_spread = target_spread;
+  settings.target_sphere = target_sphere;
+  settings.turned = turned;
   check_parameters(settings);
   EvaluationRequest request = trial_request(settings, configuration, seed);
   request.settling = settling;
@@ -304,13 +314,16 @@ void bind_evaluate(nb::module_& module) {
              nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
              nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,
              nb::arg("sample_every") = nb::none(), nb::arg("trials") = 1, nb::arg("jitter") = nb::none(),
-             nb::arg("seed") = 1, nb::arg("folding") = false, nb::arg("hashes") = false, nb::arg("states") = false,
-             nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(),
+             nb::arg("target_radius") = 0.0, nb::arg("target_spread") = 0.0, nb::arg("target_sphere") = false,
+             nb::arg("turned") = false, nb::arg("seed") = 1, nb::arg("folding") = false, nb::arg("hashes") = false,
+             nb::arg("states") = false, nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(),
              nb::sig("def evaluate(source: Robot | collections.abc.Iterable[Robot] | "
                      "collections.abc.Callable[[int], Robot | None], seconds: float, *, "
                      "environment: Environment | str | None = None, solver: str = 'force', dt: float = 0.001, "
                      "damping: float = 0.1, device: object = 'auto', threads: int = 0, settle: float = 0.0, "
-                     "sample_every: float | None = None, trials: int = 1, jitter: float | None = None, seed: int = 1, "
+                     "sample_every: float | None = None, trials: int = 1, jitter: float | None = None, "
+                     "target_radius: float = 0.0, target_spread: float = 0.0, target_sphere: bool = False, "
+                     "turned: bool = False, seed: int = 1, "
                      "folding: bool = False, hashes: bool = False, states: bool = False, "
                      "memory_limit: int | None = None, portion: int | None = None) -> Results"),
              evaluate_description);

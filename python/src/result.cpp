@@ -54,7 +54,7 @@ nb::dict all_quantities(const Result& self) {
   if (!was_stepped(self)) return values;
   for (const Quantity& each : quantities())
     if (has_figures(self) || each.of_body)
-      values[nb::str(each.name.data(), each.name.size())] = median_of(values_of(self, each));
+      values[nb::str(each.name.data(), each.name.size())] = together(each, values_of(self, each));
   return values;
 }
 
@@ -125,6 +125,9 @@ Repetition repetition_of(const std::vector<const Result*>& results) {
     }
     simulation.reset_to(positions);
   }
+  if (first.request->noise_seed)
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      simulation.set_noise_seed(i, first.request->noise_seed(results[i]->trial));
   const auto steps = static_cast<double>(first.request->settling + first.evaluation.steps);
   return {std::move(simulation), steps * first.request->configuration.dt};
 }

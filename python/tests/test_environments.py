@@ -52,7 +52,7 @@ def test_repr_shows_every_parameter():
     assert repr(Land()) == (
         "Land(friction=0.8, static_friction=0.0, self_collision=True, contact_stiffness=100.0, relative_stiffness=0.0, "
         "contact_distance=0.5, gravity=(0.0, 0.0, -9.81), stiffness_scale=200.0, target=(0.0, 0.0, 0.0), "
-        "light=(0.0, 0.0, 1.0))"
+        "light=(0.0, 0.0, 1.0), reach=0.0, push=(0.0, 0.0, 0.0), push_at=0.0)"
     )
 
 

@@ -45,6 +45,16 @@ TEST(Verdict, IsChaoticIfTheQuartilesOfAnyStepAreAFifthOfTheMedianApart) {
   EXPECT_EQ(last.reason, "the quartiles at dt 0.001 s, -2.2500 and -1.7500, are 25 % of the median apart");
 }
 
+TEST(Verdict, OfMeansOfDifferentTrialsIsNotChaotic) {
+  Confirmation checked{.steps = {step(4e-3, 0.6, 0.4), step(2e-3, 0.7, 0.4), step(1e-3, 0.9, 0.4)}};
+  judge(checked, 0, false, true);
+  EXPECT_EQ(checked.verdict, Verdict::confirmed);
+  checked = {.steps = {step(4e-3, 0.6, 0.2), step(2e-3, 0.7, 0.2), step(1e-3, 0.9, 0.2)}};
+  judge(checked, 0, false, true);
+  EXPECT_EQ(checked.verdict, Verdict::depends_on_dt);
+  EXPECT_EQ(checked.reason, "the mean is 0.6000 at dt 0.004 s and 0.9000 at dt 0.001 s");
+}
+
 TEST(Verdict, DependsOnDtIfTheMedianAtAQuarterIsAnotherOne) {
   EXPECT_EQ(judged(step(4e-3, 2.19, 0), step(2e-3, 9, 0), step(1e-3, 2, 0)).verdict, Verdict::confirmed);
   const Confirmation other = judged(step(4e-3, 2.21, 0), step(2e-3, 2, 0), step(1e-3, 2, 0));

@@ -64,6 +64,91 @@ TEST(Jitter, FixedPointsStay) {
   for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_EQ(moved[i] == Vec3{}, i == 0 || i == 5) << i;
 }
 
+// The center of the masses at the start of a trial.
+Vec3 center_at_start(const Robot& robot, const TrialSettings& settings, const Environment& environment,
+                     std::uint64_t seed, std::size_t trial) {
+  std::vector<Vec3> positions = robot.masses;
+  begin_trial(robot, settings, environment, seed, trial, positions);
+  double sum[3] = {}, mass = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto m = static_cast<double>(mass_of(robot, i));
+    mass += m;
+    sum[0] += m * static_cast<double>(positions[i].x);
+    sum[1] += m * static_cast<double>(positions[i].y);
+    sum[2] += m * static_cast<double>(positions[i].z);
+  }
+  return {static_cast<float>(sum[0] / mass), static_cast<float>(sum[1] / mass), static_cast<float>(sum[2] / mass)};
+}
+
+TEST(StartAroundTheTarget, IsWithinTheRadiusInAnyDirectionAndTheSameForAllRobots) {
+  const Robot robot = random_voxel_robot({}, 1), other = make_voxel_robot(VoxelGrid(2, 3, 1, tissue));
+  Environment environment = Ocean{};
+  environment.target = {5, -3, 2};
+  for (const bool sphere : {false, true}) {
+    const TrialSettings settings{.target_radius = 3, .target_spread = 0.5, .target_sphere = sphere};
+    constexpr int trials = 2000;
+    double sum[3] = {}, squares[3] = {}, distances = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+      const auto number = static_cast<std::size_t>(trial);
+      const Vec3 d = center_at_start(robot, settings, environment, 1, number) - environment.target;
+      const auto r = static_cast<double>(length(d));
+      ASSERT_GE(r, 1.5 - 1e-5);
+      ASSERT_LE(r, 3 + 1e-5);
+      distances += r / trials;
+      const double unit[3] = {d.x / r, d.y / r, d.z / r};
+      for (int k = 0; k < 3; ++k) sum[k] += unit[k] / trials, squares[k] += unit[k] * unit[k] / trials;
+      if (trial > 20) continue;
+      const Vec3 of_other = center_at_start(other, settings, environment, 1, number) - environment.target;
+      EXPECT_LT(length(of_other - d), 1e-5f);
+      EXPECT_GT(length(center_at_start(robot, settings, environment, 2, number) - environment.target - d), 1e-3f);
+    }
+    // Five standard errors. A coordinate of a direction on a circle has the mean 0 and the mean square 1/2; on a sphere
+    // 1/3; on a circle the third one is 0.
+    const double error = 5 / std::sqrt(trials);
+    EXPECT_NEAR(distances, 2.25, 0.75 / std::sqrt(3.0) * error);
+    for (int k = 0; k < 3; ++k) {
+      const double expected = sphere ? 1.0 / 3 : k < 2 ? 0.5 : 0;
+      EXPECT_NEAR(sum[k], 0, std::sqrt(expected) * error + 1e-6) << k;
+      EXPECT_NEAR(squares[k], expected, 0.36 * error * (expected > 0) + 1e-9) << k;
+    }
+  }
+}
+
+TEST(StartTurned, TurnsABodyAboutTheVerticalThroughItsCenter) {
+  const Robot robot = random_voxel_robot({}, 1);
+  const TrialSettings settings{.turned = true};
+  const Vec3 center = center_at_start(robot, {}, Ocean{}, 1, 0);
+  double mean_cosine = 0;
+  constexpr int trials = 1000;
+  for (int trial = 0; trial < trials; ++trial) {
+    std::vector<Vec3> positions = robot.masses;
+    begin_trial(robot, settings, Ocean{}, 1, static_cast<std::size_t>(trial), positions);
+    const Vec3 before = robot.masses.back() - robot.masses.front(), now = positions.back() - positions.front();
+    const double flat = std::hypot(before.x, before.y);
+    mean_cosine += (before.x * now.x + before.y * now.y) / (flat * flat) / trials;
+    if (trial > 20) continue;
+    EXPECT_LT(length(center_at_start(robot, settings, Ocean{}, 1, static_cast<std::size_t>(trial)) - center), 1e-5f);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      EXPECT_EQ(positions[i].z, robot.masses[i].z);
+      EXPECT_NEAR(length(positions[i] - positions[0]), length(robot.masses[i] - robot.masses[0]), 1e-5);
+    }
+  }
+  EXPECT_NEAR(mean_cosine, 0, 5 / std::sqrt(2.0 * trials));
+}
+
+TEST(NoisePerTrial, TheFirstTrialHasThatOfTheRobotAndEachOtherItsOwn) {
+  TrialSettings settings = search_trials();
+  const EvaluationRequest request = trial_request(settings, {}, 5);
+  ASSERT_TRUE(request.noise_seed);
+  EXPECT_EQ(request.noise_seed(0), 0u);
+  EXPECT_EQ(request.noise_seed(3), 0u);  // the first trial of the second robot
+  EXPECT_NE(request.noise_seed(1), 0u);
+  EXPECT_NE(request.noise_seed(1), request.noise_seed(2));
+  EXPECT_EQ(request.noise_seed(1), request.noise_seed(4));
+  EXPECT_NE(request.noise_seed(1), trial_request(settings, {}, 6).noise_seed(1));
+  EXPECT_FALSE(trial_request(TrialSettings{.trials = 3}, {}, 5).noise_seed);  // as runs of earlier versions
+}
+
 TEST(Trials, ARobotIsTakenFromItsSourceOnce) {
   std::map<std::size_t, int> taken;
   const RobotSource robots = [&](std::size_t i) -> std::shared_ptr<const Robot> {
@@ -156,6 +241,42 @@ TEST_P(TrialsOn, AnAssessmentHasTheMedianOfTheTrials) {
     EXPECT_EQ(assessments[c].fate, Fate::sound);
     EXPECT_EQ(assessments[c].violation, 0);
   }
+}
+
+// Of trials around a target, the mean may count; a share is a mean in any case. A body without muscles stays where it
+// is: it has reached what is within half its length from its start.
+TEST_P(TrialsOn, AnAssessmentMayHaveTheMeanOfTheTrialsAndHasTheShareThatReachedTheTarget) {
+  const Robot block = make_voxel_robot(VoxelGrid(4, 2, 2, tissue));  // 0.4 m long
+  const std::unique_ptr<GenomeSpace> space =
+      make_genome_space({.kind = "voxel", .environment = "ocean", .founders = {block}});
+  const std::vector<GenomePointer> candidates{space->random(1, 0)};
+  TrialSettings settings = search_trials();
+  settings.seconds = 0.1;
+  settings.trials = 40;
+  settings.mean = true;
+  settings.target_radius = 1;
+  settings.target_spread = 1;
+  const Configuration configuration{.environment = Ocean{}, .device = device()};
+  const Assessment assessed =
+      make_local_assessor(configuration, settings, {Objective("-target_nearest"), Objective("reached")}, 5)
+          ->assess(candidates, {}, {})
+          .value()
+          .front();
+  double sum = 0, squares = 0, near = 0;
+  for (std::size_t trial = 0; trial < 40; ++trial) {
+    const auto distance =
+        static_cast<double>(length(center_at_start(block, settings, configuration.environment, 5, trial)));
+    sum += distance / 40;
+    squares += distance * distance / 40;
+    near += distance <= 0.2 ? 1.0 / 40 : 0;
+  }
+  ASSERT_GT(near, 0);
+  EXPECT_NEAR(assessed.scores[0], -sum, 1e-4);
+  const double error = std::sqrt((squares - sum * sum) / 39);
+  EXPECT_NEAR(assessed.upper_quartiles[0] - assessed.scores[0], error, 1e-4);
+  EXPECT_NEAR(assessed.scores[0] - assessed.lower_quartiles[0], error, 1e-4);
+  EXPECT_NEAR(assessed.scores[1], near, 1e-9);
+  EXPECT_NEAR(assessed.values[*find_quantity("reached")], near, 1e-9);
 }
 
 // A robot that goes straight ahead at two speeds, v for two thirds of the time and w after.

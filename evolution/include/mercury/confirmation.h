@@ -53,7 +53,7 @@ constexpr TrialSettings check_settings() {
 struct CheckedStep {
   double dt = 0;  // [s]
   Fate fate = Fate::failed;
-  Spread score;             // NaN unless the fate is sound
+  Spread score;             // NaN unless the fate is sound; mean and standard error if the mean counts
   double steady_share = 0;  // of the trials that were steady
   friend bool operator==(const CheckedStep&, const CheckedStep&) = default;
 };
@@ -67,8 +67,8 @@ struct Confirmation {
 };
 
 // Fills in verdict and reason. `same` = scores that differ by less are the same; `travels` = whether the score grows
-// with how far the robot gets.
-void judge(Confirmation& confirmation, double same, bool travels);
+// with how far the robot gets; `of_means` = the scores are means of different trials, whose spread is no chaos.
+void judge(Confirmation& confirmation, double same, bool travels, bool of_means = false);
 
 // One per robot, in their order. The robots may be random ones that cannot be made. `seed` = of the jitter. Returns
 // nothing if `watch`, which is called with the trials that are done, said to stop. Throws DeviceError.

@@ -34,6 +34,7 @@ struct Quantity {
   double (*value)(const Trial& trial) = nullptr;
   bool of_travel = false;   // it grows with how far the robot gets, so it means nothing where no robot can move itself
   bool of_folding = false;  // NaN unless EvaluationRequest::folding
+  bool is_share = false;    // 0 or 1 in a trial; of several trials, the mean is reported
 };
 
 // All quantities. Their order is that of Assessment::values.
@@ -48,6 +49,9 @@ std::optional<std::size_t> find_quantity(std::string_view name);
 inline bool counts(const Quantity& quantity, Fate fate) {
   return quantity.of_body || (fate != Fate::exploded && fate != Fate::failed);
 }
+
+// Of the values of a quantity in several trials: the median, or the mean of a share.
+double together(const Quantity& quantity, std::vector<double> values);
 
 // The values of all quantities after one trial.
 std::vector<double> quantities_of(const Trial& trial);

@@ -36,6 +36,18 @@ inline Spread spread_of(std::vector<double> values) {
   return {quantile(values, 0.25), quantile(values, 0.5), quantile(values, 0.75)};
 }
 
+// The mean in place of the median, and one standard error of it below and above in place of the quartiles. All NaN if
+// one of the values is, or without values.
+inline Spread mean_and_error(std::span<const double> values) {
+  const auto count = static_cast<double>(values.size());
+  double sum = 0, squares = 0;
+  for (const double value : values) sum += value;
+  const double mean = sum / count;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const double error = values.size() > 1 ? std::sqrt(squares / (count - 1) / count) : 0;
+  return {mean - error, mean, mean + error};
+}
+
 inline double median_of(std::vector<double> values) { return spread_of(std::move(values)).median; }
 
 }  // namespace mercury

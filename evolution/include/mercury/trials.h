@@ -41,8 +41,15 @@ struct TrialSettings {
   double overlap_limit = 1;   // share of the masses that may be within other parts of the body at a time
   double least_masses = 0;    // of a network robot
   bool median = false;        // of the trials counts, not their mean
-  bool folding = false;       // measure `inverted` and `overlap`, also where no limit asks for them
-  bool racing = false;        // stop robots that are clearly behind
+  bool mean = false;          // their mean counts after all, with all else as in runs whose median counts
+  double target_radius =
+      0;  // each trial starts this far from the target, in a random direction; 0 = as in the file [m]
+  double target_spread = 0;      // by which share of target_radius it may start nearer
+  bool target_sphere = false;    // the direction may point up and down, too
+  bool turned = false;           // each trial starts turned about the vertical by a random angle
+  bool noise_per_trial = false;  // senses have other noise in each trial but the first
+  bool folding = false;          // measure `inverted` and `overlap`, also where no limit asks for them
+  bool racing = false;           // stop robots that are clearly behind
   friend bool operator==(const TrialSettings&, const TrialSettings&) = default;
 
   static constexpr std::tuple parameters{
@@ -81,6 +88,16 @@ struct TrialSettings {
                 "Network robots of fewer masses are too small: they rank after all sound ones")
           .with_form("N"),
       Parameter("median", &TrialSettings::median, "Take the median of the trials, not their mean"),
+      Parameter("mean", &TrialSettings::mean, "Let the mean of the trials count, not their median"),
+      Parameter("target_radius", &TrialSettings::target_radius, "m", Accepts::at_least_zero, {0, 5},
+                "Start each trial this far from the target, in a random direction; 0 = where the robot's file has it"),
+      Parameter("target_spread", &TrialSettings::target_spread, "", Accepts::between(0, 1), {0, 1},
+                "Start nearer by up to this share of the radius, at random")
+          .with_form("0..1"),
+      Parameter("target_sphere", &TrialSettings::target_sphere,
+                "Start anywhere around the target, also above and below"),
+      Parameter("turned", &TrialSettings::turned, "Start each trial turned about the vertical, by a random angle"),
+      Parameter("noise_per_trial", &TrialSettings::noise_per_trial, "Give senses other noise in each trial"),
       Parameter("folding", &TrialSettings::folding,
                 "Measure how the body is folded, inverted and overlap, as these two limits do"),
       Parameter("racing", &TrialSettings::racing, "Stop robots early that are clearly behind")};
@@ -94,7 +111,12 @@ inline constexpr double usual_jitter = 1e-3;
 // The robot as it is, with the usual limits: that the 99th percentile of the strain of a real body is 0.5, that no part
 // of it is inside out, and that a body is more than a few springs.
 constexpr TrialSettings one_trial() {
-  return {.delay = 0, .strained_limit = 0.01, .inverted_limit = 0, .least_masses = 24, .median = true};
+  return {.delay = 0,
+          .strained_limit = 0.01,
+          .inverted_limit = 0,
+          .least_masses = 24,
+          .median = true,
+          .noise_per_trial = true};
 }
 // What searches use: three trials with jitter, whose median counts.
 constexpr TrialSettings search_trials() {
@@ -123,6 +145,13 @@ RobotSource trial_source(RobotSource robots, const TrialSettings& settings, std:
 // rest length. Fixed points stay. `index` of a trial is as trial_source() counts them.
 void add_jitter(const Robot& robot, const TrialSettings& settings, std::uint64_t seed, std::size_t trial,
                 std::span<Vec3> positions);
+
+// Where the masses are at the start of a trial, from where they are at rest: turned, put around the target, and with
+// jitter, as the settings say. With ground, the robot is set down afterwards.
+void begin_trial(const Robot& robot, const TrialSettings& settings, const Environment& environment, std::uint64_t seed,
+                 std::size_t trial, std::span<Vec3> positions);
+// Whether begin_trial() changes anything.
+bool begins_elsewhere(const TrialSettings& settings);
 
 // What a robot must keep to be sound: no more of a quantity than a parameter of the trials says, or no less.
 struct Limit {

@@ -4,7 +4,7 @@
 //   water      none, drag on faces (as in the paper, or resistive), or drag on masses
 //   ground     none, or a plane
 //   contacts   none, or masses of one robot that repel each other
-//   gravity, a factor for every stiffness, a target and a light for robots that sense them
+//   gravity, a factor for every stiffness, a target and a light for robots that sense them, a push
 //
 // A part is a struct with a name and a table of its parameters (parameters.h); its equations are in
 // sim/physics/environments.h. Ocean, OceanSimple, Land and Water are presets: names for often used combinations.
@@ -141,6 +141,9 @@ struct Environment {
   float stiffness_scale = 1;  // multiplies every stiffness [1]
   Vec3 target{};              // what robots with such sensors see (mercury/brain.h) [m]
   Vec3 light{0, 0, 1};        // [m]
+  float reach = 0;            // distance of the center of mass at which the target is reached; 0 = half a body [m]
+  Vec3 push{};                // velocity that all masses but fixed ones get at once [m/s]
+  float push_at = 0;          // when [s]
   friend bool operator==(const Environment&, const Environment&) = default;
 
   // Those that every environment has.
@@ -150,7 +153,12 @@ struct Environment {
                 "Multiplies every stiffness"),
       Parameter("target", &Environment::target, "m", Accepts::any, {-5, 5},
                 "Place of the target that robots may sense"),
-      Parameter("light", &Environment::light, "m", Accepts::any, {-5, 5}, "Place of the light that robots may sense")};
+      Parameter("light", &Environment::light, "m", Accepts::any, {-5, 5}, "Place of the light that robots may sense"),
+      Parameter("reach", &Environment::reach, "m", Accepts::at_least_zero, {0, 2},
+                "Distance of the center of mass at which the target is reached; 0 = half the body's length"),
+      Parameter("push", &Environment::push, "m/s", Accepts::any, {-3, 3},
+                "Velocity that a push adds to all masses at once"),
+      Parameter("push_at", &Environment::push_at, "s", Accepts::at_least_zero, {0, 10}, "Time of the push")};
 };
 
 // Whether two environments have the same parts, with whatever values.

@@ -55,6 +55,9 @@ struct EvaluationRequest {
   // checked and scheduled once, so this is the cheap way to try a robot several times. Optional. Several threads call
   // it at the same time.
   std::function<void(std::size_t index, const Robot& robot, std::span<Vec3> positions)> start;
+  // Of the noise in a robot's senses (Simulation::set_noise_seed()); none = 0. Several threads call it at the same
+  // time.
+  std::function<std::uint64_t(std::size_t index)> noise_seed;
   // Which of `inverted` and `overlap` the telemetry of a robot has: Simulation::measure_folding(). None = of no robot.
   std::function<MeasuredFolding(const Robot&)> folding;
   bool hashes = false;  // of the final states
@@ -96,7 +99,9 @@ struct Evaluation {
   double positive_work = 0;  // the integral of max(0, P): what they did, without what they took back [J]
   // The integral of |P| = 2 max(0, P) - P [J].
   double absolute_work() const { return 2 * positive_work - work; }
-  double highest = 0;         // largest z of the center of mass of all samples [m]
+  double highest = 0;  // largest z of the center of mass of all samples [m]
+  // Least distance_between() the center of mass and the target of all samples [m]; NaN if it is unknown.
+  double nearest = std::numeric_limits<double>::quiet_NaN();
   double largest_strain = 0;  // of all samples [1]
   double strained_share = 0;  // largest Telemetry::strained_share of all samples [1]
   double inverted =

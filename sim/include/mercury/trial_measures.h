@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "mercury/distance.h"
+#include "mercury/environment.h"
 #include "mercury/evaluator.h"
 
 namespace mercury {
@@ -20,6 +22,7 @@ class TrialMeasures {
     Telemetry start, last;
     double path = 0, work = 0, positive_work = 0, highest = 0, largest_strain = 0, strained_share = 0;
     double inverted = std::numeric_limits<double>::quiet_NaN(), overlap = inverted;  // NaN = not measured
+    double nearest = inverted;                                                       // to the target; NaN = unknown
     double elapsed = 0;  // from the start to the last sample [s]
     // The way of the center of mass: its places at every stride-th sample, from the start; samples are `period` [s]
     // apart. Without places the way is unknown.
@@ -32,15 +35,17 @@ class TrialMeasures {
   static constexpr std::size_t longest_way = 512;
 
   // `start` = the telemetry at the start of the trial.
-  explicit TrialMeasures(const Telemetry& start)
-      : sums_{.start = start,
-              .last = start,
-              .highest = start.center_of_mass.z,
-              .largest_strain = start.largest_strain,
-              .strained_share = start.strained_share,
-              .inverted = start.inverted,
-              .overlap = start.overlap,
-              .way = {start.center_of_mass}} {}
+  explicit TrialMeasures(const Telemetry& start, const Environment& environment = {})
+      : environment_(environment), sums_{.start = start,
+                                         .last = start,
+                                         .highest = start.center_of_mass.z,
+                                         .largest_strain = start.largest_strain,
+                                         .strained_share = start.strained_share,
+                                         .inverted = start.inverted,
+                                         .overlap = start.overlap,
+                                         .nearest =
+                                             distance_between(start.center_of_mass, environment.target, environment),
+                                         .way = {start.center_of_mass}} {}
 
   // `now` = the telemetry `seconds` after the last sample; all samples but the last are equally far apart. A robot that
   // has exploded is frozen: it does no work, though its muscles are still reported to push.
@@ -56,6 +61,7 @@ class TrialMeasures {
     // Where one of both is not measured, the other one.
     sums_.inverted = std::fmax(sums_.inverted, static_cast<double>(now.inverted));
     sums_.overlap = std::fmax(sums_.overlap, static_cast<double>(now.overlap));
+    sums_.nearest = std::min(sums_.nearest, distance_between(now.center_of_mass, environment_.target, environment_));
     sums_.last = now;
     sums_.elapsed += seconds;
     note(now.center_of_mass, seconds);
@@ -73,14 +79,16 @@ class TrialMeasures {
     result.strained_share = sums_.strained_share;
     result.inverted = sums_.inverted;
     result.overlap = sums_.overlap;
+    result.nearest = sums_.nearest;
     result.third = sums_.elapsed / 3;
     result.at_third = place_at(sums_.elapsed / 3);
     result.at_two_thirds = place_at(2 * sums_.elapsed / 3);
   }
 
-  // To go on elsewhere: TrialMeasures(measures.sums()) has the same samples.
+  // To go on elsewhere: TrialMeasures(measures.sums(), environment) has the same samples.
   const Sums& sums() const { return sums_; }
-  explicit TrialMeasures(const Sums& sums) : sums_(sums) {}
+  explicit TrialMeasures(const Sums& sums, const Environment& environment = {})
+      : environment_(environment), sums_(sums) {}
 
  private:
   // Of max(0, P), where P goes from `a` to `b` along a line.
@@ -117,6 +125,7 @@ class TrialMeasures {
     return a + static_cast<float>(std::clamp((time - from) / (to - from), 0.0, 1.0)) * (b - a);
   }
 
+  Environment environment_;
   Sums sums_;
 };
 

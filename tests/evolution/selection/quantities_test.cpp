@@ -95,6 +95,7 @@ TEST_F(OneTrial, OnLandOnlyTheWayAlongTheGroundCounts) {
 TEST_F(OneTrial, ARobotThatStoodStillHasNoNaN) {
   evaluation.end = evaluation.start;
   evaluation.path = 0;
+  evaluation.nearest = 0;
   evaluation.steps = 0;
   evaluation.work = 0;
   evaluation.positive_work = 0;
@@ -103,6 +104,19 @@ TEST_F(OneTrial, ARobotThatStoodStillHasNoNaN) {
   EXPECT_EQ(value("straightness"), 0);
   EXPECT_EQ(value("speed"), 0);
   EXPECT_EQ(value("efficiency"), 0);
+}
+
+TEST_F(OneTrial, TheTargetIsReachedWithinReachOrHalfTheBodysLength) {
+  const double half = value("length") / 2;
+  for (const auto& [nearest, reach, reached] :
+       {std::tuple{0.99 * half, 0.0f, 1.0}, {1.01 * half, 0.0f, 0.0}, {0.9, 1.0f, 1.0}, {1.1, 1.0f, 0.0}}) {
+    evaluation.nearest = nearest;
+    configuration.environment.reach = reach;
+    EXPECT_EQ(value("target_nearest"), nearest);
+    EXPECT_EQ(value("reached"), reached) << nearest << ' ' << reach;
+  }
+  evaluation.nearest = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(value("reached")));
 }
 
 TEST_F(OneTrial, TheBodyIsMeasuredAtRest) {
