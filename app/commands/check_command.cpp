@@ -73,10 +73,11 @@ std::string table_of(const CheckReport& report) {
     labels.push_back(printable(report.identities[i].name, longest_label));
     width = std::max(width, labels.back().size());
   }
-  std::string text =
-      fmt::format("{}, {}, {} solver; {} of {} trials of {:g} s at each time step: median (quartiles)\n\n{:>5}  {:<{}}",
-                  report.device, name_of(configuration.environment), name_of(configuration.solver), report.objective,
-                  report.trials.trials, report.trials.seconds, "index", "robot", width);
+  std::string text = fmt::format("{}, {}, {} solver; {} of {} trials of {:g} s at each time step: {}\n\n{:>5}  {:<{}}",
+                                 report.device, name_of(configuration.environment), name_of(configuration.solver),
+                                 report.objective, report.trials.trials, report.trials.seconds,
+                                 report.trials.mean ? "mean (less and plus its standard error)" : "median (quartiles)",
+                                 "index", "robot", width);
   for (std::size_t k = 0; k < checked_steps; ++k)
     text += fmt::format("  {:>30}", fmt::format("dt {:g} s", configuration.dt / static_cast<double>(1 << k)));
   text += "  verdict\n";

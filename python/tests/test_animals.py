@@ -18,11 +18,13 @@ from animals import ANIMALS  # noqa: E402
 from measure_animals import environment_of, gait  # noqa: E402
 
 FILES = {file.stem: file for file in sorted(LIBRARY.glob("*.json"))}
+WITH_BRAIN = [name for name, file in FILES.items() if mercurysim.load(file).brain]
 
 
 def test_every_animal_has_a_file_and_a_maker():
     """The others are made by a generator; tests/robots/tapered_test.cpp compares them."""
-    assert sorted(ANIMALS) == [name for name, file in FILES.items() if mercurysim.load(file).origin["kind"] == "designed"]
+    designed = [name for name, file in FILES.items() if mercurysim.load(file).origin["kind"] == "designed"]
+    assert sorted(ANIMALS) == [name for name in designed if name not in WITH_BRAIN]
 
 
 @pytest.mark.parametrize("name", ANIMALS)
@@ -56,7 +58,7 @@ def test_an_animal_is_one_body_with_a_closed_skin(name):
     assert info["largest_dt"] > (1e-3 if "ancestry" in robot.origin else 1.2e-3)
 
 
-@pytest.mark.parametrize("name", [name for name in FILES if name != "hunter"])  # its distance depends on its target
+@pytest.mark.parametrize("name", [name for name in FILES if name not in WITH_BRAIN])  # which go to a target
 def test_check_confirms_an_animal(name, mercury):
     options = ("--seconds", 12, "--trials", 3, "--device", "cpu", "--json", "--quiet")
     report = json.loads(mercury("check", FILES[name], *options))
@@ -118,6 +120,14 @@ def test_the_hunter_reaches_targets_in_every_direction():
         batch.step(100)
         nearest = np.minimum(nearest, np.linalg.norm(batch.centers.numpy() - targets, axis=1))
     assert (nearest < 0.3).all()
+
+
+@pytest.mark.parametrize("name, radius", [("hunter", 7.8), ("seeker", 7.8), ("chaser", 4.8)])
+def test_swimmers_with_a_brain_reach_random_targets(name, radius, mercury):
+    """At 2 to 4 body lengths, which the search did not use. docs/library.md has 98 to 100 of 100."""
+    report = mercury("run", FILES[name], "--target-radius", radius, "--target-spread", 0.5, "--turned", "--trials", 20, "--seed",
+                     5, "--seconds", 10, "--device", "cpu", "--json", "--quiet")  # fmt: skip
+    assert json.loads(report)["robots"][0]["reached"] >= 0.9
 
 
 def test_evolved_animals_beat_those_made_by_hand_of_the_same_mass():
