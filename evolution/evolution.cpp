@@ -91,9 +91,12 @@ Evolution::Evolution(const EvolutionSettings& settings, const GenomeSpace& space
   algorithm_->begin(start_->numbers(), settings.mutation);
 }
 
-void Evolution::restore(int generation, std::vector<Individual> living, std::span<const Individual> born) {
+void Evolution::restore(int generation, std::vector<Individual> living, std::span<const Individual> born,
+                        std::vector<Individual> before) {
   next_generation_ = generation + 1;
   living_ = std::move(living);
+  before_ = std::move(before);
+  begun_.clear();
   next_id_ = born.size();
   if (!start_) return;
   algorithm_->begin(start_->numbers(), settings_.mutation);
@@ -204,27 +207,38 @@ class Breeding {
 
 }  // namespace
 
-std::vector<ChildPlan> Evolution::plans() const {
-  if (next_generation_ == 0 && !start_)
+std::vector<ChildPlan> Evolution::plans(int generation, std::span<const Individual> parents) const {
+  if (generation == 0 && !start_)
     return std::vector<ChildPlan>(std::max(settings_.algorithm.population, space_.founders()));
-  Random random(seed_of_plan(settings_.seed, next_generation_));
-  return algorithm_->plan(living_, children_per_generation(settings_), random);
+  Random random(seed_of_plan(settings_.seed, generation));
+  return algorithm_->plan(parents, children_per_generation(settings_), random);
 }
 
-std::vector<Individual> Evolution::children(const Watch& watch) const {
+std::vector<Individual> Evolution::breed(int generation, const std::vector<Individual>& parents, std::uint64_t first_id,
+                                         const Watch& watch) const {
   std::vector<Individual> children =
-      Breeding(settings_, space_, start_, living_, next_generation_, plans()).children(watch);
-  for (std::size_t i = 0; i < children.size(); ++i) children[i].id = next_id_ + i;
+      Breeding(settings_, space_, start_, parents, generation, plans(generation, parents)).children(watch);
+  for (std::size_t i = 0; i < children.size(); ++i) children[i].id = first_id + i;
   return children;
 }
 
-std::vector<double> Evolution::interim_limits() const {
+const std::vector<Individual>& Evolution::parents() const {
+  return settings_.pipelined && next_generation_ > 1 ? before_ : living_;
+}
+
+std::vector<Individual> Evolution::children(const Watch& watch) const {
+  return breed(next_generation_, parents(), next_id_, watch);
+}
+
+std::vector<double> Evolution::interim_limits() const { return interim_limits(parents()); }
+
+std::vector<double> Evolution::interim_limits(std::span<const Individual> parents) const {
   std::vector<double> limits;
-  if (!settings_.trials.racing || living_.empty()) return limits;
+  if (!settings_.trials.racing || parents.empty()) return limits;
   for (std::size_t check = 0; check < racing_checks; ++check) {
     // Those who were stopped before this check count as the worst. So if many of them live, few more are stopped.
     std::vector<double> scores;
-    for (const Individual& individual : living_) {
+    for (const Individual& individual : parents) {
       const std::vector<double>& known = individual.assessment.interim_scores;
       scores.push_back(check < known.size() ? known[check] : worst_score);
     }
@@ -238,6 +252,7 @@ std::vector<double> Evolution::interim_limits() const {
 Generation Evolution::select(std::vector<Individual> children) {
   Generation generation{.number = next_generation_, .born = children};
   const std::size_t before = living_.size();
+  if (settings_.pipelined) before_ = living_;
   std::vector<Individual> pool = std::move(living_);
   next_id_ += children.size();
   std::ranges::move(children, std::back_inserter(pool));
@@ -249,14 +264,45 @@ Generation Evolution::select(std::vector<Individual> children) {
   return generation;
 }
 
+namespace {
+
+std::vector<GenomePointer> genomes_of(std::span<const Individual> individuals) {
+  std::vector<GenomePointer> genomes;
+  for (const Individual& individual : individuals) genomes.push_back(individual.genome);
+  return genomes;
+}
+
+}  // namespace
+
+std::vector<Individual> Evolution::begun(Assessor& assessor, const Watch& watch) {
+  const auto begin = [&](int generation, const std::vector<Individual>& parents, std::uint64_t first_id,
+                         const Watch& making) {
+    begun_.push_back(breed(generation, parents, first_id, making));
+    assessor.prepare(genomes_of(begun_.back()), interim_limits(parents));
+  };
+  if (begun_.empty()) begin(next_generation_, parents(), next_id_, watch);
+  if (settings_.pipelined && next_generation_ > 0 && next_generation_ < settings_.generations)
+    begin(next_generation_ + 1, living_, next_id_ + begun_.front().size(), {});
+  std::vector<Individual> born = std::move(begun_.front());
+  begun_.pop_front();
+  return born;
+}
+
 std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& watch) {
   if (is_over()) return std::nullopt;
-  std::vector<Individual> born = children(watch);
+  std::vector<Individual> born = begun(assessor, watch);
   if (born.empty()) throw InputError("generation " + std::to_string(next_generation_), "no robot could be made");
-  std::vector<GenomePointer> genomes;
-  for (const Individual& child : born) genomes.push_back(child.genome);
-  std::optional<std::vector<Assessment>> assessments = assessor.assess(genomes, interim_limits(), watch);
-  if (!assessments) return std::nullopt;
+  std::optional<std::vector<Assessment>> assessments;
+  try {
+    assessments = assessor.assess(genomes_of(born), interim_limits(), watch);
+  } catch (...) {
+    begun_.clear();
+    throw;
+  }
+  if (!assessments) {
+    begun_.clear();
+    return std::nullopt;
+  }
   for (std::size_t i = 0; i < born.size(); ++i) born[i].assessment = std::move((*assessments)[i]);
   const auto failed = [](const Individual& individual) { return individual.assessment.fate == Fate::failed; };
   if (next_generation_ == 0 && std::ranges::all_of(born, failed))

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tries candidates on the devices of this process, by an Evaluator: it grows them while others are stepped.
+// Tries candidates on the devices of this process, by one Evaluator: it grows them while others are stepped, and its
+// devices stay ready from one generation to the next.
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -97,73 +100,160 @@ class Tally {
   std::size_t trials_ = 0;
 };
 
+// Candidates that are assessed together: a part of what the evaluator's source has.
+struct Batch {
+  std::vector<GenomePointer> candidates;
+  std::vector<double> interim_limits;
+  std::size_t first = 0;                            // index of the first evaluation
+  std::vector<std::vector<double>> interim_scores;  // [candidate][check so far]; one trial per candidate
+};
+
+// Batches in their order. Threads of the evaluator ask for them.
+class Batches {
+ public:
+  void add(std::shared_ptr<Batch> batch) {
+    const std::lock_guard lock(mutex_);
+    batches_.push_back(std::move(batch));
+  }
+  std::shared_ptr<Batch> front() const {
+    const std::lock_guard lock(mutex_);
+    return batches_.empty() ? nullptr : batches_.front();
+  }
+  void pop() {
+    const std::lock_guard lock(mutex_);
+    batches_.pop_front();
+  }
+  // The one that an evaluation belongs to.
+  std::shared_ptr<Batch> of(std::size_t evaluation) const {
+    const std::lock_guard lock(mutex_);
+    auto found = batches_.end();
+    while ((*--found)->first > evaluation) {
+    }
+    return *found;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::deque<std::shared_ptr<Batch>> batches_;
+};
+
 class LocalAssessor : public Assessor {
  public:
   LocalAssessor(const Configuration& configuration, const TrialSettings& settings, std::vector<Objective> objectives,
                 std::uint64_t seed)
-      : configuration_(configuration), settings_(settings), objectives_(std::move(objectives)), seed_(seed) {}
+      : settings_(settings), objectives_(std::move(objectives)), seed_(seed),
+        request_(trial_request(settings, configuration, seed)) {
+    request_.grows = true;
+    if (std::ranges::any_of(objectives_, uses_folding)) request_.folding = measure_all_folding;
+    if (!settings_.racing || request_.steps <= static_cast<std::int64_t>(racing_checks)) return;
+    for (std::size_t check = 1; check <= racing_checks; ++check)
+      request_.checks.push_back(request_.steps * static_cast<std::int64_t>(check) /
+                                static_cast<std::int64_t>(racing_checks + 1));
+    request_.goes_on = [this](const Evaluation& so_far) { return goes_on(so_far); };
+  }
+
+  void prepare(std::span<const GenomePointer> candidates, std::span<const double> interim_limits) override {
+    const std::size_t evaluations = candidates.size() * trials();
+    auto batch = std::make_shared<Batch>();
+    batch->candidates.assign(candidates.begin(), candidates.end());
+    batch->interim_limits.assign(interim_limits.begin(), interim_limits.end());
+    batch->first = known_;
+    batch->interim_scores.resize(candidates.size());
+    batches_.add(std::move(batch));
+    known_ += evaluations;
+    if (!evaluator_) evaluator_ = std::make_unique<Evaluator>(request_, trial_source(source(), settings_, seed_), 0);
+    evaluator_->extend(evaluations);
+  }
 
   std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates,
                                                 std::span<const double> interim_limits, const Watch& watch) override {
-    const auto trials = static_cast<std::size_t>(settings_.trials);
-    const std::size_t all = candidates.size() * trials;
-    const RobotSource grown = [&](std::size_t i) {
-      return std::make_shared<const Robot>(candidates[i]->grow("candidate"));
-    };
-    EvaluationRequest request = trial_request(settings_, configuration_, seed_);
-    if (std::ranges::any_of(objectives_, uses_folding)) request.folding = measure_all_folding;
-    std::vector<std::vector<double>> interim_scores(candidates.size());
-    if (settings_.racing && request.steps > static_cast<std::int64_t>(racing_checks)) {
-      for (std::size_t check = 1; check <= racing_checks; ++check)
-        request.checks.push_back(request.steps * static_cast<std::int64_t>(check) /
-                                 static_cast<std::int64_t>(racing_checks + 1));
-      request.goes_on = [&](const Evaluation& so_far) {
-        std::vector<double>& scores = interim_scores[so_far.index];  // one trial per candidate
-        const std::size_t check = scores.size();
-        scores.push_back(objectives_.front().score(quantities_of({.robot = *so_far.robot,
-                                                                  .evaluation = so_far,
-                                                                  .configuration = configuration_,
-                                                                  .net_efficiency = !settings_.median})));
-        return interim_limits.empty() || scores[check] >= interim_limits[check];
-      };
+    if (const auto next = batches_.front(); next && !std::ranges::equal(next->candidates, candidates)) forget();
+    if (!batches_.front()) prepare(candidates, interim_limits);
+    try {
+      std::optional<std::vector<Assessment>> assessments = finish(*batches_.front(), watch);
+      if (assessments)
+        batches_.pop();
+      else
+        forget();
+      return assessments;
+    } catch (...) {
+      forget();
+      throw;
     }
-    Evaluator evaluator(request, trial_source(grown, settings_, seed_), all);
-    std::vector<Assessment> assessments(candidates.size());
-    std::vector<Evaluation> waiting;  // of whole candidates; their quantities are computed on all cores
-    std::size_t assessed = 0;
-    const auto assess_waiting = [&] {
-      oneapi::tbb::parallel_for(std::size_t{0}, waiting.size() / trials, [&](std::size_t k) {
-        Tally tally(request, settings_, objectives_);
-        for (std::size_t t = 0; t < trials; ++t) tally.add(waiting[k * trials + t]);
-        assessments[assessed + k] = tally.result(std::move(interim_scores[assessed + k]));
-      });
-      assessed += waiting.size() / trials;
-      waiting.clear();
-    };
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      for (std::size_t t = 0; t < trials; ++t) {
-        while (!evaluator.wait_for(watch_period))
-          if (watch && !watch(evaluator.progress().done, all)) return std::nullopt;
-        waiting.push_back(evaluator.next().value());
-      }
-      if (waiting.size() < most_waiting) continue;
-      assess_waiting();
-      if (watch && !watch(evaluator.progress().done, all)) return std::nullopt;
-    }
-    assess_waiting();
-    if (watch && !watch(all, all)) return std::nullopt;
-    if (device_name_.empty()) device_name_ = evaluator.device_name();
-    return assessments;
   }
 
   std::string device_name() const override { return device_name_; }
 
  private:
-  const Configuration configuration_;
+  std::size_t trials() const { return static_cast<std::size_t>(settings_.trials); }
+
+  RobotSource source() const {
+    return [this](std::size_t i) {
+      const std::shared_ptr<Batch> batch = batches_.of(i * trials());
+      return std::make_shared<const Robot>(batch->candidates[i - batch->first / trials()]->grow("candidate"));
+    };
+  }
+
+  bool goes_on(const Evaluation& so_far) const {
+    const std::shared_ptr<Batch> batch = batches_.of(so_far.index);
+    std::vector<double>& scores = batch->interim_scores[so_far.index - batch->first];
+    const std::size_t check = scores.size();
+    scores.push_back(objectives_.front().score(quantities_of({.robot = *so_far.robot,
+                                                              .evaluation = so_far,
+                                                              .configuration = request_.configuration,
+                                                              .net_efficiency = !settings_.median})));
+    return batch->interim_limits.empty() || scores[check] >= batch->interim_limits[check];
+  }
+
+  // Cancels all that was begun.
+  void forget() {
+    evaluator_.reset();
+    while (batches_.front()) batches_.pop();
+    known_ = 0;
+  }
+
+  std::optional<std::vector<Assessment>> finish(Batch& batch, const Watch& watch) {
+    const std::size_t all = batch.candidates.size() * trials();
+    const auto done = [&] {
+      const std::size_t evaluated = evaluator_->progress().done;  // of later batches, too
+      return std::min(all, evaluated - std::min(evaluated, batch.first));
+    };
+    std::vector<Assessment> assessments(batch.candidates.size());
+    std::vector<Evaluation> waiting;  // of whole candidates; their quantities are computed on all cores
+    std::size_t assessed = 0;
+    const auto assess_waiting = [&] {
+      oneapi::tbb::parallel_for(std::size_t{0}, waiting.size() / trials(), [&](std::size_t k) {
+        Tally tally(request_, settings_, objectives_);
+        for (std::size_t t = 0; t < trials(); ++t) tally.add(waiting[k * trials() + t]);
+        assessments[assessed + k] = tally.result(std::move(batch.interim_scores[assessed + k]));
+      });
+      assessed += waiting.size() / trials();
+      waiting.clear();
+    };
+    for (std::size_t i = 0; i < batch.candidates.size(); ++i) {
+      for (std::size_t t = 0; t < trials(); ++t) {
+        while (!evaluator_->wait_for(watch_period))
+          if (watch && !watch(done(), all)) return std::nullopt;
+        waiting.push_back(evaluator_->next().value());
+      }
+      if (waiting.size() < most_waiting) continue;
+      assess_waiting();
+      if (watch && !watch(done(), all)) return std::nullopt;
+    }
+    assess_waiting();
+    if (watch && !watch(all, all)) return std::nullopt;
+    if (device_name_.empty()) device_name_ = evaluator_->device_name();
+    return assessments;
+  }
+
   const TrialSettings settings_;
   const std::vector<Objective> objectives_;
   const std::uint64_t seed_;
+  EvaluationRequest request_;
+  Batches batches_;
+  std::size_t known_ = 0;  // evaluations that the evaluator knows of
   std::string device_name_;
+  std::unique_ptr<Evaluator> evaluator_;  // last: its threads use the others
 };
 
 }  // namespace

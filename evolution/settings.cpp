@@ -68,6 +68,8 @@ void validate(const EvolutionSettings& settings) {
             "algorithm", std::string(algorithm.name) + " takes one objective; with several, give nsga2");
   require(settings.children == 0 || !algorithm_named(settings.algorithm.name).of_numbers, "children",
           settings.algorithm.name + " makes as many as its population; give that alone");
+  require(!settings.pipelined || !algorithm_named(settings.algorithm.name).of_numbers, "pipelined",
+          settings.algorithm.name + " learns from each generation before it makes the next; leave it out");
   require(!trials.racing || (trials.trials == 1 && settings.objectives.size() == 1), "racing",
           "works with one objective and one trial per robot");
 }

@@ -39,11 +39,23 @@ Evaluator::Evaluator(const EvaluationRequest& request, RobotSource source, std::
   if (request.steps < 0 || request.settling < 0 || request.sample_every < 0)
     throw std::invalid_argument("numbers of steps must be 0 or more");
   validate_checks(request);
+  if (request.grows && count == unknown_count) throw std::invalid_argument("a source that grows needs a number");
   parts_ = std::make_unique<Parts>(request, std::move(source), count);
   parts_->start(std::move(devices));
 }
 
 Evaluator::~Evaluator() = default;
+
+void Evaluator::extend(std::size_t more) {
+  Parts& parts = *parts_;
+  if (!parts.request.grows) throw std::logic_error("this source does not grow");
+  const std::lock_guard lock(parts.mutex);
+  const std::size_t before = parts.count;
+  if (parts.end == before) parts.end = before + more;  // nothing has failed
+  parts.count = before + more;
+  parts.update_demand();
+  parts.notify_all();
+}
 
 std::optional<Evaluation> Evaluator::next() {
   Parts& parts = *parts_;

@@ -70,6 +70,7 @@ struct Evaluator::Parts {
 
   // Of the maker.
   bool is_large_enough(std::size_t first, std::size_t robots) const;
+  bool is_made() const;             // all robots that are known so far; locked
   bool may_make() const;            // to be called with the mutex locked, as all functions below that are marked so
   std::size_t piece_bytes() const;  // locked
 
@@ -95,8 +96,9 @@ struct Evaluator::Parts {
 
   const EvaluationRequest request;
   const RobotSource source;
-  const std::size_t count;
   const std::size_t memory_limit;
+
+  std::atomic<std::size_t> count;  // changes with the mutex locked
 
   mutable std::mutex mutex;  // guards what follows, atomics apart
   std::condition_variable maker_may_go_on, portion_waits, result_waits, device_has_started;

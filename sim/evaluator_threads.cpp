@@ -30,8 +30,9 @@ constexpr std::size_t portions_at_start = 3, waiting_at_start = 16384;
 }  // namespace
 
 Evaluator::Parts::Parts(const EvaluationRequest& wanted, RobotSource robots, std::size_t number)
-    : request(wanted), source(std::move(robots)), count(number),
-      memory_limit(wanted.memory_limit > 0 ? wanted.memory_limit : available_host_memory() / 4), end(number) {
+    : request(wanted), source(std::move(robots)),
+      memory_limit(wanted.memory_limit > 0 ? wanted.memory_limit : available_host_memory() / 4), count(number),
+      end(number) {
   update_demand();
 }
 
@@ -84,22 +85,25 @@ void Evaluator::Parts::start_devices(const std::vector<MakeBackend>& given) {
 void Evaluator::Parts::make_portions() {
   std::size_t first = 0;
   try {
-    for (bool is_complete = count == 0; !is_complete;) {
+    for (bool is_complete = count == 0 && !request.grows; !is_complete;) {
       PortionLimits limits{.bytes = 0,
                            .enough = [&](std::size_t robots) { return is_large_enough(first, robots); },
-                           .canceled = [&] { return stopping || first >= end; }};
+                           .canceled = [&] { return stopping || (first >= end && first < count); }};
+      std::size_t known;
       {
         std::unique_lock lock(mutex);
-        maker_may_go_on.wait(lock, [&] { return limits.canceled() || may_make(); });
+        maker_may_go_on.wait(lock, [&] { return limits.canceled() || (first < count && may_make()); });
         if (limits.canceled()) break;
         limits.bytes = piece_bytes();
+        known = count;
       }
       std::optional<UnionClock::Interval> interval(std::in_place, making);
-      Portion portion = make_portion(source, first, count, limits, request.serial_source, largest_robot);
+      Portion portion = make_portion(source, first, known, limits, request.serial_source, largest_robot);
       interval.reset();
       const std::lock_guard lock(mutex);
       if (limits.canceled()) break;
-      is_complete = portion.is_last || portion.candidates.empty();
+      const bool made_known = first + portion.candidates.size() == known;
+      is_complete = portion.candidates.empty() || (portion.is_last && !(request.grows && made_known));
       first += portion.candidates.size();
       made += portion.candidates.size();
       memory_in_use += portion.bytes();
@@ -270,6 +274,8 @@ int Evaluator::Parts::workers_of(const DeviceParts& device) const {
 
 // --- How many robots the maker makes
 
+bool Evaluator::Parts::is_made() const { return all_made || made == count; }
+
 bool Evaluator::Parts::may_make() const {
   std::size_t most_waiting = 0;
   for (const DeviceParts& device : devices)
@@ -285,8 +291,8 @@ std::size_t Evaluator::Parts::piece_bytes() const { return std::min(memory_limit
 bool Evaluator::Parts::is_large_enough(std::size_t first, std::size_t robots) const {
   std::size_t most = piece_robots;
   if (request.portion > 0) return robots >= most;
-  if (count != unknown_count) {
-    const std::size_t remaining = count - first;
+  if (const std::size_t known = count; known != unknown_count) {
+    const std::size_t remaining = known - first;
     if (device_count > 1)  // all devices should end at the same time
       most = std::min(most, std::max(smallest_piece, remaining / (4 * device_count)));
     else if (remaining <= most + most / 4)  // rather a larger piece than a tiny one at the end
@@ -345,7 +351,7 @@ bool Evaluator::Parts::may_take(const DeviceParts& device) const {
   if (!device.is_cpu && device.robots_at_once == 0) return device.portions_in_hand < portions_at_start;
   const std::size_t fill = robots_that_fill(device);
   if (device.robots_in_hand < fill) return true;
-  return device.robots_in_hand < 2 * fill && (all_made || waiting_robots >= largest_portion_of(device));
+  return device.robots_in_hand < 2 * fill && (is_made() || waiting_robots >= largest_portion_of(device));
 }
 
 Portion Evaluator::Parts::next_portion(const DeviceParts& device) {

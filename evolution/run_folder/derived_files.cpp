@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/derived_files.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -165,22 +168,41 @@ void add_cells(CsvLines& csv, const std::vector<double>& values, std::size_t cou
   for (std::size_t i = 0; i < count; ++i) csv.cell(i < values.size() ? shortest_text(values[i]) : std::string());
 }
 
+// A line per individual after the head, made on all cores.
+std::string lines_of(const RunHistory& run, const CsvLines& head,
+                     const std::function<void(const Individual&, CsvLines&)>& add) {
+  constexpr std::size_t portion = 4096;
+  const std::span<const Individual> all = run.individuals();
+  std::vector<std::string> parts((all.size() + portion - 1) / portion);
+  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    CsvLines csv;
+    for (const Individual& individual : all.subspan(part * portion, std::min(portion, all.size() - part * portion))) {
+      add(individual, csv);
+      csv.end_line();
+    }
+    parts[part] = csv.text();
+  });
+  std::string text = head.text();
+  for (const std::string& part : parts) text += part;
+  return text;
+}
+
 }  // namespace
 
 void write_lineage(const RunHistory& run) {
   const std::size_t objectives = run.settings().evolution.objectives.size();
-  CsvLines csv;
+  CsvLines head;
   for (const char* name :
        {"id", "ancestor_list", "origin_time", "destruction_time", "generation", "line_began", "seed", "fate"})
-    csv.cell(name);
-  for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
+    head.cell(name);
+  for (std::size_t i = 0; i < objectives; ++i) head.cell(score_name(i, objectives));
   for (std::size_t i = 0; i < objectives; ++i)
-    for (const char* name : {"lower_quartile_", "upper_quartile_"}) csv.cell(name + score_name(i, objectives));
-  csv.cell("hash").cell("physics");
-  for (const Quantity& quantity : quantities()) csv.cell(column_of(quantity));
-  csv.end_line();
+    for (const char* name : {"lower_quartile_", "upper_quartile_"}) head.cell(name + score_name(i, objectives));
+  head.cell("hash").cell("physics");
+  for (const Quantity& quantity : quantities()) head.cell(column_of(quantity));
+  head.end_line();
   const std::string_view physics = name_of(physics_of(run.settings().space));
-  for (const Individual& individual : run.individuals()) {
+  const auto add = [&](const Individual& individual, CsvLines& csv) {
     const Assessment& assessment = individual.assessment;
     const std::optional<int> died = run.died(individual.id);
     csv.cell(individual.id).cell(ancestor_list(individual.parents)).cell(individual.generation);
@@ -192,26 +214,24 @@ void write_lineage(const RunHistory& run) {
         csv.cell(i < quartiles->size() ? shortest_text((*quartiles)[i]) : std::string());
     csv.cell(hexadecimal(assessment.hash)).cell(physics);
     add_quantities(csv, assessment);
-    csv.end_line();
-  }
-  write_whole_file(run.folder() / lineage_name, csv.text());
+  };
+  write_whole_file(run.folder() / lineage_name, lines_of(run, head, add));
 }
 
 void write_first_parents(const RunHistory& run) {
   const std::size_t objectives = run.settings().evolution.objectives.size();
-  CsvLines csv;
-  for (const char* name : {"id", "ancestor_list", "origin_time", "destruction_time", "generation"}) csv.cell(name);
-  for (std::size_t i = 0; i < objectives; ++i) csv.cell(score_name(i, objectives));
-  csv.end_line();
-  for (const Individual& individual : run.individuals()) {
+  CsvLines head;
+  for (const char* name : {"id", "ancestor_list", "origin_time", "destruction_time", "generation"}) head.cell(name);
+  for (std::size_t i = 0; i < objectives; ++i) head.cell(score_name(i, objectives));
+  head.end_line();
+  const auto add = [&](const Individual& individual, CsvLines& csv) {
     const std::span<const std::uint64_t> parents = individual.parents;
     const std::optional<int> died = run.died(individual.id);
     csv.cell(individual.id).cell(ancestor_list(parents.first(std::min<std::size_t>(1, parents.size()))));
     csv.cell(individual.generation).cell(died ? std::to_string(*died) : "inf").cell(individual.generation);
     add_cells(csv, individual.assessment.scores, objectives);
-    csv.end_line();
-  }
-  write_whole_file(run.folder() / first_parents_name, csv.text());
+  };
+  write_whole_file(run.folder() / first_parents_name, lines_of(run, head, add));
 }
 
 void write_generations(const RunHistory& run) {

@@ -107,13 +107,16 @@ void RunFolder::set_generations(int generations) {
 void restore(const RunHistory& history, Evolution& evolution) {
   if (history.generations().empty()) return;
   history.space();  // made once, before several threads need it
-  const std::span<const std::uint64_t> ids = history.living();
-  std::vector<Individual> living(ids.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
-    living[i] = history.individuals()[ids[i]];
-    living[i].genome = history.genome(ids[i]);
-  });
-  evolution.restore(history.generations().back().number, std::move(living), history.individuals());
+  const auto with_genomes = [&](std::span<const std::uint64_t> ids) {
+    std::vector<Individual> individuals(ids.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
+      individuals[i] = history.individuals()[ids[i]];
+      individuals[i].genome = history.genome(ids[i]);
+    });
+    return individuals;
+  };
+  evolution.restore(history.generations().back().number, with_genomes(history.living()), history.individuals(),
+                    evolution.settings().pipelined ? with_genomes(history.living_before()) : std::vector<Individual>());
 }
 
 void RunFolder::append(const Generation& generation, const GenerationTimes& times) {

@@ -179,6 +179,7 @@ void RunHistory::Parts::add(GenerationRecord record) {
   genomes.add(record.genomes);
   std::ranges::move(generation.born, std::back_inserter(individuals));
   died.resize(individuals.size(), alive);
+  living_before = living;
   note_deaths(generation);
   living = std::move(generation.living);
   generations.push_back(summary_of(generation.number, std::move(record.times),
@@ -233,6 +234,7 @@ std::span<const GenerationSummary> RunHistory::generations() const { return part
 const GenomeSpace& RunHistory::space() const { return parts_->space(); }
 std::span<const Individual> RunHistory::individuals() const { return parts_->individuals; }
 std::span<const std::uint64_t> RunHistory::living() const { return parts_->living; }
+std::span<const std::uint64_t> RunHistory::living_before() const { return parts_->living_before; }
 
 std::optional<int> RunHistory::died(std::uint64_t id) const {
   parts_->check(id);

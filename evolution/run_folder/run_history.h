@@ -71,7 +71,7 @@ struct RunHistory::Parts {
   GenomeStore genomes{journal};
   std::vector<Individual> individuals;  // by id
   std::vector<int> died;                // by id; alive = -1
-  std::vector<std::uint64_t> living;
+  std::vector<std::uint64_t> living, living_before;
   std::vector<GenerationSummary> generations;
 
  private:

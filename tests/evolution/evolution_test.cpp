@@ -106,6 +106,98 @@ TEST_P(AnyEvolution, AnEvolutionThatIsRestoredGoesOnBitForBit) {
   }
 }
 
+// Algorithms that need the scores of a generation only for the next but one.
+class Pipelined : public testing::TestWithParam<std::string_view> {
+ protected:
+  static EvolutionSettings settings() {
+    EvolutionSettings settings = settings_of(GetParam());
+    settings.pipelined = true;
+    return settings;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Algorithms, Pipelined, testing::Values("ga", "afpo", "nsga2", "map-elites", "random"),
+                         suite_name);
+
+TEST_P(Pipelined, ParentsAreThoseWhoLivedAfterTheGenerationBeforeTheLast) {
+  const std::vector<Generation> generations = run(settings());
+  ASSERT_EQ(generations.size(), 31u);
+  std::size_t parents = 0;
+  for (std::size_t n = 1; n < generations.size(); ++n) {
+    const std::vector<std::uint64_t>& living = generations[n < 2 ? 0 : n - 2].living;
+    for (const Individual& child : generations[n].born)
+      for (const std::uint64_t parent : child.parents) {
+        EXPECT_NE(std::ranges::find(living, parent), living.end()) << n;
+        ++parents;
+      }
+  }
+  EXPECT_EQ(parents == 0, GetParam() == "random");
+}
+
+TEST_P(Pipelined, IsBetterThanRandomSearchAtAsManyTrials) {
+  if (GetParam() == "random") return;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    EvolutionSettings settings = Pipelined::settings();
+    settings.seed = seed;
+    double best = worst_score;
+    for (const Generation& generation : run(settings))
+      for (const Individual& child : generation.born) best = std::max(best, child.score());
+    EXPECT_GT(best, best_score("random", seed)) << seed;
+  }
+}
+
+// As files hold it: those who live after the last generation and after the one before.
+TEST_P(Pipelined, AnEvolutionThatIsRestoredGoesOnBitForBit) {
+  const VectorSpace space;
+  const std::vector<Generation> whole = run(settings());
+  VectorAssessor assessor;
+  std::vector<Individual> living, before, born;
+  for (std::size_t number = 0; number < whole.size(); ++number) {
+    Evolution evolution(settings(), space);
+    if (number > 0) evolution.restore(static_cast<int>(number) - 1, living, born, before);
+    before = living;
+    const std::optional<Generation> generation = evolution.advance(assessor);
+    ASSERT_TRUE(generation);
+    EXPECT_EQ(*generation, whole[number]);
+    living = evolution.living();
+    born.insert(born.end(), generation->born.begin(), generation->born.end());
+  }
+}
+
+// An assessor that refuses to go on, once per generation.
+class Interrupting : public VectorAssessor {
+ public:
+  std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates,
+                                                std::span<const double> limits, const Watch& watch) override {
+    refuses_ = !refuses_;
+    return refuses_ ? std::nullopt : VectorAssessor::assess(candidates, limits, watch);
+  }
+
+ private:
+  bool refuses_ = false;
+};
+
+TEST_P(Pipelined, AnInterruptedGenerationIsMadeAgain) {
+  const VectorSpace space;
+  const std::vector<Generation> whole = run(settings());
+  Interrupting assessor;
+  Evolution evolution(settings(), space);
+  for (const Generation& expected : whole) {
+    EXPECT_FALSE(evolution.advance(assessor));
+    EXPECT_EQ(evolution.advance(assessor), expected);
+  }
+}
+
+TEST(Pipelined, AlgorithmsThatLearnAreRefused) {
+  EvolutionSettings settings = settings_of("cma-es");
+  settings.pipelined = true;
+  try {
+    validate(settings);
+    FAIL();
+  } catch (const ParameterError& error) {
+    EXPECT_STREQ(error.what(), "pipelined: cma-es learns from each generation before it makes the next; leave it out");
+  }
+}
+
 TEST_P(AnyEvolution, TheLineageDoesNotDependOnThreads) {
   const auto lineage = [&](std::size_t threads) {
     const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);

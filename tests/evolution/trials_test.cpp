@@ -279,6 +279,52 @@ TEST_P(TrialsOn, AnAssessmentMayHaveTheMeanOfTheTrialsAndHasTheShareThatReachedT
   EXPECT_NEAR(assessed.values[*find_quantity("reached")], near, 1e-9);
 }
 
+void expect_same(const std::optional<std::vector<Assessment>>& found, const std::vector<Assessment>& expected) {
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ((*found)[i].fate, expected[i].fate) << i;
+    EXPECT_EQ((*found)[i].hash, expected[i].hash) << i;
+    EXPECT_EQ((*found)[i].scores, expected[i].scores) << i;
+    EXPECT_EQ((*found)[i].interim_scores, expected[i].interim_scores) << i;
+  }
+}
+
+// Candidates that are prepared, in several calls, have the assessments that they have one by one; limits of racing
+// are those of their own call.
+TEST_P(TrialsOn, PreparedCandidatesHaveTheSameAssessments) {
+  const std::unique_ptr<GenomeSpace> space = make_genome_space({.kind = "voxel"});
+  std::vector<std::vector<GenomePointer>> batches(3);
+  for (std::size_t i = 0; i < 30; ++i) batches[i % 3].push_back(space->random(7, i));
+  const Configuration configuration{.environment = Ocean{}, .device = device()};
+  for (const bool racing : {false, true}) {
+    TrialSettings settings = search_trials();
+    settings.seconds = 0.4;
+    settings.trials = racing ? 1 : 2;
+    settings.racing = racing;
+    const auto make = [&] { return make_local_assessor(configuration, settings, {Objective("distance")}, 5); };
+    const std::vector<std::vector<double>> limits{{}, {1e9, 1e9, 1e9}, {0, 0, 0}};
+    const auto limits_of = [&](std::size_t i) { return racing ? limits[i] : std::vector<double>(); };
+    std::vector<std::vector<Assessment>> expected;
+    for (std::size_t i = 0; i < batches.size(); ++i)
+      expected.push_back(make()->assess(batches[i], limits_of(i), {}).value());
+    const std::unique_ptr<Assessor> assessor = make();
+    assessor->prepare(batches[0], limits_of(0));
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+      if (i + 1 < batches.size()) assessor->prepare(batches[i + 1], limits_of(i + 1));
+      expect_same(assessor->assess(batches[i], limits_of(i), {}), expected[i]);
+    }
+    if (racing) {
+      EXPECT_EQ(expected[1].front().fate, Fate::stopped);
+    }
+    // What was prepared in vain is forgotten, and so is what was interrupted.
+    assessor->prepare(batches[2], limits_of(2));
+    expect_same(assessor->assess(batches[0], limits_of(0), {}), expected[0]);
+    EXPECT_FALSE(assessor->assess(batches[1], limits_of(1), [](std::size_t, std::size_t) { return false; }));
+    expect_same(assessor->assess(batches[1], limits_of(1), {}), expected[1]);
+  }
+}
+
 // A robot that goes straight ahead at two speeds, v for two thirds of the time and w after.
 Evaluation gone(const Robot& robot, double v, double w) {
   Evaluation evaluation;

@@ -38,6 +38,61 @@ TEST_P(EvaluatorOn, ResultsDoNotDependOnPortionsAndWorkers) {
     }
 }
 
+// More robots come while earlier ones are stepped, and after all of them have been yielded.
+TEST_P(EvaluatorOn, ASourceGrows) {
+  const Robots robots = mixed(60);
+  EvaluationRequest request = usual();
+  request.configuration.device = device();
+  const std::vector<Evaluation> expected = evaluate(request, robots);
+  request.grows = true;
+  Evaluator evaluator(request, source_of(robots), 0);
+  EXPECT_FALSE(evaluator.next());
+  std::vector<Evaluation> all;
+  const auto take = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::optional<Evaluation> one = evaluator.next();
+      ASSERT_TRUE(one);
+      all.push_back(*std::move(one));
+    }
+  };
+  evaluator.extend(20);
+  evaluator.extend(7);
+  take(20);
+  evaluator.extend(13);
+  take(20);
+  EXPECT_FALSE(evaluator.next());
+  evaluator.extend(20);
+  take(20);
+  EXPECT_FALSE(evaluator.next());
+  expect_equal(all, expected);
+  evaluator.extend(1);  // the source ends before: nobody waits for it
+  EXPECT_FALSE(evaluator.next());
+}
+
+TEST(Evaluator, AnErrorOfASourceThatGrowsComesAfterTheResultsBeforeIt) {
+  const Robots robots = mixed(10);
+  EvaluationRequest request = usual();
+  request.grows = true;
+  request.portion = 1;
+  const RobotSource failing = [&](std::size_t index) {
+    if (index == 7) throw std::runtime_error("no more");
+    return robots.at(index);
+  };
+  Evaluator evaluator(request, failing, 5);
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(evaluator.next());
+  evaluator.extend(5);
+  for (int i = 5; i < 7; ++i) EXPECT_TRUE(evaluator.next());
+  EXPECT_THROW(evaluator.next(), std::runtime_error);
+}
+
+TEST(Evaluator, OnlyASourceOfAKnownNumberGrows) {
+  EvaluationRequest request = usual();
+  Evaluator fixed(request, source_of(mixed(1)), 1);
+  EXPECT_THROW(fixed.extend(1), std::logic_error);
+  request.grows = true;
+  EXPECT_THROW(Evaluator(request, source_of(mixed(1))), std::invalid_argument);
+}
+
 // Every robot begins in its own way, which does not depend on what it is loaded with.
 void displace(std::size_t index, const Robot&, std::span<Vec3> positions) {
   for (std::size_t i = 0; i < positions.size(); ++i)

@@ -32,6 +32,9 @@ class Assessor {
   // candidates and limits alone: not on threads, devices, portions, nor on the other candidates. Throws DeviceError.
   virtual std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates,
                                                         std::span<const double> interim_limits, const Watch& watch) = 0;
+  // Candidates of the next call of assess(), or of the one after those that were prepared before. An assessor may begin
+  // to try them; what assess() returns is the same.
+  virtual void prepare(std::span<const GenomePointer> /*candidates*/, std::span<const double> /*interim_limits*/) {}
   // For people; empty before the first call of assess().
   virtual std::string device_name() const = 0;
 };

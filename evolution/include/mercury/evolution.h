@@ -7,12 +7,19 @@
 //     mercury::Evolution evolution(settings, *space);
 //     while (const auto generation = evolution.advance(*assessor, watch)) use(generation->living.front());
 //
+// If it is pipelined, the parents of generation n are those who lived after generation n - 2, so that its children can
+// be made, and begun with, while generation n - 1 is tried. Those of generation 1 are of generation 0.
+//
+//     tried      |  0  |  1  |  2  |  3  |
+//     children       0    1,2    3     4      of 1 and 2 from those who live after 0, of 3 after 1, ...
+//
 // Everything depends on the settings alone, bit for bit: each generation draws from a seed of its own, so an evolution
 // that is restored goes on as if it had never stopped.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +44,7 @@ struct EvolutionSettings {
   std::size_t children = 0;  // per generation; 0 = as many as the population, or as the algorithm makes
   int generations = 100;     // after generation 0, which is random
   double mutation = 1;       // strength
+  bool pipelined = false;    // children of a generation are made while the one before is tried
   bool confirm = false;      // only champions whose results hold are in a run's best/ (mercury/confirmation.h)
   std::uint64_t seed = 1;
 
@@ -48,6 +56,8 @@ struct EvolutionSettings {
           .with_default_note("default: --population"),
       Parameter("mutation", &EvolutionSettings::mutation, "", Accepts::above_zero, {0.1f, 10, true},
                 "Strength of mutations"),
+      Parameter("pipelined", &EvolutionSettings::pipelined,
+                "Make a generation while the one before is tried: parents are older by one"),
       Parameter("confirm", &EvolutionSettings::confirm, "Check champions; only those whose results hold are in best/"),
       Parameter("seed", &EvolutionSettings::seed, "", Accepts::at_least_zero, {0, 100}, "Seed of the run")};
 };
@@ -77,8 +87,10 @@ class Evolution {
   Evolution(const EvolutionSettings& settings, const GenomeSpace& space);
 
   // Continues after a generation: `living` as it left them; `born` = all individuals so far, by id, whose genomes are
-  // not needed. Throws InputError if an algorithm that learns does not come to the same robots again.
-  void restore(int generation, std::vector<Individual> living, std::span<const Individual> born);
+  // not needed; `before` = those who lived when the generation began, needed if it is pipelined. Throws InputError if
+  // an algorithm that learns does not come to the same robots again.
+  void restore(int generation, std::vector<Individual> living, std::span<const Individual> born,
+               std::vector<Individual> before = {});
 
   const EvolutionSettings& settings() const { return settings_; }
   int next_generation() const { return next_generation_; }
@@ -99,7 +111,15 @@ class Evolution {
   std::optional<Generation> advance(Assessor& assessor, const Watch& watch = {});
 
  private:
-  std::vector<ChildPlan> plans() const;
+  // Those who are the parents of the next generation.
+  const std::vector<Individual>& parents() const;
+  // The children of a generation.
+  std::vector<Individual> breed(int generation, const std::vector<Individual>& parents, std::uint64_t first_id,
+                                const Watch& watch) const;
+  std::vector<ChildPlan> plans(int generation, std::span<const Individual> parents) const;
+  std::vector<double> interim_limits(std::span<const Individual> parents) const;
+  // The children of the next generation, with which the assessor has begun.
+  std::vector<Individual> begun(Assessor& assessor, const Watch& watch);
 
   EvolutionSettings settings_;
   const GenomeSpace& space_;
@@ -107,7 +127,8 @@ class Evolution {
   std::unique_ptr<Algorithm> algorithm_;
   int next_generation_ = 0;
   std::uint64_t next_id_ = 0;
-  std::vector<Individual> living_;
+  std::vector<Individual> living_, before_;    // now, and if it is pipelined, when the last generation began
+  std::deque<std::vector<Individual>> begun_;  // children of the next generations
 };
 
 }  // namespace mercury

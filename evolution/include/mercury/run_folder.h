@@ -82,7 +82,8 @@ class RunHistory {
   std::span<const Individual> individuals() const;
   // The generation after which it no longer lived; nothing if it lives.
   std::optional<int> died(std::uint64_t id) const;
-  std::span<const std::uint64_t> living() const;  // after the last generation, the best first
+  std::span<const std::uint64_t> living() const;         // after the last generation, the best first
+  std::span<const std::uint64_t> living_before() const;  // the same after the generation before
 
   GenomePointer genome(std::uint64_t id) const;  // read from disk
   // Its robot, "RUN-ID", with its ancestry in the origin. Throws InputError if it cannot be grown.

@@ -73,6 +73,8 @@ struct EvaluationRequest {
   std::vector<std::int64_t> checks;
   std::function<bool(const Evaluation& so_far)> goes_on;
 
+  // The source grows: Evaluator::extend() says of more robots. Its devices stay ready meanwhile.
+  bool grows = false;
   // The source is called by one thread at a time, with 0, 1, 2, ... in turn.
   bool serial_source = false;
 
@@ -136,8 +138,8 @@ class Evaluator {
   using MakeBackend = std::function<std::unique_ptr<Backend>()>;
 
   // Begins at once. `count` = robots of the source; if it is unknown, the source ends with a nullptr. Throws InputError
-  // for a configuration that breaks a rule, std::invalid_argument for a negative number of steps and for checks that
-  // are not as EvaluationRequest says.
+  // for a configuration that breaks a rule, std::invalid_argument for a negative number of steps, for checks that are
+  // not as EvaluationRequest says, and for a source that grows from an unknown number.
   Evaluator(const EvaluationRequest& request, RobotSource source, std::size_t count = unknown_count);
   // Uses these devices. The configuration's device has no effect.
   Evaluator(const EvaluationRequest& request, RobotSource source, std::size_t count, std::vector<MakeBackend> devices);
@@ -147,8 +149,11 @@ class Evaluator {
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
 
-  // Waits for the next result in the order of the source; nothing after the last one. Throws DeviceError if a device
-  // fails or does not exist, and what the source throws, after the results before.
+  // The source, which grows, has this many more robots from now on. Robots that were there before may still be stepped:
+  // the devices go on without a pause.
+  void extend(std::size_t more);
+  // Waits for the next result in the order of the source; nothing after the last one that is known. Throws DeviceError
+  // if a device fails or does not exist, and what the source throws, after the results before.
   std::optional<Evaluation> next();
   // Waits until next() would return at once, or until the time is over. Returns whether next() would.
   bool wait_for(std::chrono::milliseconds time);
