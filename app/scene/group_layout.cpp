@@ -180,7 +180,7 @@ std::vector<Place> places_in_grid(std::span<const render::Vector2> sizes, const 
     height = std::max(height, size.y);
   }
   Grid grid = options.grid.value_or(grid_for(sizes.size(), options.aspect, width / height));
-  if (options.layout == Layout::race) grid = {1, static_cast<int>(sizes.size())};
+  if (options.layout == Layout::race) grid = {static_cast<int>(sizes.size()), 1};
   const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
   if (sizes.size() > columns * rows)
     throw ParameterError("grid", fmt::format("{} robots do not fit into {}x{}; give more columns or rows", sizes.size(),

@@ -44,7 +44,7 @@ Grid grid_for(std::size_t count, float picture_aspect, float cell_aspect);
 
 enum class Layout {
   grid,
-  race,   // one lane per robot, side by side across the picture
+  race,   // one lane per robot, side by side from left to right; lanes run away from the eye
   cells,  // each robot stays in its cell, its drift subtracted; rows of cells of different widths fill the picture
 };
 

@@ -85,7 +85,8 @@ void Course::draw(std::span<const Lane> lanes, const Vector3& along, float heigh
     low = std::min(low, lane.start.dot(across) - lane.half_width);
     high = std::max(high, lane.start.dot(across) + lane.half_width);
   }
-  const auto count = static_cast<int>(farthest / line) + 1;
+  // Lanes are longer than the robots at their start.
+  const auto count = static_cast<int>(std::max(farthest, 1.5f * lanes[0].half_width) / line) + 1;
   const float end = start + line * (static_cast<float>(count) + 0.25f);
   for (std::size_t i = 0; i < lanes.size(); ++i) {
     const float middle = lanes[i].start.dot(across);
@@ -101,8 +102,8 @@ void Course::draw(std::span<const Lane> lanes, const Vector3& along, float heigh
     if (mark > 0) add(at(start + meters, low), at(start + meters, high), faint);
     numbers_.push_back({.at = at(start + meters, low - 0.02f * (high - low)),
                         .text = mark == 0 ? "start" : fmt::format("{:g} m", meters),
-                        .align_x = 0.5f,
-                        .align_y = 0,
+                        .align_x = 0,
+                        .align_y = 0.5f,
                         .size = 0.9f});
   }
   for (std::size_t i = 0; i < lines_.size(); ++i) lines_[i].points = points_[i];

@@ -139,8 +139,9 @@ TEST(RaceLayout, HasOneLanePerRobotFromOneStartLine) {
   const auto offsets = grid_layout(
       boxes, {.layout = mercury::Layout::race, .view = {.azimuth = -1.5707963f, .elevation = 0.8f}, .on_ground = true});
   for (std::size_t i = 1; i < boxes.size(); ++i) {
-    EXPECT_NEAR(boxes[i].moved(offsets[i]).center().x, boxes[0].moved(offsets[0]).center().x, 1e-4);
-    EXPECT_LT(boxes[i].moved(offsets[i]).high.y, boxes[i - 1].moved(offsets[i - 1]).low.y);
+    // Seen along +y: from left to right.
+    EXPECT_NEAR(boxes[i].moved(offsets[i]).center().y, boxes[0].moved(offsets[0]).center().y, 1e-4);
+    EXPECT_GT(boxes[i].moved(offsets[i]).low.x, boxes[i - 1].moved(offsets[i - 1]).high.x);
   }
 }
 
