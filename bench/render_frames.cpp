@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How fast groups are drawn, and the GPU time of each part of a picture: bench_render_frames [name=value ...].
 // Names: bodies side width height frames quality (auto, low, medium, high) context (auto, egl, mesa, osmesa)
-//        around (water, land, none) cover (0, 1: plants and stones) read (none, rgb, yuv) upload (0, 1: positions
-//        through the host) json (0, 1)
+//        around (water, land, none) cover (0, 1: plants and stones) rounded (0, 1) read (none, rgb, yuv) upload (0, 1:
+//        positions through the host) json (0, 1)
 //
 // Bodies are full lattices of side^3 voxels, as in the simulator's own benchmark: side 10 has 1,331 masses, 14,230
 // springs and 1,200 faces. Positions do not change, but everything that depends on them is computed in each frame.
@@ -65,10 +65,10 @@ Lattice make_lattice(int side) {
 }
 
 struct Options {
-  std::map<std::string, std::string> set{{"bodies", "1000"},  {"side", "10"},      {"width", "1920"},
-                                         {"height", "1080"},  {"frames", "60"},    {"read", "yuv"},
-                                         {"upload", "1"},     {"quality", "auto"}, {"context", "auto"},
-                                         {"around", "water"}, {"cover", "1"},      {"json", "0"}};
+  std::map<std::string, std::string> set{
+      {"bodies", "1000"}, {"side", "10"},   {"width", "1920"},   {"height", "1080"},  {"frames", "60"},
+      {"read", "yuv"},    {"upload", "1"},  {"quality", "auto"}, {"context", "auto"}, {"around", "water"},
+      {"cover", "1"},     {"rounded", "0"}, {"json", "0"}};
   int number(const char* name) const { return std::atoi(set.at(name).c_str()); }
   const std::string& text(const char* name) const { return set.at(name); }
 };
@@ -150,6 +150,7 @@ Result measure(const Options& options, Renderer& renderer, const Lattice& lattic
   result.setup = now() - begin_setup;
   Group group(lattice, bodies, side, options.text("around"));
   if (options.number("cover")) group.scene.ground_cover = GroundCover{.height = 0.04f * float(side)};
+  group.scene.rounded = options.number("rounded") != 0;
   if (options.number("upload")) group.scene.positions = group.positions;
   Orbit orbit{.elevation = 0.7f};
   orbit.frame(group.box, float(renderer.width()) / float(renderer.height()));

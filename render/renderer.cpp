@@ -45,8 +45,8 @@ bool has_ground_cover(const Scene& scene) {
   return scene.ground_cover && scene.surroundings != Surroundings::none && scene.ground_cover->height > 0;
 }
 
-std::string skin_variant(const Scene& scene) {
-  const bool rounded = any_placement(scene, [](const Placement& p) { return p.smooth; });
+std::string skin_variant(const Scene& scene, bool fine) {
+  const bool rounded = fine || any_placement(scene, [](const Placement& p) { return p.smooth; });
   const bool marked = any_placement(scene, [](const Placement& p) { return p.faulty; });
   return std::string(rounded ? "#define ROUNDED\n" : "") + (marked ? "#define MARKED\n" : "");
 }
@@ -132,7 +132,6 @@ void Renderer::set_bodies(std::shared_ptr<const BodyData> bodies) {
   parts_->fine.reset();
   parts_->bodies.set(std::move(bodies));
   parts_->passes->skin.attach(parts_->bodies);
-  parts_->outline.attach(parts_->bodies);
 }
 
 std::size_t Renderer::body_count() const { return parts_->bodies.body_count(); }
@@ -190,7 +189,7 @@ KeptFrame::~KeptFrame() {
 // Uploads the scene, and computes what depends on positions: boxes, the frame's block, normals, lists of faces.
 void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const Style& style, float noise) {
   if (scene.show.springs || scene.cut) bodies.write_springs();
-  scene_buffers.upload(scene, bodies);
+  scene_buffers.upload(scene, bodies, is_fine);
   scene_buffers.bind(bodies);
   bounds.measure(bodies);
   if (scene.cut) cut.find(bodies, *scene.cut);
@@ -205,8 +204,9 @@ void Renderer::Parts::prepare(const Scene& scene, const Camera& camera, const St
   if (is_fine) {
     fine->follow(bodies);
     scene_buffers.bind(fine->bodies());
+    if (!scene.mass_values.empty()) fine->bind_values();
   }
-  skin().deform(is_fine ? fine->bodies() : bodies, any_placement(scene, [](const Placement& p) { return p.smooth; }),
+  skin().deform(drawn_bodies(), is_fine || any_placement(scene, [](const Placement& p) { return p.smooth; }),
                 scene.cut.has_value());
 }
 
@@ -263,8 +263,9 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera, const
   const auto color_by = !scene.face_values.empty()   ? SkinPass::ColorBy::face_values
                         : !scene.mass_values.empty() ? SkinPass::ColorBy::mass_values
                                                      : SkinPass::ColorBy::materials;
-  draw_sides(scene,
-             [&](const char* side) { skin().draw(color_by, scene.scale, variant + skin_variant(scene) + side); });
+  draw_sides(scene, [&](const char* side) {
+    skin().draw(color_by, scene.scale, variant + skin_variant(scene, is_fine) + side);
+  });
   glDisable(GL_CULL_FACE);
   timer.mark("skins");
   passes->lattice.draw(bodies, scene);
@@ -302,16 +303,20 @@ void Renderer::Parts::draw_light_of(const Scene& scene, const Camera& camera, co
   ghosts.draw(scene.ghosts);
 }
 
-// Rounded bodies in the colors of their materials have a finer skin in pictures that take their time.
-void Renderer::Parts::choose_skin(const Scene& scene) {
-  constexpr std::size_t most_faces = 600'000;
-  const bool rounded = std::ranges::all_of(scene.placements, [](const Placement& p) { return p.smooth; });
-  const bool colored = !scene.face_values.empty() || !scene.mass_values.empty();
-  is_fine = rounded && !colored && !scene.cut && scene.show.skin && !scene.show.springs && !scene.show.masses &&
-            body_data && !body_data->records.empty() && 4 * bodies.face_count() < most_faces;
-  if (!is_fine || fine) return;
-  const int times = 16 * bodies.face_count() < most_faces / 3 ? 2 : 1;
-  fine.emplace(subdivided(*body_data, times), Passes::skin_defines(settings));
+// Rounded bodies have a finer skin: subdivided twice, as once shows kinks. Where a picture takes its time, larger
+// groups are subdivided once.
+void Renderer::Parts::choose_skin(const Scene& scene, bool takes_time) {
+  const std::size_t most_faces = takes_time || !software ? 200'000 : 60'000;
+  const std::size_t most_once = takes_time ? 600'000 : 0;
+  const bool all_smooth = std::ranges::all_of(scene.placements, [](const Placement& p) { return p.smooth; });
+  const bool twice = 16 * bodies.face_count() <= most_faces;
+  is_fine = (scene.rounded || (takes_time && all_smooth)) && !scene.cut && scene.show.skin && !scene.show.springs &&
+            !scene.show.masses && body_data && !body_data->records.empty() &&
+            (twice || 4 * bodies.face_count() <= most_once);
+  if (!is_fine) return;
+  const int times = twice ? 2 : 1;
+  if (!fine || fine->times() != times)
+    fine.emplace(subdivided(*body_data, times), times, Passes::skin_defines(settings));
 }
 
 void Renderer::Parts::draw_through_lens(const Scene& scene, const Camera& camera, const Style& style) {
@@ -319,7 +324,6 @@ void Renderer::Parts::draw_through_lens(const Scene& scene, const Camera& camera
   const Vector3 to_key = style.to_key.normalized();
   const Vector3 across = to_key.cross(Vector3::unit(1)).normalized(), along = to_key.cross(across);
   const int samples = std::min(camera.lens.samples, settings.lens_samples);
-  choose_skin(scene);
   Camera through = camera;
   through.lens.samples = samples;
   for (int i = 0; i < samples; ++i) {
@@ -334,7 +338,6 @@ void Renderer::Parts::draw_through_lens(const Scene& scene, const Camera& camera
     if (i + 1 < samples) pace.end();
   }
   passes->mean.draw(targets.drawing.get(), samples);
-  is_fine = false;
 }
 
 void Renderer::draw(const Scene& scene, const Camera& camera) {
@@ -351,9 +354,10 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // others may draw in this context, too
   p.pace.begin();
   p.timer.begin();
+  p.choose_skin(scene, camera.lens.samples > 1);
   camera.lens.samples > 1 ? p.draw_through_lens(scene, camera, style) : p.draw_light_of(scene, camera, style, 0);
   p.passes->finish.draw(p.targets.light.get(), p.targets.bytes.get(), scene.tiles.empty() ? style.vignette : 0);
-  p.outline.draw(p.bodies, scene, p.passes->lattice, p.bounds.boxes(), p.targets);
+  p.outline.draw(p.drawn_bodies(), scene, p.passes->lattice, p.bounds.boxes(), p.targets);
   // The boxes were measured long ago, and the GPU still has the picture to draw: nobody waits.
   const std::vector<Bounds> boxes =
       scene.labels.empty() ? std::vector<Bounds>() : placed(p.bounds.read(), scene.placements);

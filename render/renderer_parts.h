@@ -108,8 +108,9 @@ struct Renderer::Parts {
   template <typename Draw>
   void draw_sides(const Scene& scene, Draw draw_skins);
   void draw_light(const Scene& scene);
+  const Bodies& drawn_bodies() const { return is_fine ? fine->bodies() : bodies; }
   SkinPass& skin() { return is_fine ? fine->skin() : passes->skin; }
-  void choose_skin(const Scene& scene);
+  void choose_skin(const Scene& scene, bool takes_time);
   void draw_solid(const Scene& scene, const Camera& camera, const Style& style);
   void draw_beams() const;
 };

@@ -118,6 +118,13 @@ struct GroundCover {
   Vector2 bare_low{1e9f, 1e9f}, bare_high{1e9f, 1e9f};  // a rectangle where nothing grows [m]
 };
 
+// Something that moves through the water and carries particles along.
+struct Mover {
+  Vector3 center{0, 0, 0};    // in the picture's coordinates [m]
+  float radius = 0;           // of a ball of about its size [m]
+  Vector3 velocity{0, 0, 0};  // [m/s]
+};
+
 // A body in one translucent color, without a shadow. What is nearer hides it.
 struct Ghost {
   std::span<const float> positions;      // 3 per mass
@@ -151,6 +158,9 @@ struct Scene {
   Scale scale;
 
   Show show;
+  // Skins of few faces are rounded and finer than their masses (subdivision.h), unless springs, masses or cuts are
+  // shown.
+  bool rounded = false;
   std::optional<Cut> cut;   // opens each body
   float spring_radius = 0;  // [m]; 0 = chosen from the springs' lengths
   float mass_radius = 0;    // [m]; 0 = chosen from the springs' lengths
@@ -162,9 +172,10 @@ struct Scene {
   bool catch_shadows = false;  // without surroundings: bodies still darken the backdrop where the floor would be
   // The backdrop is of this light alone, and bodies do not depend on it: what matted() takes two pictures of.
   std::optional<float> flat_backdrop;
-  bool text_aside = false;  // nothing is written on the picture; Renderer::overlay() has it
-  Vector3 flow{0, 0, 0};    // of the water; particles drift with it [m/s]
-  double time = 0;          // moves caustics and particles [s]
+  bool text_aside = false;        // nothing is written on the picture; Renderer::overlay() has it
+  Vector3 flow{0, 0, 0};          // of the water; particles drift with it [m/s]
+  std::span<const Mover> movers;  // in water
+  double time = 0;                // moves caustics and particles [s]
 
   std::span<const Patch> patches;  // on land
   std::optional<GroundCover> ground_cover;

@@ -11,6 +11,8 @@
 namespace mercury::render {
 namespace {
 
+constexpr float kept_size = 0.6f;  // of what a skin would lose; 1 = nearly all, but flat sides would bulge
+
 using Mean = std::map<std::uint32_t, float>;  // weights by mass
 
 std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
@@ -87,6 +89,16 @@ Mean combined(const Mean& outer, std::span<const Mean> inner) {
   return mean;
 }
 
+// Where a skin starts from: its masses, moved against the way that they will go, so that it keeps its size.
+std::vector<Mean> widened(std::size_t masses, std::span<const std::uint32_t> faces) {
+  std::vector<Mean> points = moved_points(masses, skin_edges(faces));
+  for (std::uint32_t i = 0; i < masses; ++i) {
+    for (auto& [mass, weight] : points[i]) weight *= -kept_size;
+    points[i][i] += 1 + kept_size;
+  }
+  return points;
+}
+
 // A skin of points that are means of masses.
 struct MeansSkin {
   std::vector<Mean> points;
@@ -106,7 +118,11 @@ void refine(MeansSkin& skin) {
   }
   for (std::size_t f = 0; f < skin.records.size(); ++f) {
     const auto face = std::span(skin.faces).subspan(3 * f, 3);
-    if (is_copy(face)) continue;
+    if (is_copy(face)) {
+      fine.faces.insert(fine.faces.end(), 12, face[0]);
+      fine.records.insert(fine.records.end(), 4, skin.records[f]);
+      continue;
+    }
     const auto point = [&](std::size_t i, std::size_t j) {
       return edges.list[edges.by_ends.at(edge_key(face[i], face[j]))].point;
     };
@@ -123,7 +139,7 @@ void refine(MeansSkin& skin) {
 
 FineSkin subdivided(const BodyData& bodies, int times) {
   MeansSkin skin{.points = {}, .owners = bodies.owners, .faces = bodies.faces, .records = bodies.records};
-  for (std::uint32_t i = 0; i < bodies.owners.size(); ++i) skin.points.push_back({{i, 1.0f}});
+  skin.points = widened(bodies.owners.size(), bodies.faces);
   for (int i = 0; i < times; ++i) refine(skin);
   FineSkin fine;
   for (const Mean& point : skin.points) {
@@ -141,10 +157,11 @@ FineSkin subdivided(const BodyData& bodies, int times) {
   data.rest_positions.resize(3 * data.owners.size());  // filled in by each frame
   // All points count as one body's: nothing asks for the points of a single one.
   data.mass_offsets = {0, std::uint32_t(data.owners.size())};
-  data.face_offsets = {0, std::uint32_t(data.records.size())};
+  for (std::uint32_t& end : data.face_offsets = bodies.face_offsets) end <<= 2 * times;
   data.spring_offsets = {0, 0};
   std::vector<std::vector<std::uint32_t>> faces_at(data.owners.size());
-  for (std::uint32_t i = 0; i < data.faces.size(); ++i) faces_at[data.faces[i]].push_back(i / 3);
+  for (std::uint32_t i = 0; i < data.faces.size(); ++i)
+    if (!is_copy(std::span(data.faces).subspan(i / 3 * 3, 3))) faces_at[data.faces[i]].push_back(i / 3);
   for (const auto& faces : faces_at) {
     data.mass_faces.insert(data.mass_faces.end(), faces.begin(), faces.end());
     data.mass_face_ends.push_back(std::uint32_t(data.mass_faces.size()));

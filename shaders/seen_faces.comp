@@ -10,6 +10,8 @@ layout(std430, binding = 12) readonly buffer Commands { uint commands[10]; };  /
 layout(std430, binding = 13) readonly buffer FaceNormals { uint face_normals[]; };
 layout(std430, binding = 15) readonly buffer FaceNumbers { uint numbers[]; };
 
+layout(location = 0) uniform uint finer;  // bits of a face's number that count the parts of an original face
+
 uint normal_of(uint face) { return face == NO_FACE ? NO_NORMAL : face_normals[face]; }
 
 void main() {
@@ -28,5 +30,5 @@ void main() {
   uvec4 around = record.neighbors;
   seen[i] = SeenFace(vec4(along_u, -dot(along_u, a)), vec4(along_v, -dot(along_v, a)),
                      uvec4(normal_of(around.x), normal_of(around.y), normal_of(around.z), normal_of(around.w)),
-                     face_normals[face], record.material, record.shape, face);
+                     face_normals[face], record.material, record.shape, face >> finer);
 }

@@ -196,6 +196,7 @@ OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usua
   options.text("--theme", settings.theme == render::Theme::light ? "light" : "dark", "dark");
   options.flag("--plain", settings.plain);
   options.flag("--smooth", settings.smooth);
+  options.flag("--faceted", settings.faceted);
   if (settings.cut) options.text("--cut", cut_text(*settings.cut), "");
   options.text("--layout", std::string(name_of(settings.layout)), usual ? name_of(*usual) : "");
   if (settings.grid && !race)

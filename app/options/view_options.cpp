@@ -47,7 +47,8 @@ void ViewOptions::add_to(const Command& command) {
   add(add_text(command, "--background", words_.background,
                "Of a still: robots, their shadows and text alone, over white, black, #rrggbb or transparent", "COLOR"));
   add(command.add_flag("--scale-bar", words_.scale_bar, "Also a bar of a round length"));
-  add(command.add_flag("--smooth", words_.smooth, "Round skins rather than edged ones"));
+  add(command.add_flag("--smooth", words_.smooth, "Round skins also of many robots"));
+  add(command.add_flag("--faceted", words_.faceted, "Edged skins, which show each voxel, also of few robots"));
   add(add_value(command, "--cut", words_.cut, "Cut each robot open beyond a plane, as in y:30%", "AXIS[:PLACE]",
                 text_from));
   add(add_value(command, "--layout", words_.layout,

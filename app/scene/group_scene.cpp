@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 #include <variant>
 
@@ -92,13 +93,15 @@ void GroupScene::place_floor() {
 void GroupScene::show_surroundings() {
   const bool plain = settings_.plain || settings_.flat_backdrop || !tiles_.empty();
   const bool land = has_ground(environment_);
-  motion_.set(motion_of(settings_), environment_, picture_axes(direction_of(settings_.camera, land)).right);
+  const float azimuth = direction_of(settings_.camera, land).azimuth;
+  motion_.set(motion_of(settings_), environment_, {-std::cos(azimuth), -std::sin(azimuth), 0});
   scene_.surroundings = plain ? render::Surroundings::none : surroundings_of(environment_);
   scene_.catch_shadows = plain && land && tiles_.empty();
   scene_.flat_backdrop = settings_.flat_backdrop;
   scene_.text_aside = settings_.text_aside;
   scene_.against_light.reset();
   if (settings_.hero) scene_.against_light = hero_light(settings_, environment_);
+  scene_.rounded = !settings_.faceted;
   scene_.flow = render::Vector3(flow_of(environment_));
   scene_.show = {.skin = settings_.shown.skin, .springs = settings_.shown.springs, .masses = settings_.shown.masses};
   scene_.theme = settings_.theme;

@@ -110,6 +110,7 @@ class GroupScene {
   void place(std::span<const Telemetry> telemetry);
   void place_boxes();
   void place_patches();
+  void note_movers(std::span<const Telemetry> telemetry);
   void hide_wrecks(std::span<const Telemetry> telemetry);
   void lengthen_paths(double time);
   void race(double time);
@@ -153,6 +154,7 @@ class GroupScene {
   std::vector<float> target_circles_;      // around the target, in the robots' coordinates
   std::vector<render::Label> labels_;
   std::vector<render::Patch> patches_;
+  std::vector<render::Mover> movers_;
   std::vector<render::Tile> tiles_;
   std::vector<render::Text> texts_, shown_texts_;
   render::Legend materials_legend_;

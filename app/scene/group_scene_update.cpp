@@ -36,6 +36,7 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
   if (settings_.shown.clock) scene_.clock = clock_of(time, settings_.speed);
   place(telemetry);
   order_.clear();
+  scene_.ground_cover->bare_low = scene_.ground_cover->bare_high = render::GroundCover().bare_low;
   if (motion_.layout() == Layout::race)
     race(time);
   else if (settings_.shown.path)
@@ -72,6 +73,7 @@ void GroupScene::place(std::span<const Telemetry> telemetry) {
     if (!telemetry[i].exploded) trails_[i].pass(telemetry[i].center_of_mass);
   }
   place_boxes();
+  note_movers(telemetry);
   hide_wrecks(telemetry);
   place_patches();
   scene_.placements = placements_;
@@ -93,6 +95,18 @@ void GroupScene::place_boxes() {
     if (seeks_target_[i] && motion_.layout() == Layout::grid)
       camera_boxes_[i].extend(render::Vector3(environment_.target) + shown_offsets_[i]);
   }
+}
+
+// Swimmers, which carry water along.
+void GroupScene::note_movers(std::span<const Telemetry> telemetry) {
+  movers_.clear();
+  for (std::size_t i = 0; i < placements_.size(); ++i) {
+    const render::Vector3 velocity(telemetry[i].velocity);
+    if (exploded_[i] || hidden_[i] || !velocity.is_finite()) continue;
+    const render::Vector3 size = rest_[i].high - rest_[i].low;
+    movers_.push_back({bounds_[i].center(), (size.x + size.y + size.z) / 6, velocity});
+  }
+  scene_.movers = movers_;
 }
 
 // On land, the ground slides under each robot that stays in its cell.
@@ -193,6 +207,14 @@ void GroupScene::race(double time) {
   const float height = motion_.on_land() ? 0.01f * mark_distance_ : lowest;
   course_.draw(lanes, motion_.along(), height, mark_times_, step, settings_.theme);
   scene_.paths = course_.lines();
+  // No grass grows on the lanes.
+  render::Bounds bare;
+  for (const render::Path& path : course_.lines())
+    for (std::size_t i = 0; i < path.points.size(); i += 3) bare.extend(render::Vector3(path.points.data() + i));
+  if (motion_.on_land()) {
+    scene_.ground_cover->bare_low = bare.low.xy();
+    scene_.ground_cover->bare_high = bare.high.xy();
+  }
   std::ranges::copy(course_.numbers(), std::back_inserter(shown_texts_));
   scene_.texts = shown_texts_;
   order_ = order_text(mark_times_, step, names_);

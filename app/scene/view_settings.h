@@ -42,8 +42,9 @@ struct ViewSettings {
   std::optional<render::Color> background;  // of a figure: bodies and their shadows alone over it; opacity 0 or 255
   std::optional<float> flat_backdrop;       // while a figure is drawn, see render::Scene
   bool text_aside = false;                  // likewise
-  bool smooth = false;
-  bool hero = false;               // a still of the first robot, see hero_style.h
+  bool smooth = false;                      // all skins are rounded, also those of many robots
+  bool faceted = false;                     // none is, but those of robots that networks grew
+  bool hero = false;                        // a still of the first robot, see hero_style.h
   float aperture = 0;              // diameter of a still's lens, as a share of the distance to what is in focus
   std::optional<render::Cut> cut;  // opens each robot
   Layout layout = Layout::grid;

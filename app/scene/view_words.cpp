@@ -170,6 +170,7 @@ ViewSettings view_settings(const ViewWords& words, Layout usual) {
   settings.caption = words.caption;
   settings.theme = theme_named(words.theme);
   settings.plain = words.plain;
+  settings.faceted = words.faceted;
   if (!words.background.empty()) {
     settings.background = background_from(words.background);
     // Text is dark on bright backgrounds, and on those that nobody knows yet.

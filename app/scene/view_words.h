@@ -24,7 +24,8 @@ struct ViewWords {
   bool plain = false;                            // a plain backdrop rather than water or land
   std::string background;                        // "white", "transparent", "#rrggbb"; empty = the surroundings
   bool scale_bar = false;                        // in addition to what is shown
-  bool smooth = false;                           // round skins rather than edged ones
+  bool smooth = false;                           // round skins rather than edged ones, also of many robots
+  bool faceted = false;                          // edged skins rather than round ones, also of few robots
   std::optional<std::string> cut;                // opens each robot beyond a plane: "y:30%"
   std::optional<std::string> layout;             // "grid", "cells" or "race"; absent = the usual
   std::optional<Grid> grid;                      // absent = what fills the picture

@@ -218,6 +218,8 @@ void Viewer::frame(double dt) {
   if (drawn_ > 0) scene_.drawn().see(shown_camera_, area_.aspect());
   if (DrawnScene* second = scene_.second_drawn(); second && drawn_ > 0) second->see(shown_camera_, area_.aspect());
   scene_.frame(area_.aspect());
+  // Whoever edits a body sees its voxels.
+  scene_.drawn().scene().rounded = !scene_.view().faceted && context_.body_edit.robot == 0;
   run_.frame();
   if (const auto plan = scene_.take_camera()) {
     camera_.follow(std::nullopt);

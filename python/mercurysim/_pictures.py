@@ -47,7 +47,8 @@ class Look(TypedDict, total=False):
     caption: str  # text in the upper left corner; further lines are smaller
     plain: bool  # a plain backdrop rather than water or land
     cut: str  # opens each robot beyond a plane: "y:30%"
-    smooth: bool  # round skins rather than edged ones
+    smooth: bool  # round skins also of many robots
+    faceted: bool  # edged skins, which show each voxel, also of few robots
     quality: str  # "auto" (high on a GPU, low without), "low", "medium", "high"
 
 

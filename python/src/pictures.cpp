@@ -138,6 +138,7 @@ void take_word(Look& look, const std::string& name, nb::handle value) {
       {"plain", [&] { words.plain = bool_from(name, value); }},
       {"cut", [&] { words.cut = text_from(name, value); }},
       {"smooth", [&] { words.smooth = bool_from(name, value); }},
+      {"faceted", [&] { words.faceted = bool_from(name, value); }},
       {"quality", [&] { look.quality = text_from(name, value); }}};
   if (const auto found = takes.find(name); found != takes.end()) return found->second();
   std::vector<std::string> names;

@@ -121,6 +121,7 @@ def test_words_change_the_picture(batch):
         {"grid": (1, 2)},
         {"cut": "y:0"},
         {"smooth": True},
+        {"faceted": True},
         {"plain": True},
         {"quality": "medium"},
     ]

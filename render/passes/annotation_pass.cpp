@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "render/particles.h"
 #include "render/passes/bindings.h"
 #include "render/passes/scene_buffers.h"
 #include "render/text/font.h"
@@ -135,23 +136,21 @@ void AnnotationPass::draw_paths(std::span<const Path> paths, float width) {
   glDrawArrays(GL_TRIANGLES, 0, GLsizei(6 * (points.size() - 1)));
 }
 
-void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count) const {
+void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count) {
   const Octave octave = octave_of((camera.eye - camera.target).norm());
   if (octave.share_of_double < 1) draw_particles(scene, camera, count, 1.1f * octave.size, 1 - octave.share_of_double);
   if (octave.share_of_double > 0) draw_particles(scene, camera, count, 2.2f * octave.size, octave.share_of_double);
 }
 
-void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count, float half_side,
-                                    float share) const {
+void AnnotationPass::draw_particles(const Scene& scene, const Camera& camera, int count, float half_side, float share) {
   const Vector3 sight = (camera.target - camera.eye).normalized();
   const Vector3 middle = camera.target - 0.2f * half_side * sight;
-  const auto drift = [&](float speed) { return float(std::remainder(double(speed) * scene.time, 2.0 * half_side)); };
+  particles_.write(particles_in(scene, middle, half_side, count));
+  particles_.bind_storage(binding::first_free);
   const Blending blending;
   glUseProgram(particle_.get());
   glUniform4f(0, middle.x, middle.y, middle.z, half_side);
-  glUniform4f(1, scene.flow.x, scene.flow.y, scene.flow.z, exposure);
-  glUniform3f(2, drift(scene.flow.x), drift(scene.flow.y), drift(scene.flow.z));
-  glUniform1f(3, share);
+  glUniform2f(1, exposure, share);
   glBindVertexArray(empty_.get());
   glDrawArrays(GL_TRIANGLES, 0, 6 * count);
 }

@@ -20,14 +20,15 @@ class AnnotationPass {
   void draw_tiles(std::span<const Tile> tiles);
   void draw_paths(std::span<const Path> paths, float width);
   // Two sets of particles, one of twice the size, fade into each other as the camera's distance changes.
-  void draw_particles(const Scene& scene, const Camera& camera, int count) const;
+  void draw_particles(const Scene& scene, const Camera& camera, int count);
 
  private:
-  void draw_particles(const Scene& scene, const Camera& camera, int count, float half_side, float share) const;
+  void draw_particles(const Scene& scene, const Camera& camera, int count, float half_side, float share);
 
   VertexArray empty_;
   Program arrow_, path_, particle_, tile_;
   StreamBuffer arrows_, points_, tiles_;
+  StreamBuffer particles_;  // at most two sets per picture
 };
 
 // Paints an Overlay onto a finished picture.

@@ -10,8 +10,8 @@
 namespace mercury::render {
 namespace {
 
-constexpr int most_cells = 128;            // of the grid, per side
-constexpr std::size_t command_bytes = 16;  // DrawArraysIndirectCommand
+constexpr int most_cells = 128;                 // of the grid, per side
+constexpr std::size_t draw_command_bytes = 16;  // DrawArraysIndirectCommand
 constexpr int stone_columns = 12, stone_rows = 6;
 
 // How plants look: blades of a sea plant are long, grass is short.
@@ -60,7 +60,7 @@ const PlantShape& shape_in(Surroundings surroundings) {
 std::string plant_defines(const PlantShape& shape) { return "#define PLANT\n" + define("SEGMENTS", shape.segments); }
 
 // The layout of shaders/ground_cover.comp.
-struct PatchRecord {
+struct DiscRecord {
   Vector4 disc, slide;
 };
 
@@ -84,7 +84,7 @@ void GroundCoverPass::place(const Scene& scene, const Camera& camera, const Boun
     shade_ = make_program({"ground_cover_shade.vert", "ground_cover_shade.frag"});
     items_.reserve(sizeof(Item) * most_cells * most_cells);
     lists_.reserve(2 * sizeof(GLuint) * most_cells * most_cells);
-    commands_.reserve(4 * command_bytes);
+    commands_.reserve(4 * draw_command_bytes);
   }
   const GroundCover& cover = *scene.ground_cover;
   const PlantShape& shape = shape_in(scene.surroundings);
@@ -93,7 +93,7 @@ void GroundCoverPass::place(const Scene& scene, const Camera& camera, const Boun
   const float exact = std::log2(std::max(2 * reach / (float(shape.cells) * side), 1e-6f));
   const float level = std::max(0.0f, std::ceil(exact)), left = std::clamp(level - exact, 0.0f, 1.0f);
   const float height = cover.height * (1 + shape.growth * std::max(exact, 0.0f));
-  std::vector<PatchRecord> patches;
+  std::vector<DiscRecord> patches;
   for (const Patch& patch : scene.patches)
     patches.push_back({{patch.center.x, patch.center.y, patch.radius, 0}, {0, 0, 0, 0}});
   const auto patch_count = GLuint(patches.size());
@@ -142,7 +142,7 @@ void GroundCoverPass::draw(const Scene& scene, const Style& style, const std::st
     glUniform2f(2, shape.blade, shape.tuft);
     glUniform3f(3, low.x, low.y, low.z);
     glUniform3f(4, high.x, high.y, high.z);
-    glDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(first > 0 ? command_bytes : std::size_t{0}));
+    glDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(first > 0 ? draw_command_bytes : std::size_t{0}));
   };
   draw_all(plant_.get(plant_defines(shape) + variant), 0, style.plant_low, style.plant_high);
   draw_all(stone_.get(variant), GLuint(placed_), style.stone, style.stone);
@@ -160,7 +160,7 @@ void GroundCoverPass::draw_shades(const Scene& scene) const {
   const auto draw_all = [&](GLuint first, float radius, float darkness, std::size_t command) {
     glUniform1ui(0, first);
     glUniform2f(1, radius, darkness);
-    glDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(command * command_bytes));
+    glDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(command * draw_command_bytes));
   };
   draw_all(0, 0.75f * shape.tuft, 0.40f, 2);
   draw_all(GLuint(placed_), 1.8f, 0.50f, 3);

@@ -114,6 +114,7 @@ void OutlinePass::draw(const Bodies& bodies, const Scene& scene, LatticePass& la
     picture_ = targets.picture.get();
   }
   selected_.write(selected);
+  attach(bodies);
   draw_depth(bodies, scene, lattice, selected);
   draw_lines(boxes, targets, selected.size(), LatticePass::reach(bodies, scene));
 }

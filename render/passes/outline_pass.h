@@ -42,13 +42,13 @@ class OutlinePass {
  public:
   OutlinePass();
   void resize(int width, int height);
-  // Call when the bodies have been replaced.
-  void attach(const Bodies& bodies);
-  // Draws onto the finished picture. `boxes`: of BoundsPass. Does nothing if no body is selected.
+  // Draws onto the finished picture. `bodies`: as they are drawn, perhaps finer. `boxes`: of BoundsPass. Does nothing
+  // if no body is selected.
   void draw(const Bodies& bodies, const Scene& scene, LatticePass& lattice, const Buffer& boxes,
             const Targets& targets);
 
  private:
+  void attach(const Bodies& bodies);
   void draw_depth(const Bodies& bodies, const Scene& scene, LatticePass& lattice,
                   std::span<const std::uint32_t> selected) const;
   void draw_lines(const Buffer& boxes, const Targets& targets, std::size_t count, float reach);

@@ -20,12 +20,15 @@ struct PlacementRecord {
   Vector4 cut{0, 0, 0, 1};  // filled in by CutPass
 };
 
+constexpr std::uint32_t smooth_flag = 8;
+
 std::uint32_t flags_of(const Placement& placement) {
   return (placement.hidden ? 1u : 0u) | (placement.selected ? 2u : 0u) | (placement.faulty ? 4u : 0u) |
-         (placement.smooth ? 8u : 0u) | placement.first_material << 8;
+         (placement.smooth ? smooth_flag : 0u) | placement.first_material << 8;
 }
 
-std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies) {
+std::vector<PlacementRecord> placement_records(std::span<const Placement> placements, std::size_t bodies,
+                                               bool rounded) {
   std::vector<PlacementRecord> records(std::max<std::size_t>(bodies, 1));
   for (std::size_t i = 0; i < placements.size(); ++i) {
     const Vector3& offset = placements[i].offset;
@@ -34,6 +37,8 @@ std::vector<PlacementRecord> placement_records(std::span<const Placement> placem
     records[i].z = offset.z;
     records[i].flags = flags_of(placements[i]);
   }
+  if (rounded)
+    for (PlacementRecord& record : records) record.flags |= smooth_flag;
   return records;
 }
 
@@ -147,7 +152,7 @@ void MixPass::mix(std::size_t count, float share) {
   dispatch(count);
 }
 
-void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
+void SceneBuffers::upload(const Scene& scene, const Bodies& bodies, bool rounded) {
   require(scene.positions.size(), 3 * bodies.mass_count(), "positions");
   require(scene.placements.size(), bodies.body_count(), "placements");
   require(scene.face_values.size(), bodies.face_count(), "face_values");
@@ -158,7 +163,7 @@ void SceneBuffers::upload(const Scene& scene, const Bodies& bodies) {
   else
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT |
                     GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);  // makes earlier writes to them visible
-  placements_.write(placement_records(scene.placements, bodies.body_count()));
+  placements_.write(placement_records(scene.placements, bodies.body_count(), rounded));
   materials_.write(material_records(scene.materials));
   face_values_.write(scene.face_values);
   mass_values_.write(scene.mass_values);

@@ -91,7 +91,8 @@ class MixPass {
 class SceneBuffers {
  public:
   // Includes the bodies' positions, if the scene has them. Throws std::invalid_argument for spans of the wrong length.
-  void upload(const Scene& scene, const Bodies& bodies);
+  // `rounded`: all bodies are placed with Placement::smooth.
+  void upload(const Scene& scene, const Bodies& bodies, bool rounded = false);
   // Binds all that shaders/bodies.glsl declares, and the values to color by.
   void bind(const Bodies& bodies) const;
 

@@ -62,6 +62,7 @@ void SkinPass::gather_seen_faces(const Bodies& bodies) const {
   face_normals_.bind_storage(binding::face_normals);
   cull_.bind_seen();
   glUseProgram(seen_faces_program_.get());
+  glUniform1ui(0, GLuint(2 * times_subdivided_));
   dispatch(bodies.face_count());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
@@ -102,22 +103,34 @@ void SkinPass::draw_shadow() const {
   glDisable(GL_CLIP_DISTANCE0);
 }
 
-FineSkinPass::FineSkinPass(const FineSkin& skin, const std::string& defines)
-    : skin_(defines), program_(make_program({"subdivide.comp"})) {
+FineSkinPass::FineSkinPass(const FineSkin& skin, int times, const std::string& defines)
+    : times_(times), skin_(defines), positions_program_(make_program({"subdivide.comp"}, define("NUMBERS", 3))),
+      values_program_(make_program({"subdivide.comp"}, define("NUMBERS", 1))) {
   points_.set(std::make_shared<const BodyData>(skin.bodies));
   ends_.write(skin.means.ends);
   masses_.write(skin.means.masses);
   weights_.write(skin.means.weights);
+  values_.reserve(4 * points_.mass_count());
   skin_.attach(points_);
+  skin_.set_subdivided(times);
 }
 
 void FineSkinPass::follow(const Bodies& bodies) const {
   bodies.positions.bind_storage(binding::positions);
+  take_means(positions_program_, points_.positions);
+}
+
+void FineSkinPass::bind_values() const {
+  take_means(values_program_, values_);
+  values_.bind_storage(binding::mass_values);
+}
+
+void FineSkinPass::take_means(const Program& program, const Buffer& of_points) const {
   ends_.bind_storage(binding::first_free);
   masses_.bind_storage(binding::first_free + 1);
   weights_.bind_storage(binding::first_free + 2);
-  points_.positions.bind_storage(binding::first_free + 3);
-  glUseProgram(program_.get());
+  of_points.bind_storage(binding::first_free + 3);
+  glUseProgram(program.get());
   glUniform1ui(0, GLuint(points_.mass_count()));
   dispatch(points_.mass_count());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);

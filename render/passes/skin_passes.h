@@ -24,6 +24,9 @@ class SkinPass {
   // draw, and a SeenFace for each that is seen. `cut`: a plane cuts the bodies of this frame.
   void deform(const Bodies& bodies, bool smooth, bool cut);
 
+  // Values of faces are those of the skin that this one was made from, subdivided so often.
+  void set_subdivided(int times) { times_subdivided_ = times; }
+
   enum class ColorBy { materials, face_values, mass_values };
   // `variant`: lines of #define; shaders/skin.frag explains them.
   void draw(ColorBy color_by, const Scale& scale, const std::string& variant) const;
@@ -43,24 +46,31 @@ class SkinPass {
   ProgramVariants depth_, skin_;
   CullPass cull_;
   bool cut_ = false;
+  int times_subdivided_ = 0;
   Buffer seen_faces_, face_normals_, face_areas_, mass_normals_;
 };
 
 // A finer skin, whose points follow the masses of all bodies.
 class FineSkinPass {
  public:
-  // `defines`: as of SkinPass.
-  FineSkinPass(const FineSkin& skin, const std::string& defines);
+  // `times`: how often it was subdivided. `defines`: as of SkinPass.
+  FineSkinPass(const FineSkin& skin, int times, const std::string& defines);
   // Moves its points to where the bodies are.
   void follow(const Bodies& bodies) const;
+  // Binds the values of its points, means of those of masses, which are bound.
+  void bind_values() const;
   const Bodies& bodies() const { return points_; }
   SkinPass& skin() { return skin_; }
+  int times() const { return times_; }
 
  private:
+  void take_means(const Program& program, const Buffer& of_points) const;
+
+  int times_;
   Bodies points_;
-  Buffer ends_, masses_, weights_;
+  Buffer ends_, masses_, weights_, values_;
   SkinPass skin_;
-  Program program_;
+  Program positions_program_, values_program_;
 };
 
 inline constexpr const char* cut_variant = "#define CUT\n";

@@ -64,7 +64,8 @@ bool draw_show_section(ViewSettings& view, const KeyMap& keys, EventLog& log) {
     changed |=
         check("Springs", with_keys(keys, "each spring as a rod", Action::springs), shown.springs, "springs", log);
     changed |= check("Masses", "each mass as a ball", shown.masses, "masses", log);
-    changed |= check("Rounded skin", "smooth the edges of the skin", view.smooth, "smooth", log);
+    changed |= check("Faceted skin", "edged skins, which show each voxel; those of many robots always are",
+                     view.faceted, "faceted", log);
     changed |= check("Path", "the path of each center of mass", shown.path, "path", log);
     ImGui::TableNextColumn();
     changed |= check("Names", with_keys(keys, "name, distance and rank above each robot", Action::labels), shown.labels,
