@@ -122,9 +122,9 @@ bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor, ChampionCh
     const std::optional<Generation> generation = evolution.advance(assessor, watch);
     if (!generation) return false;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    run.append(*generation, {.seconds = seconds, .device = assessor.device_name()});
+    if (checks) checks->update();  // of the generations before, which are written
+    run.append_later(*generation, {.seconds = seconds, .device = assessor.device_name()});
     if (!has_warned) has_warned = warn_of_undefined(*generation);
-    if (checks) checks->update();
     progress.finish_generation(generation->born.size() * static_cast<std::size_t>(evolution.settings().trials.trials),
                                evolution.living().empty() ? worst_score : evolution.living().front().score(),
                                median_score(evolution));
@@ -211,6 +211,7 @@ int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSetti
     checks.emplace(run, checking_threads(settings.configuration.device)).update();
   const bool done = evolve(run, evolution, assessor, checks ? &*checks : nullptr);
   run.write_all();
+  if (checks) checks->update();
   const bool all_checked = !checks || finish_checks(*checks);
   if (!options.brief) {
     report(options, run, evolution);

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <future>
 #include <limits>
 #include <utility>
 
@@ -23,9 +24,16 @@ struct RunFolder::Parts {
   Parts(const std::filesystem::path& folder, JournalWriter locked, GenomeSpaceMaker make_space)
       : writer(std::move(locked)), history(folder, std::move(make_space)) {}
 
+  // Waits for append_later().
+  void settle() {
+    if (later.valid()) later.get();
+  }
+  void append(const Generation& generation, const GenerationTimes& times);
+
   JournalWriter writer;  // holds the lock, so the history is read after it was taken
   RunHistory history;
   DerivedFiles derived;
+  std::future<void> later;  // last: it uses the others
 };
 
 namespace {
@@ -93,10 +101,14 @@ RunFolder RunFolder::open(const std::filesystem::path& folder, GenomeSpaceMaker 
   return RunFolder(std::move(parts));
 }
 
-const RunHistory& RunFolder::history() const { return parts_->history; }
+const RunHistory& RunFolder::history() const {
+  parts_->settle();
+  return parts_->history;
+}
 const GenomeSpace& RunFolder::space() const { return parts_->history.space(); }
 
 void RunFolder::set_generations(int generations) {
+  parts_->settle();
   RunHistory::Parts& run = *parts_->history.parts_;
   if (generations < 0) throw ParameterError("generations", "give 0 or more");
   const std::filesystem::path path = run.folder / run_file_name;
@@ -120,7 +132,18 @@ void restore(const RunHistory& history, Evolution& evolution) {
 }
 
 void RunFolder::append(const Generation& generation, const GenerationTimes& times) {
-  RunHistory::Parts& run = *parts_->history.parts_;
+  parts_->settle();
+  parts_->append(generation, times);
+}
+
+void RunFolder::append_later(Generation generation, GenerationTimes times) {
+  parts_->settle();
+  parts_->later = std::async(std::launch::async, [&parts = *parts_, generation = std::move(generation),
+                                                  times = std::move(times)] { parts.append(generation, times); });
+}
+
+void RunFolder::Parts::append(const Generation& generation, const GenerationTimes& times) {
+  RunHistory::Parts& run = *history.parts_;
   if (generation.number != static_cast<int>(run.generations.size()))
     throw InputError(run.folder.string(), "generation " + std::to_string(generation.number) + " does not follow the " +
                                               std::to_string(run.generations.size()) + " generations of the run");
@@ -128,12 +151,13 @@ void RunFolder::append(const Generation& generation, const GenerationTimes& time
   const std::string genomes = store_genomes(record, run.genomes);
   for (Individual& born : record.generation.born) use_stored_quantities(born.assessment, run.file.quantities);
   run.journal.check_not_replaced();
-  parts_->writer.append(record, genomes, run.journal.version());
+  writer.append(record, genomes, run.journal.version());
   run.refresh();
-  parts_->derived.write_now_and_then(parts_->history);
+  derived.write_now_and_then(history);
 }
 
 void RunFolder::write_all() {
+  parts_->settle();
   parts_->history.parts_->journal.check_not_replaced();
   parts_->derived.write(parts_->history);
 }

@@ -128,9 +128,10 @@ inline void evolve(RunFolder& run, int most = 1'000'000) {
   ByteAssessor assessor(run.history().settings().evolution.objectives.size());
   for (int i = 0; i < most; ++i) {
     const std::optional<Generation> generation = evolution.advance(assessor);
-    if (!generation) return;
-    run.append(*generation, {.seconds = 0.5, .device = assessor.device_name()});
+    if (!generation) break;
+    run.append_later(*generation, {.seconds = 0.5, .device = assessor.device_name()});
   }
+  run.history();  // waits
 }
 
 // What an error says; "" if there is none.
