@@ -15,6 +15,7 @@ LIBRARY = ROOT / "robots" / "library"
 sys.path[:0] = [str(LIBRARY / "animals"), str(ROOT / "bench")]
 
 from animals import ANIMALS  # noqa: E402
+from brains import STARTS  # noqa: E402
 from measure_animals import environment_of, gait  # noqa: E402
 
 FILES = {file.stem: file for file in sorted(LIBRARY.glob("*.json"))}
@@ -128,6 +129,47 @@ def test_swimmers_with_a_brain_reach_random_targets(name, radius, mercury):
     report = mercury("run", FILES[name], "--target-radius", radius, "--target-spread", 0.5, "--turned", "--trials", 20, "--seed",
                      5, "--seconds", 10, "--device", "cpu", "--json", "--quiet")  # fmt: skip
     assert json.loads(report)["robots"][0]["reached"] >= 0.9
+
+
+def share_of_trials(robot, seconds, of_trial, trials, *, settle=0, **environment):
+    land = environment_of(robot).replace(**environment)
+    options = dict(environment=land, damping=0, settle=settle, trials=trials, turned=True, seed=5, device="cpu")
+    radius = 0 if environment else 3
+    result = next(iter(mercurysim.evaluate([robot], seconds, target_radius=radius, **options)))
+    return np.mean([of_trial(trial) for trial in result.trials])
+
+
+def start_of(name, tmp_path):
+    """The robot with which the search for a brain began."""
+    (tmp_path / "start.json").write_text(json.dumps(STARTS[name]()))
+    return mercurysim.load(tmp_path / "start.json")
+
+
+def test_the_moth_goes_to_the_light_and_did_not_before_its_search(tmp_path):
+    reached = [share_of_trials(robot, 16, lambda trial: trial.quantities["reached"], 12)
+               for robot in (mercurysim.load(FILES["moth"]), start_of("moth", tmp_path))]  # fmt: skip
+    assert reached[0] >= 0.6 and reached[1] <= 0.3
+
+
+def test_the_surefoot_walks_on_after_pushes_that_topple_it_without_its_senses(tmp_path):
+    robot, ant = mercurysim.load(FILES["surefoot"]), start_of("ant", tmp_path)
+    numb = json.loads(FILES["surefoot"].read_text())
+    for sensor in numb["sensors"]:
+        sensor["gain"] = 1 if sensor["kind"] == "clock" else 0
+    (tmp_path / "numb.json").write_text(json.dumps(numb))
+    twin = mercurysim.load(tmp_path / "numb.json")
+    walks = [share_of_trials(each, 7, lambda trial: trial.distance > 1, 24, settle=3, push=(1.8, 0, 0), push_at=2)
+             for each in (robot, twin, ant)]  # fmt: skip
+    assert walks[0] > walks[1] > walks[2]
+
+
+@pytest.mark.parametrize("name, brainless", [("seeker", "eel"), ("moth", "ant"), ("surefoot", "ant")])
+def test_a_learned_brain_has_the_structure_of_its_start_and_the_body_stayed(name, brainless):
+    begun, learned = STARTS["moth" if name == "moth" else brainless](), json.loads(FILES[name].read_text())
+    assert learned["sensors"] == [pytest.approx(sensor) if sensor["kind"] == "clock" else sensor for sensor in begun["sensors"]]
+    assert np.allclose(learned["masses"], begun["masses"], atol=1e-6)
+    layers = [[(layer["name"], layer["neurons"]) for layer in each["brain"]["layers"]] for each in (begun, learned)]
+    assert layers[0] == layers[1]
 
 
 def test_evolved_animals_beat_those_made_by_hand_of_the_same_mass():
