@@ -236,6 +236,7 @@ void add_check_command(const Command& program, const Choose& choose) {
   options->output.add_to(command);
   command.add_flag("--json", options->json, "Print JSON instead of a table").on_first_screen();
   add_trial_options(command, options->trials);
+  add_mean_option(command, options->trials);
   options->simulation.add_to(command);
   command.set_footer(
       "Each robot is tried at dt, dt/2 and dt/4, with --trials jitters at each, and gets one verdict:\n"

@@ -82,6 +82,19 @@ TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
   EXPECT_THAT(listing(), SizeIs(1));
 }
 
+// The start around a target and the push are those of the run that was killed; how near it came is remembered.
+TEST_F(Checkpoint, ATargetAndAPushArePartOfTheRun) {
+  const Arguments more{"--target-radius", "0.3",         "--target-spread", "0.9", "--turned", "--reach", "0.1",
+                       "--push",          "0.3,0.1,0.2", "--push-at",       "0.6"};
+  const json whole = robots_of(mercury(run_ + more));
+  EXPECT_NE(whole, robots_of(mercury(run_)));
+  for (const json& robot : whole) EXPECT_TRUE(robot["reached"] == 0 || robot["reached"] == 1) << robot["reached"];
+  kill(more);
+  EXPECT_EQ(robots_of(mercury(resume_)), whole);
+  ASSERT_EQ(mercury(run_ + more + Arguments{"--record", path("r.h5")}).status, 0);
+  EXPECT_EQ(mercury({"verify", path("r.h5"), "--quiet"}).status, 0);
+}
+
 TEST_F(Checkpoint, ItCanGoOnForLonger) {
   Arguments longer = run_;
   *(std::ranges::find(longer, "1.23")) = "1.5";

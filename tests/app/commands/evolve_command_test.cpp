@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -327,6 +328,29 @@ TEST_F(EvolveCommand, FoldingIsMeasuredWhereAnObjectiveOrAxisNamesIt) {
 }
 
 // A search among the muscles of a robot file: in one go, in two parts, and in shards.
+TEST_F(EvolveCommand, TrialsAroundATargetGoOnBitForBitAndAreThereAgainInRun) {
+  const auto run = [&](const char* folder, const char* generations) {
+    return evolve(folder, joined(small(generations), {"--target-radius", "0.4", "--target-spread", "0.9", "--turned",
+                                                      "--reach", "0.3", "--mean", "--trials", "4", "--objective",
+                                                      "reached - target_nearest", "--no-confirm"}));
+  };
+  ASSERT_EQ(run("whole", "3").status, 0);
+  ASSERT_EQ(run("parts", "1").status, 0);
+  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "2", "--quiet"}).status, 0);
+  ASSERT_EQ(evolve("parts", {"--merge", "--generations", "3", "--quiet"}).status, 0);
+  for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(evolve("parts", {"--shard", shard, "--quiet"}).status, 0);
+  ASSERT_EQ(evolve("parts", {"--merge", "--quiet"}).status, 0);
+  EXPECT_EQ(lineage("parts"), lineage("whole"));
+  const RunHistory history(path("whole"));
+  const Individual& best = history.individuals()[history.living().front()];
+  const Outcome again = mercury({"run", path("whole"), "--robot", "best", "--json", "--device", "cpu"});
+  const auto robot = nlohmann::json::parse(again.output)["robots"][0];
+  EXPECT_DOUBLE_EQ(robot["reached"].get<double>(), best.assessment.values[*find_quantity("reached")]);
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(best.assessment.hash));
+  EXPECT_EQ(robot["hash"], hash);
+}
+
 TEST_F(EvolveCommand, CmaEsGoesOnBitForBitAndSaysWhatItCannotSearch) {
   for (const char* algorithm : {"cma-es", "sep-cma-es"}) {
     const auto run = [&](const char* folder, const char* generations) {
