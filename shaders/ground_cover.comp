@@ -53,8 +53,21 @@ ivec2 child_of(ivec2 cell, int of_level) {
   return 2 * cell + ivec2(int(which & 1u), int((which >> 1u) & 1u));
 }
 
+// How tall something may be that would stand between the eye and a box: below the line of sight to its lowest point, or
+// no taller than it is far from there.
+float room_in_front(vec2 point, vec3 low, vec3 high) {
+  vec2 to_body = 0.5 * (low.xy + high.xy) - frame.eye.xy, to_point = point - frame.eye.xy;
+  float range = length(to_body), radius = 0.5 * length(high.xy - low.xy);
+  vec2 ahead = to_body / max(range, 1e-6);
+  float along = dot(to_point, ahead), aside = abs(ahead.x * to_point.y - ahead.y * to_point.x);
+  if (along <= 0.0 || along >= range) return 1e30;
+  float share = min(along / max(range - radius, 1e-6), 1.0);
+  float line = mix(frame.eye.z, low.z, share) - frame.ground.w;
+  return max(line, 0.0) + max(aside - radius * share, 0.0);
+}
+
 // How tall something may be at a point: below bodies it leaves most of the room, beside them it is no taller than its
-// distance.
+// distance, and it hides none.
 float room_at(vec2 point) {
   float margin = 0.15 * sizes.y;
   float room = 1e30;
@@ -64,6 +77,7 @@ float room_at(vec2 point) {
     vec3 low = boxes[i].low.xyz + placement.offset, high = boxes[i].high.xyz + placement.offset;
     vec2 off = max(max(low.xy - point, point - high.xy), vec2(0.0));
     room = min(room, 0.6 * max(low.z - frame.ground.w, 0.0) + max(length(off) - margin, 0.0));
+    room = min(room, room_in_front(point, low, high));
   }
   for (uint i = 0u; i < patch_count; ++i)
     room = min(room, max(distance(patches[i].disc.xy, point) - patches[i].disc.z - margin, 0.0));

@@ -75,6 +75,37 @@ TEST_F(GroundCoverTest, NothingIsHigherThanTheRoomBelowABodyOrThanItsDistanceFro
     }
 }
 
+TEST_F(GroundCoverTest, NothingHidesABodyFromTheEye) {
+  const WobblingGroup group = make_wobbling_group(4, 6, 4, 1.4f);
+  for (const float elevation : {0.03f, 0.12f, 0.6f}) {
+    Scene scene;
+    scene.surroundings = Surroundings::land;
+    scene.floor = -0.3f;
+    scene.ground_cover = GroundCover{.height = 0.25f};
+    const Camera camera = Orbit{.azimuth = -1.2f, .elevation = elevation, .distance = 5}.camera();
+    const Items all = items(scene, group, camera);
+    ASSERT_GT(all.size(), 20u);
+    int below = 0;
+    for (const auto& item : all)
+      for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+        const Bounds box = bounds_of(group.bodies[i].rest).moved(group.placements[i].offset);
+        // Lines of sight to the nearer half of the lower side of its box that pass above the foot.
+        for (float u = 0; u <= 1; u += 0.05f)
+          for (float v = 0; v <= 1; v += 0.05f) {
+            const Vector3 seen(std::lerp(box.low.x, box.high.x, u), std::lerp(box.low.y, box.high.y, v), box.low.z);
+            const Vector3 sight = seen - camera.eye;
+            const Vector2 level = sight.xy(), foot = item.foot.xy() - camera.eye.xy();
+            if (level.norm() > (box.center() - camera.eye).xy().norm()) continue;
+            const float share = foot.dot(level) / level.dot(level);
+            if (share <= 0 || share >= 1 || (foot - share * level).norm() > 0.01f) continue;
+            ++below;
+            EXPECT_LE(item.foot.z + item.height, camera.eye.z + share * sight.z + 0.02f);
+          }
+      }
+    EXPECT_GT(below, elevation > 0.5f ? 10 : 0);
+  }
+}
+
 TEST_F(GroundCoverTest, NothingStandsOnAPatchOrInTheBareRectangle) {
   Scene scene;
   scene.surroundings = Surroundings::land;
