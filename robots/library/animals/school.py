@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a school of one sample, side by side, for a picture in which all of them have one target.
 
-    python3 robots/library/animals/school.py hunter 3x5 school
-    mercury render school --grid 3x5 --camera top --target 6,4,0 -o school.mp4
+    python3 robots/library/animals/school.py hunter 3x5 hunters
+    mercury render hunters --grid 3x5 --camera top --target 6,4,0 -o school.mp4
 
 A grid of `render` puts each robot into the middle of its cell. Here it is there already, so all keep their coordinates, and the target
 is at the same place for all.

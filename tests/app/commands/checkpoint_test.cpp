@@ -82,7 +82,7 @@ TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
   EXPECT_THAT(listing(), SizeIs(1));
 }
 
-// The start around a target and the push are those of the run that was killed; how near it came is remembered.
+// The start around a target and the push are those of the run that was killed; how near it came is kept.
 TEST_F(Checkpoint, ATargetAndAPushArePartOfTheRun) {
   const Arguments more{"--target-radius", "0.3",         "--target-spread", "0.9", "--turned", "--reach", "0.1",
                        "--push",          "0.3,0.1,0.2", "--push-at",       "0.6"};

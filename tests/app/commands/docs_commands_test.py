@@ -3,7 +3,7 @@
 
     docs_commands_test.py MERCURY PAGE.md
 
-The folder holds what a reader would have: the sample robots, the folders my-robots, starts and school, scene.toml. Commands are shortened so that
+The folder holds what a reader would have: the sample robots, the folders my-robots, starts and hunters, scene.toml. Commands are shortened so that
 they take moments: fewer robots, shorter trials, smaller pictures. Commands that need a scheduler or several hosts are left out.
 """
 
@@ -126,7 +126,7 @@ def make_folder(folder, program, texts):
     subprocess.run([program, "run", "my-robots", "--seconds", "0.1", "--record", "run.h5"], **run)
     (folder / "scene.toml").write_text('format = "mercury-scene"\nversion = 1\nrobots = ["eel.json", "fish.json"]\n')
     subprocess.run([sys.executable, PROJECT / "robots/library/animals/brains.py", "starts"], **run)
-    subprocess.run([sys.executable, PROJECT / "robots/library/animals/school.py", "hunter", "3x5", "school"], **run)
+    subprocess.run([sys.executable, PROJECT / "robots/library/animals/school.py", "hunter", "3x5", "hunters"], **run)
     if not any("evolve swim" in text for text in texts):  # a page may look at a run of another page
         subprocess.run([program, *shortened(["evolve", "swim", "--from", "voxel:2x2x2"])], **run)
     for name in ["bin", "build/bin"]:
