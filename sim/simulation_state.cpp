@@ -50,6 +50,7 @@ State Simulation::state(std::size_t robot) const {
   parts_->require(robot);
   State state = parts_->state(robot);
   parts_->add_explosion(state, robot, parts_->backend->status(robot));
+  if (has_brains()) state.brain = parts_->brains.state(robot);
   return state;
 }
 
@@ -84,7 +85,11 @@ void Simulation::set_state(std::size_t robot, std::span<const Vec3> positions, s
 }
 
 void Simulation::set_state(std::size_t robot, const State& state) {
+  parts_->require(robot);
+  const bool thinks = !(state.brain == BrainState{});
+  if (thinks) parts_->brains.require_state(robot, state.brain);
   set_state(robot, state.positions, state.velocities);
+  if (thinks) parts_->brains.set_state(robot, state.brain);
   if (!state.exploded) return;
   parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.culprit_spring};
   parts_->backend->set_status(robot, {.exploded_step = parts_->clock.step});

@@ -250,8 +250,8 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
       command.notes.push_back(name + " is in no file; save it first");
     else if (robot.body.materials)
       command.notes.push_back(name + ": the changed materials are not in the command; save it first");
-    if (robot.body.drives)
-      command.notes.push_back(name + ": the actuators that are driven by hand are not in the command");
+    if (robot.body.by_hand)
+      command.notes.push_back(name + ": the muscles and neurons that are held by hand are not in the command");
     if (robot.source.file.empty()) continue;
     const std::string& file = robot.source.file;
     command.text.append(" ").append(shell_quoted(file.starts_with('-') ? fmt::format("./{}", file) : file));

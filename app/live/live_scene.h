@@ -202,6 +202,10 @@ class LiveScene {
   // Like the materials, drives belong to undo and the timeline; no file keeps them.
   void drive_actuator(const std::vector<RobotId>& robots, const std::string& actuator, std::optional<float> drive);
   void release_actuators(const std::vector<RobotId>& robots);
+  // The neuron of its brain has this value whatever it reads (0 silences it), none = it thinks again; kept as drives
+  // are.
+  void clamp_neuron(RobotId robot, std::size_t neuron, std::optional<float> value);
+  void release_neurons(RobotId robot);
   const ViewSettings& view() const;
   void set_view(const ViewSettings& settings);  // details that the environment lacks are ignored
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "app/live/live_scene_parts.h"
+#include "mercury/brain.h"
 #include "mercury/error.h"
 
 namespace mercury {
@@ -224,32 +225,65 @@ void LiveScene::reset_materials(const std::vector<RobotId>& robots) {
   });
 }
 
+namespace {
+
+// Holds one value of a list with `count` of them, or releases it. Returns whether that changes anything.
+bool hold(LiveRobot& robot, std::vector<float> ByHand::*list, std::size_t count, std::size_t index,
+          std::optional<float> wanted) {
+  const float value = wanted.value_or(std::numeric_limits<float>::quiet_NaN());
+  ByHand held = robot.by_hand ? *robot.by_hand : ByHand{};
+  std::vector<float>& values = held.*list;
+  values.resize(count, std::numeric_limits<float>::quiet_NaN());
+  if (values[index] == value || (std::isnan(values[index]) && std::isnan(value))) return false;
+  values[index] = value;
+  const auto is_free = [](const std::vector<float>& all) {
+    return std::ranges::all_of(all, [](float one) { return std::isnan(one); });
+  };
+  robot.by_hand =
+      is_free(held.drives) && is_free(held.neurons) ? nullptr : std::make_shared<const ByHand>(std::move(held));
+  return true;
+}
+
+bool release(LiveRobot& robot, std::vector<float> ByHand::*list) {
+  bool changed = false;
+  const std::size_t count = robot.by_hand ? (robot.by_hand.get()->*list).size() : 0;
+  for (std::size_t i = 0; i < count; ++i) changed = hold(robot, list, count, i, std::nullopt) || changed;
+  return changed;
+}
+
+}  // namespace
+
 void LiveScene::drive_actuator(const std::vector<RobotId>& robots, const std::string& name,
                                std::optional<float> drive) {
-  const float value = drive ? std::clamp(*drive, -1.0f, 1.0f) : std::numeric_limits<float>::quiet_NaN();
+  if (drive) drive = std::clamp(*drive, -1.0f, 1.0f);
   parts_->change_robots(robots, drive ? "drive an actuator" : "release an actuator", "drive " + name,
                         [&](DocumentRobot& robot) {
                           const std::vector<Actuator> actuators = actuators_of(*robot.body.robot);
                           const auto found = std::ranges::find(actuators, name, &Actuator::name);
-                          if (found == actuators.end() || (!drive && !robot.body.drives)) return false;
-                          std::vector<float> drives(actuators.size(), std::numeric_limits<float>::quiet_NaN());
-                          if (robot.body.drives) drives = *robot.body.drives;
-                          float& own = drives[static_cast<std::size_t>(found - actuators.begin())];
-                          if (own == value || (std::isnan(own) && std::isnan(value))) return false;
-                          own = value;
-                          const bool any = !std::ranges::all_of(drives, [](float u) { return std::isnan(u); });
-                          robot.body.drives = any ? std::make_shared<const std::vector<float>>(drives) : nullptr;
-                          return true;
+                          if (found == actuators.end()) return false;
+                          return hold(robot.body, &ByHand::drives, actuators.size(),
+                                      static_cast<std::size_t>(found - actuators.begin()), drive);
                         });
 }
 
 void LiveScene::release_actuators(const std::vector<RobotId>& robots) {
   end_edit();
-  parts_->change_robots(robots, "release actuators", {}, [](DocumentRobot& robot) {
-    const bool driven = robot.body.drives != nullptr;
-    robot.body.drives.reset();
-    return driven;
-  });
+  parts_->change_robots(robots, "release actuators", {},
+                        [](DocumentRobot& robot) { return release(robot.body, &ByHand::drives); });
+}
+
+void LiveScene::clamp_neuron(RobotId robot, std::size_t neuron, std::optional<float> value) {
+  parts_->change_robots(
+      {robot}, value ? "hold a neuron" : "release a neuron", fmt::format("neuron {}", neuron), [&](DocumentRobot& one) {
+        const std::size_t count = one.body.robot->brain ? brain_layout(*one.body.robot).neurons.size() : 0;
+        return neuron < count && hold(one.body, &ByHand::neurons, count, neuron, value);
+      });
+}
+
+void LiveScene::release_neurons(RobotId robot) {
+  end_edit();
+  parts_->change_robots({robot}, "release neurons", {},
+                        [](DocumentRobot& one) { return release(one.body, &ByHand::neurons); });
 }
 
 const ViewSettings& LiveScene::view() const { return parts_->view; }
@@ -299,7 +333,7 @@ bool LiveScene::edit_voxel(RobotId id, const VoxelSide& side, const VoxelEdit& e
   parts_->edit(names[static_cast<std::size_t>(edit.tool)]);
   DocumentRobot* robot = parts_->find(id);
   robot->body.robot = std::move(changed);
-  robot->body.drives.reset();                    // perhaps it has other actuators
+  robot->body.by_hand.reset();                   // perhaps it has other actuators
   robot->source = {.file = robot->source.file};  // the seed no longer makes this robot
   // Masses have other numbers now.
   std::erase_if(parts_->document.attachments, [&](const Attachment& one) { return one.spring.robot == id; });

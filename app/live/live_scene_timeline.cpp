@@ -64,7 +64,7 @@ void LiveScene::Parts::adopt_moment() {
     if (known) robot.body.name = known->body.name;
     if (known) robot.made = known->made, robot.parent = known->parent;
     same = same && known && known->body.robot == body.robot && known->body.materials == body.materials &&
-           known->body.drives == body.drives;
+           known->body.by_hand == body.by_hand;
     then.robots.push_back(std::move(robot));
   }
   same =
@@ -202,12 +202,14 @@ std::size_t LiveScene::show_ghosts(const std::vector<RobotId>& robots, GhostOf o
     const DocumentRobot* robot = parts_->document.find(id);
     if (!robot) continue;
     const LiveRobot& unchanged = robot->made ? *robot->made : robot->body;
-    const bool changed = unchanged.robot != robot->body.robot || unchanged.materials != robot->body.materials;
+    const bool changed = unchanged.robot != robot->body.robot || unchanged.materials != robot->body.materials ||
+                         unchanged.by_hand != robot->body.by_hand || robot->body.by_hand;
     const bool of_parent = of == GhostOf::parent || (of == GhostOf::automatic && !changed && robot->parent);
     if (of_parent && !robot->parent) continue;
     LiveGhost ghost{id, of_parent, of_parent ? *robot->parent : unchanged};
     ghost.body.id = id;
     ghost.body.begins_as = 0;
+    ghost.body.by_hand.reset();
     parts_->ghosts.push_back(std::move(ghost));
   }
   std::vector<LiveRobot> bodies;

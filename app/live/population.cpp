@@ -64,6 +64,7 @@ bool Population::follow(const std::vector<LiveRobot>& wanted) {
   }
   follow_materials(wanted, changed);
   follow_drives(wanted, changed);
+  follow_neurons(wanted);
   robots_ = listed(wanted, *robots_, changed);
   return changed;
 }
@@ -206,12 +207,23 @@ void Population::follow_materials(const std::vector<LiveRobot>& wanted, bool arr
 void Population::follow_drives(const std::vector<LiveRobot>& wanted, bool arranged) {
   bool any = false, same = !arranged;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    any = any || wanted[i].drives;
-    same = same && robots_->robots[i].drives == wanted[i].drives;
+    any = any || wanted[i].by_hand;
+    same = same && robots_->robots[i].by_hand == wanted[i].by_hand;
   }
   if (same || !(any || held_)) return;
   held_ = true;
   simulation_.hold_drives(held_drives(wanted));
+}
+
+// `robots_` are still those before: the same body keeps its clamps in the simulation.
+void Population::follow_neurons(const std::vector<LiveRobot>& wanted) {
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto before = robots_->index_of(wanted[i].id);
+    const bool stays = before && robots_->robots[*before].robot == wanted[i].robot;
+    if (!wanted[i].by_hand && !(stays && robots_->robots[*before].by_hand)) continue;
+    clamp_neurons(simulation_, i, stays ? held_neurons(robots_->robots[*before]) : std::span<const float>(),
+                  held_neurons(wanted[i]));
+  }
 }
 
 std::vector<Perturbation> Population::perturbations_of(std::span<const LivePerturbation> perturbations) const {

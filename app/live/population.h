@@ -23,8 +23,8 @@ class Population {
       : simulation_(simulation),
         robots_(std::make_shared<LiveRobots>(LiveRobots{.revision = revision, .mass_offsets = {0}})) {}
 
-  // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials and
-  // what drives them by hand. Returns whether the list changed; materials and drives alone do not count.
+  // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials and what is held of
+  // them by hand. Returns whether the list changed; materials and what is held do not count.
   bool follow(const std::vector<LiveRobot>& wanted);
   // Keeps the clock and the states of all robots under a number, in place of those that it had. The oldest numbers are
   // forgotten if the states fill the memory.
@@ -55,6 +55,7 @@ class Population {
   void begin_as(const std::vector<LiveRobot>& wanted, const std::vector<std::size_t>& indices, std::size_t robot);
   void follow_materials(const std::vector<LiveRobot>& wanted, bool arranged);
   void follow_drives(const std::vector<LiveRobot>& wanted, bool arranged);
+  void follow_neurons(const std::vector<LiveRobot>& wanted);
 
   Simulation& simulation_;
   std::shared_ptr<const LiveRobots> robots_;

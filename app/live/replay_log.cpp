@@ -46,7 +46,7 @@ void ReplayLog::cut(const Simulation& simulation, const LiveRobots& robots,
   };
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const LiveRobot& robot = robots.robots[i];
-    Track track{.robot = robot.robot, .materials = robot.materials, .drives = robot.drives};
+    Track track{.robot = robot.robot, .materials = robot.materials, .by_hand = robot.by_hand};
     if (const auto found = tracks_.find(robot.id); found != tracks_.end() && found->second.robot == robot.robot) {
       track.older = found->second.older;
       track.newer = is_known(found->second.newer) ? found->second.newer : track.older;
@@ -74,13 +74,13 @@ void ReplayLog::follow(const Simulation& simulation, const LiveRobots& robots,
       track = std::move(known->second);
       if (track.materials != robot.materials)
         events_.add({.step = step, .materials = std::pair{robot.id, robot.materials}});
-      if (track.drives != robot.drives) events_.add({.step = step, .drives = std::pair{robot.id, robot.drives}});
+      if (track.by_hand != robot.by_hand) events_.add({.step = step, .by_hand = std::pair{robot.id, robot.by_hand}});
     } else {
       fresh.push_back(i);
     }
     track.robot = robot.robot;
     track.materials = robot.materials;
-    track.drives = robot.drives;
+    track.by_hand = robot.by_hand;
   }
   tracks_ = std::move(tracks);
   if (perturbations != perturbations_ && !tracks_.empty()) events_.add({.step = step, .perturbations = perturbations});
@@ -97,7 +97,7 @@ std::shared_ptr<const ReplayLog::Start> ReplayLog::start(const Simulation& simul
   return std::make_shared<const Start>(Start{.clock = simulation.clock(),
                                              .configuration = simulation.configuration(),
                                              .materials = track.materials,
-                                             .drives = track.drives,
+                                             .by_hand = track.by_hand,
                                              .state = simulation.state(index),
                                              .perturbations = perturbations_,
                                              .next = events_.end()});
@@ -128,9 +128,9 @@ std::function<Repro()> ReplayLog::repro(const Simulation& simulation, const Live
   const auto found = tracks_.find(robot.id);
   if (found == tracks_.end() || found->second.robot != robot.robot) return {};
   const auto& start = found->second.older;
-  bool by_hand = start->drives != nullptr;
+  bool by_hand = start->by_hand != nullptr;
   for (std::uint64_t number = start->next; const SceneEvent* event = events_.find(number); ++number)
-    by_hand = by_hand || (event->drives && event->drives->first == robot.id);
+    by_hand = by_hand || (event->by_hand && event->by_hand->first == robot.id);
   if (by_hand) return {};
   return [record = Record{robot, start, events_.copy(), start->next - events_.begin(), telemetry, simulation.steps(),
                           simulation.device_name()}] { return record.repro(); };

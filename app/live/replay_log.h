@@ -62,7 +62,7 @@ class ReplayLog {
     Clock clock;
     Configuration configuration;
     Materials materials;
-    SceneEvent::Drives drives;
+    SceneEvent::Held by_hand;
     State state;
     std::vector<LivePerturbation> perturbations;
     std::uint64_t next = 0;  // number of the first event after it
@@ -70,7 +70,7 @@ class ReplayLog {
   struct Track {
     std::shared_ptr<const Robot> robot;
     Materials materials;
-    SceneEvent::Drives drives;
+    SceneEvent::Held by_hand;
     std::shared_ptr<const Start> older, newer;
   };
   static constexpr double period = 5;                    // wall time of steps between two states [s]

@@ -14,11 +14,24 @@ std::size_t mass_count(const LiveRobots& robots, std::size_t robot) {
 
 }  // namespace
 
+std::span<const float> held_neurons(const LiveRobot& robot) {
+  return robot.by_hand ? std::span<const float>(robot.by_hand->neurons) : std::span<const float>();
+}
+
+void clamp_neurons(Simulation& simulation, std::size_t robot, std::span<const float> before,
+                   std::span<const float> now) {
+  const auto value = [](std::span<const float> values, std::size_t i) {
+    return i < values.size() && !std::isnan(values[i]) ? std::optional(values[i]) : std::nullopt;
+  };
+  for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i)
+    if (value(before, i) != value(now, i)) simulation.clamp_neuron(robot, i, value(now, i));
+}
+
 std::vector<HeldDrive> held_drives(std::span<const LiveRobot> robots) {
   std::vector<HeldDrive> held;
   for (std::size_t i = 0; i < robots.size(); ++i)
-    for (std::size_t a = 0; robots[i].drives && a < robots[i].drives->size(); ++a)
-      if (const float drive = (*robots[i].drives)[a]; !std::isnan(drive)) held.push_back({i, a, drive});
+    for (std::size_t a = 0; robots[i].by_hand && a < robots[i].by_hand->drives.size(); ++a)
+      if (const float drive = robots[i].by_hand->drives[a]; !std::isnan(drive)) held.push_back({i, a, drive});
   return held;
 }
 
@@ -33,6 +46,7 @@ Simulation simulation_of(std::span<const LiveRobot> live, const Configuration& c
     for (std::size_t id = 1; live[i].materials && id < live[i].materials->size(); ++id)
       simulation.set_material(i, static_cast<MaterialId>(id), (*live[i].materials)[id]);
   simulation.hold_drives(held_drives(live));
+  for (std::size_t i = 0; i < live.size(); ++i) clamp_neurons(simulation, i, {}, held_neurons(live[i]));
   return simulation;
 }
 

@@ -26,13 +26,19 @@ using RobotId = std::uint64_t;
 // A speed: as fast as the device allows.
 inline constexpr double unlimited_speed = std::numeric_limits<double>::infinity();
 
+// What a user holds of a robot by hand. NaN = nothing; the lists may be empty.
+struct ByHand {
+  std::vector<float> drives;   // u per actuator
+  std::vector<float> neurons;  // value per neuron of its brain
+};
+
 // A robot and its changes in the window.
 struct LiveRobot {
   RobotId id = 0;
   std::string name;  // replaces the robot's own name
   std::shared_ptr<const Robot> robot;
   std::shared_ptr<const std::vector<Material>> materials;  // replaces its table, same length; or null
-  std::shared_ptr<const std::vector<float>> drives = {};   // by hand, per actuator; NaN = not driven; null = none is
+  std::shared_ptr<const ByHand> by_hand = {};              // null = nothing is held
   RobotId begins_as = 0;  // a new robot begins in the state of this one, if it is the same body; 0 = at rest
   friend bool operator==(const LiveRobot&, const LiveRobot&) = default;
 };
@@ -42,8 +48,13 @@ std::span<const Material> materials_of(const LiveRobot& robot);
 
 // What drives these robots by hand, for Simulation::hold_drives().
 std::vector<HeldDrive> held_drives(std::span<const LiveRobot> robots);
+// The values of its neurons that are held by hand; may be empty.
+std::span<const float> held_neurons(const LiveRobot& robot);
+// Clamps and releases neurons of a robot of a simulation so that these are held `now`, where those were `before`.
+void clamp_neurons(Simulation& simulation, std::size_t robot, std::span<const float> before,
+                   std::span<const float> now);
 
-// The robots as the window has them, at rest: with their names, materials and drives.
+// The robots as the window has them, at rest: with their names, materials and what is held by hand.
 Simulation simulation_of(std::span<const LiveRobot> robots, const Configuration& configuration);
 
 // The robots of a snapshot, in the order of the window's list of robots.

@@ -153,7 +153,7 @@ void SceneEvents::add(SceneEvent event) {
     const bool same_kind = last.configuration.has_value() == event.configuration.has_value() &&
                            last.perturbations.has_value() == event.perturbations.has_value() &&
                            robot_of(last.materials) == robot_of(event.materials) &&
-                           robot_of(last.drives) == robot_of(event.drives);
+                           robot_of(last.by_hand) == robot_of(event.by_hand);
     if (last.step == event.step && same_kind && !event.configuration) {
       last = std::move(event);
       return;

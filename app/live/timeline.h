@@ -90,11 +90,11 @@ class Timeline {
 // A change after `step` steps, before the next one.
 struct SceneEvent {
   using Materials = std::shared_ptr<const std::vector<Material>>;
-  using Drives = std::shared_ptr<const std::vector<float>>;
+  using Held = std::shared_ptr<const ByHand>;
   std::int64_t step = 0;
   std::optional<Configuration> configuration;
   std::optional<std::pair<RobotId, Materials>> materials;  // a robot and its table; null = the robot's own
-  std::optional<std::pair<RobotId, Drives>> drives;        // a robot and what drives it by hand; null = nothing
+  std::optional<std::pair<RobotId, Held>> by_hand;         // a robot and what is held of it by hand; null = nothing
   std::optional<std::vector<LivePerturbation>> perturbations;
 };
 

@@ -150,11 +150,11 @@ void TimelinePlayer::apply_events() {
     changed = true;
     std::vector<LivePerturbation> perturbations = event->perturbations.value_or(batch_.perturbations());
     if (event->configuration) batch_.configure(*event->configuration);
-    if (event->materials || event->drives) {
+    if (event->materials || event->by_hand) {
       std::vector<LiveRobot> robots = batch_.robots()->robots;
       for (LiveRobot& robot : robots) {
         if (event->materials && robot.id == event->materials->first) robot.materials = event->materials->second;
-        if (event->drives && robot.id == event->drives->first) robot.drives = event->drives->second;
+        if (event->by_hand && robot.id == event->by_hand->first) robot.by_hand = event->by_hand->second;
       }
       batch_.follow(robots);
     }

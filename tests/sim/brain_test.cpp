@@ -108,6 +108,29 @@ TEST_P(BrainOn, LeavesADriveAloneThatIsHeld) {
   EXPECT_EQ(drives(batch)[1], batch->brain_state(0).neurons[4]);
 }
 
+TEST_P(BrainOn, GoesOnFromTheStateOfOneRobotBitForBit) {
+  const std::vector<Robot> robots(2, thinker());
+  const Configuration configuration{.dt = dt, .environment = Ocean{}};
+  SharedBatch first = this->batch(configuration, robots);
+  first->set_target(1, Vec3{1, 2, 3});
+  first->step(50);
+  const State state = first->state(1);
+  EXPECT_EQ(state.brain, first->brain_state(1));
+  SharedBatch other = this->batch(configuration, robots);
+  other->set_clock(first->clock());
+  other->set_target(0, Vec3{1, 2, 3});
+  other->set_state(0, state);
+  first->step(70);
+  other->step(70);
+  EXPECT_EQ(other->hash(0), first->hash(1));
+  EXPECT_EQ(other->brain_state(0), first->brain_state(1));
+  State wrong = state;
+  wrong.brain.neurons.pop_back();
+  const std::uint64_t before = other->hash(0);
+  EXPECT_THROW(other->set_state(0, wrong), std::invalid_argument);
+  EXPECT_EQ(other->hash(0), before);
+}
+
 TEST_P(BrainOn, ThinksAsTheEquationSays) {
   const Robot robot = thinker();
   SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));

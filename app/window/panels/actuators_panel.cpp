@@ -92,7 +92,8 @@ void ActuatorsPanel::draw(PanelContext& context) {
                          : "A slider drives a muscle by hand. -1: shortest, 1: longest.");
   const bool any = std::ranges::any_of(robots, [&](RobotId id) {
     const DocumentRobot* one = scene.document().find(id);
-    return one && one->body.drives;
+    return one && one->body.by_hand &&
+           !std::ranges::all_of(one->body.by_hand->drives, [](float u) { return std::isnan(u); });
   });
   ImGui::BeginDisabled(!any);
   if (ImGui::Button("Release all", {-1, 0})) scene.release_actuators(robots);
@@ -107,7 +108,8 @@ void ActuatorsPanel::draw(PanelContext& context) {
 void ActuatorsPanel::draw_actuator(PanelContext& context, const LiveRobot& robot, std::size_t index,
                                    const std::vector<RobotId>& robots) {
   const Actuator& actuator = body_.actuators[index];
-  const float by_hand = robot.drives ? (*robot.drives)[index] : NAN, text = ImGui::GetFontSize();
+  const bool any = robot.by_hand && index < robot.by_hand->drives.size();
+  const float by_hand = any ? robot.by_hand->drives[index] : NAN, text = ImGui::GetFontSize();
   const bool held = !std::isnan(by_hand);
   const float now = held ? by_hand : drive_now(context.scene, robot, index);
   const MaterialId material = actuator.materials.front();

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,12 +50,16 @@ class BrainPanel : public Panel {
   static Graph graph_of(const Robot& robot);
   float value_of(const BrainActivity& now, std::size_t node) const;
   void follow(const Snapshot& snapshot, RobotId robot);
-  void draw_graph(const BrainActivity& now, EventLog& log);
+  void draw_graph(const BrainActivity& now, std::span<const float> held, EventLog& log);
+  void draw_menu(PanelContext& context, const BrainActivity& now, std::span<const float> held);
+  void draw_held(PanelContext& context, RobotId robot, std::span<const float> held);
+  std::optional<std::size_t> neuron_of(std::size_t node) const;
   void draw_plots(PanelContext& context);
 
   std::shared_ptr<const Robot> body_;  // whose graph it is
   Graph graph_;
   std::set<std::size_t> plotted_;  // nodes
+  std::size_t menu_of_ = 0;        // the neuron whose menu is open
   std::deque<std::pair<double, std::vector<float>>> history_;
   PlotView view_;
 };
@@ -179,11 +184,21 @@ void BrainPanel::draw(PanelContext& context) {
   note(fmt::format("thinks every {:.3g} ms: {} senses, {} neurons, {} weights",
                    1000 * static_cast<double>(body_->brain->period), graph_.senses, graph_.neurons, graph_.weights)
            .c_str());
-  draw_graph(*snapshot.brain, context.log);
+  // As it is at the moment shown.
+  const LiveRobot live = snapshot.robots->robots[*snapshot.robots->index_of(*robot)];
+  const std::span<const float> held = held_neurons(live);
+  draw_graph(*snapshot.brain, held, context.log);
+  draw_menu(context, *snapshot.brain, held);
+  draw_held(context, *robot, held);
   draw_plots(context);
 }
 
-void BrainPanel::draw_graph(const BrainActivity& now, EventLog& log) {
+std::optional<std::size_t> BrainPanel::neuron_of(std::size_t node) const {
+  if (node < graph_.senses || node >= graph_.senses + graph_.neurons) return std::nullopt;
+  return node - graph_.senses;
+}
+
+void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> held, EventLog& log) {
   const float text = ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
   std::vector<std::size_t> counts(graph_.nodes.empty() ? 1 : graph_.nodes.back().column + 1);
   for (const Node& node : graph_.nodes) ++counts[node.column];
@@ -222,14 +237,67 @@ void BrainPanel::draw_graph(const BrainActivity& now, EventLog& log) {
     const float value = value_of(now, i);
     list.AddCircleFilled(at, radius, packed(render::color_at(render::Colormap::diverging, std::tanh(value), -1, 1)));
     if (plotted_.contains(i)) list.AddCircle(at, radius + 0.12f * text, palette().accent, 0, 0.12f * text);
+    const std::optional<std::size_t> neuron = neuron_of(i);
+    if (!neuron) continue;
+    if (*neuron < 8)
+      log.item(fmt::format("brain.neuron.{}", *neuron), {at.x - radius, at.y - radius}, {at.x + radius, at.y + radius});
+    if (*neuron >= held.size() || std::isnan(held[*neuron])) continue;
+    const float arm = 0.7f * radius + 0.15f * text;  // a cross over what is held
+    list.AddLine({at.x - arm, at.y - arm}, {at.x + arm, at.y + arm}, ImGui::GetColorU32(ImGuiCol_Text), 0.14f * text);
+    list.AddLine({at.x - arm, at.y + arm}, {at.x + arm, at.y - arm}, ImGui::GetColorU32(ImGuiCol_Text), 0.14f * text);
   }
   if (near) {
     const Node& node = graph_.nodes[*near];
-    ImGui::SetTooltip("%s: %.3g\nclick: plot it", node.name.c_str(), static_cast<double>(value_of(now, *near)));
+    const std::optional<std::size_t> neuron = neuron_of(*near);
+    ImGui::SetTooltip("%s: %.3g\nclick: plot it%s", node.name.c_str(), static_cast<double>(value_of(now, *near)),
+                      neuron ? "\nright-click: silence or hold it" : "");
+    if (neuron && ImGui::IsMouseClicked(1)) {
+      menu_of_ = *neuron;
+      ImGui::OpenPopup("neuron");
+    }
     if (clicked && !plotted_.erase(*near) && plotted_.size() < max_plotted) plotted_.insert(*near);
     if (clicked) log.write("brain", {{"node", node.name}, {"plotted", plotted_.size()}});
   }
   note("senses on the left, layers, muscles on the right; blue is negative, red positive");
+}
+
+// Of the neuron that was right-clicked.
+void BrainPanel::draw_menu(PanelContext& context, const BrainActivity& now, std::span<const float> held) {
+  if (menu_of_ >= graph_.neurons || !ImGui::BeginPopup("neuron")) return;
+  const std::string& name = graph_.nodes[graph_.senses + menu_of_].name;
+  const bool is_held = menu_of_ < held.size() && !std::isnan(held[menu_of_]);
+  std::optional<std::optional<float>> wanted;
+  heading(name.c_str());
+  if (ImGui::MenuItem("Silence", nullptr, is_held && held[menu_of_] == 0)) wanted = 0.0f;
+  context.log.item("brain.silence");
+  tooltip("its value is 0, as if it were cut out");
+  float value = is_held ? held[menu_of_] : now.neurons[menu_of_];
+  ImGui::SetNextItemWidth(10 * ImGui::GetFontSize());
+  if (number_slider("##hold", value, -1, 1, "held at %+.2f")) wanted = value;
+  context.log.item("brain.hold");
+  ImGui::BeginDisabled(!is_held);
+  if (ImGui::MenuItem("Release")) wanted.emplace(std::nullopt);
+  ImGui::EndDisabled();
+  context.log.item("brain.release");
+  if (wanted) {
+    context.scene.clamp_neuron(now.robot, menu_of_, *wanted);
+    context.log.write("clamp", {{"neuron", name}, {"value", *wanted ? nlohmann::json(**wanted) : nlohmann::json()}});
+  }
+  // A whole drag of the slider is one undo step.
+  if (wanted && (ImGui::IsMouseReleased(0) || !ImGui::IsMouseDown(0))) context.scene.end_edit();
+  ImGui::EndPopup();
+}
+
+void BrainPanel::draw_held(PanelContext& context, RobotId robot, std::span<const float> held) {
+  const auto count = std::ranges::count_if(held, [](float value) { return !std::isnan(value); });
+  if (count == 0) return;
+  note(fmt::format("{} held by hand", count == 1 ? "1 neuron is" : fmt::format("{} neurons are", count)).c_str());
+  if (ImGui::Button("Release all")) context.scene.release_neurons(robot);
+  context.log.item("brain.release_all");
+  ImGui::SameLine();
+  if (ImGui::Button("Compare")) context.scene.show_ghosts({robot});
+  context.log.item("brain.compare");
+  tooltip("a ghost shows the robot with its whole brain, from now on");
 }
 
 void BrainPanel::draw_plots(PanelContext& context) {

@@ -174,7 +174,7 @@ class Simulation {
 
   // One element per mass, otherwise throws std::invalid_argument. The robot has not exploded afterwards.
   void set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities);
-  // Restores an explosion as well.
+  // Restores an explosion as well, and its brain's state if that is known. Throws as set_brain_state().
   void set_state(std::size_t robot, const State& state);
 
   // The state of all robots, and a return to it: what follows is bit for bit what followed before. Robots,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mercury/brain.h"
 #include "mercury/clock.h"
 #include "mercury/robot.h"
 #include "mercury/vec3.h"
@@ -21,6 +22,7 @@ struct State {
   bool exploded = false;
   double exploded_at = 0;                    // when that step began [s], if exploded
   std::uint32_t culprit_spring = no_spring;  // index in Robot::springs, if exploded and a spring is known as the cause
+  BrainState brain;                          // of its brain; empty = it has none, or it is not known
 };
 
 // All that the steps of a batch change: with the same robots, configuration, materials, perturbations and actuation, a

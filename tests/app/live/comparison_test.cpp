@@ -8,6 +8,8 @@
 #include "app/scene/view_words.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
+#include "mercury/robot_file.h"
+#include "mercury/samples.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/nap.h"
@@ -105,6 +107,45 @@ TEST_P(ComparisonOn, GhostHasTheBitsOfTheUnchangedRobotAlone) {
   EXPECT_TRUE(ghost_positions(scene) == positions_of(unchanged));
   EXPECT_TRUE(ghost_positions(scene) !=
               Positions(scene.snapshot().positions_of(1).begin(), scene.snapshot().positions_of(1).end()));
+}
+
+TEST_P(ComparisonOn, GhostOfARobotWithAHeldNeuronHasItsWholeBrain) {
+  const Robot hunter = load_robot(sample_or_path("sample:hunter"));
+  LiveScene scene(options());
+  test::make_robots(scene, 1);
+  scene.add({hunter});
+  const RobotId robot = test::ids_of(scene)[1];
+  make_steps(scene, 40);
+  scene.clamp_neuron(robot, 3, 0.5f);
+  scene.end_edit();
+  EXPECT_EQ(scene.show_ghosts({robot}), 1u);
+  make_steps(scene, 60);
+  Simulation held(scene.configuration(), std::span(&hunter, 1)), whole(scene.configuration(), std::span(&hunter, 1));
+  held.step(40);
+  held.clamp_neuron(0, 3, 0.5f);
+  held.step(60);
+  whole.step(100);
+  const auto now = [&] {
+    const auto positions = scene.snapshot().positions_of(1);
+    return Positions(positions.begin(), positions.end());
+  };
+  EXPECT_TRUE(now() == positions_of(held));
+  EXPECT_TRUE(ghost_positions(scene) == positions_of(whole));
+  EXPECT_TRUE(positions_of(held) != positions_of(whole));
+  // The timeline shows it again, and undo releases it.
+  scene.seek(scene.configuration().dt * 20);
+  scene.wait_until_done();
+  scene.seek(scene.configuration().dt * 100);
+  scene.wait_until_done();
+  EXPECT_TRUE(now() == positions_of(held));
+  scene.go_on();
+  scene.undo();
+  make_steps(scene, 60);
+  held.clamp_neuron(0, 3, std::nullopt);
+  held.step(60);
+  EXPECT_TRUE(now() == positions_of(held));
+  scene.clamp_neuron(robot, 1000, 1.0f);  // it does not have this one
+  EXPECT_FALSE(scene.document().find(robot)->body.by_hand);
 }
 
 TEST_P(ComparisonOn, GhostOfAMutantIsItsParent) {

@@ -237,7 +237,10 @@ TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
     make_steps(*one, 30);
   }
   const std::vector<RobotId> robots = test::ids_of(scene);
-  const auto drives = [&] { return scene.document().robots[0].body.drives; };
+  const auto drives = [&] {
+    const auto& held = scene.document().robots[0].body.by_hand;
+    return held ? &held->drives : nullptr;
+  };
   const std::string name = actuators_of(*scene.document().robots[0].body.robot).front().name;
   moments.push_back(moment_of(scene));
   scene.drive_actuator(robots, name, 0.8f);

@@ -140,13 +140,13 @@ class Window:
         if f"panel.{panel}" not in self.items:
             self.click(f"tab.{panel}")
 
-    def click(self, item):
+    def click(self, item, button=1):
         # An item that has just opened may still move.
         place = None
         while place != (place := self.place(item)):
             self.do("mousemove", *place)
             self.frame()
-        self.do("click", 1)
+        self.do("click", button)
         # Press and release take one frame each; their effect shows in the next one.
         self.frame()
         self.frame()

@@ -222,6 +222,31 @@ class PanelsTest(WindowCase):
         window.wait("brain", since, lambda event: event["node"] == "turn 0" and event["plotted"] == 4)
         self.finish(window)
 
+    def test_a_neuron_is_silenced_and_the_whole_brain_is_its_ghost(self):
+        window = self.small("--paused")
+        window.open("Brain")
+        window.click("brain.sample")
+        window.place("brain.neuron.0")
+        since = window.mark()
+        window.click("brain.neuron.0", button=3)
+        window.click("brain.silence")
+        self.assertEqual(window.wait("clamp", since)["value"], 0)
+        window.click("brain.compare")
+        window.key("space")
+        window.frame(lambda frame: frame["ghosts"] == 1 and frame["time"] > 0.2)
+        window.key("space")
+        since = window.mark()
+        window.click("brain.neuron.0", button=3)
+        x, y = window.place("brain.hold")
+        window.drag((x, y), (x + 40, y))
+        self.assertGreater(window.wait("clamp", since)["value"], 0)
+        window.key("Escape")
+        window.click("brain.release_all")
+        window.until("release", lambda: "brain.release_all" not in window.items)
+        window.key("ctrl+z")
+        window.place("brain.release_all")
+        self.finish(window)
+
     def test_a_message_has_a_bar_in_the_color_of_its_tone(self):
         window = self.small()
         bad = numpy.array([0xf0, 0x70, 0x5f]) / 255
