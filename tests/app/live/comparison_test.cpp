@@ -8,8 +8,6 @@
 #include "app/scene/view_words.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
-#include "mercury/robot_file.h"
-#include "mercury/samples.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/nap.h"
@@ -109,22 +107,40 @@ TEST_P(ComparisonOn, GhostHasTheBitsOfTheUnchangedRobotAlone) {
               Positions(scene.snapshot().positions_of(1).begin(), scene.snapshot().positions_of(1).end()));
 }
 
+// Its muscles follow a clock and what they did before.
+Robot thinking_robot() {
+  Robot robot = random_voxel_robot({}, 9);
+  const std::size_t muscles = actuators_of(robot).size();
+  robot.sensors = {{.kind = SensorKind::clock, .frequency = 9}, {.kind = SensorKind::up}};
+  Brain& brain = robot.brain.emplace();
+  brain.period = 0.01f;
+  brain.layers = {{.name = "motor", .neurons = static_cast<std::uint32_t>(muscles), .alpha = {0.5f}}};
+  NeuronInput input{.from = "senses"};
+  for (std::size_t i = 0; i < 5 * muscles; ++i) input.weights.push_back(i % 5 == i / 5 % 2 ? 0.9f : 0.2f);
+  brain.layers[0].inputs = {input};
+  return robot;
+}
+
 TEST_P(ComparisonOn, GhostOfARobotWithAHeldNeuronHasItsWholeBrain) {
-  const Robot hunter = load_robot(sample_or_path("sample:hunter"));
+  const Robot thinker = thinking_robot();
   LiveScene scene(options());
   test::make_robots(scene, 1);
-  scene.add({hunter});
+  scene.add({thinker});
   const RobotId robot = test::ids_of(scene)[1];
   make_steps(scene, 40);
   scene.clamp_neuron(robot, 3, 0.5f);
   scene.end_edit();
   EXPECT_EQ(scene.show_ghosts({robot}), 1u);
   make_steps(scene, 60);
-  Simulation held(scene.configuration(), std::span(&hunter, 1)), whole(scene.configuration(), std::span(&hunter, 1));
+  Simulation held(scene.configuration(), std::span(&thinker, 1)), whole(scene.configuration(), std::span(&thinker, 1));
   held.step(40);
   held.clamp_neuron(0, 3, 0.5f);
   held.step(60);
-  whole.step(100);
+  // It begins in the state of the robot now, in which the neuron has that value.
+  whole.step(40);
+  whole.clamp_neuron(0, 3, 0.5f);
+  whole.clamp_neuron(0, 3, std::nullopt);
+  whole.step(60);
   const auto now = [&] {
     const auto positions = scene.snapshot().positions_of(1);
     return Positions(positions.begin(), positions.end());
