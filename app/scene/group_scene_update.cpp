@@ -100,7 +100,8 @@ void GroupScene::place_boxes() {
 // Swimmers, which carry water along.
 void GroupScene::note_movers(std::span<const Telemetry> telemetry) {
   movers_.clear();
-  for (std::size_t i = 0; i < placements_.size(); ++i) {
+  const std::size_t count = placements_.size() > most_with_plants ? 0 : placements_.size();
+  for (std::size_t i = 0; i < count; ++i) {
     const render::Vector3 velocity(telemetry[i].velocity);
     if (exploded_[i] || hidden_[i] || !velocity.is_finite()) continue;
     const render::Vector3 size = rest_[i].high - rest_[i].low;

@@ -386,6 +386,17 @@ TEST_P(DrivenOn, MusclesGlowAsTheyAreDriven) {
   EXPECT_NEAR(glow(1), -1, 1e-5);
 }
 
+TEST(Plants, AreLeftOutOfLargeGroups) {
+  for (const std::size_t count : {GroupScene::most_with_plants, GroupScene::most_with_plants + 1}) {
+    const Simulation simulation(cpu, std::vector<Robot>(count, pair()));
+    GroupScene scene(group_of(simulation), std::vector<render::Vector3>(count), {});
+    scene.update(0, simulation.telemetry(), {});
+    const bool many = count > GroupScene::most_with_plants;
+    EXPECT_EQ(scene.scene().ground_cover->height > 0, !many);
+    EXPECT_EQ(scene.scene().movers.size(), many ? 0 : count);
+  }
+}
+
 TEST(RoundUp, GivesOneTwoFive) {
   EXPECT_FLOAT_EQ(round_up(1), 1);
   EXPECT_FLOAT_EQ(round_up(1.1f), 2);
