@@ -51,6 +51,8 @@ float mark_distance_for(std::span<const Room> rooms) {
 
 }  // namespace
 
+bool seeks_light(const Robot& robot) { return std::ranges::count(robot.sensors, SensorKind::light, &Sensor::kind) > 0; }
+
 bool seeks_target(const Robot& robot) {
   return std::ranges::any_of(robot.sensors, [](const Sensor& sensor) {
     return sensor.kind == SensorKind::target_direction || sensor.kind == SensorKind::target_distance;
@@ -75,7 +77,10 @@ GroupScene::GroupScene(const Group& given, std::vector<render::Vector3> offsets,
   materials_legend_ = material_legend(group.robots, group.shapes);
   for (std::size_t i = 0; i < group.robots.size(); ++i)
     add(*group.robots[i], group.materials[i], *group.shapes[i], offsets.at(i));
-  for (const Robot* robot : group.robots) seeks_target_.push_back(seeks_target(*robot));
+  for (const Robot* robot : group.robots) {
+    seeks_target_.push_back(seeks_target(*robot));
+    seeks_light_.push_back(seeks_light(*robot));
+  }
   bodies_ = group.bodies ? group.bodies : bodies_of(group.shapes);
   mark_distance_ = mark_distance_for(rooms_);
   mark_times_ = MarkTimes(mark_distance_);

@@ -117,7 +117,7 @@ class GroupScene {
   void hide_wrecks(std::span<const Telemetry> telemetry);
   void lengthen_paths(double time);
   void race(double time);
-  void mark_targets();
+  void mark_senses();
   void write_labels(std::span<const Telemetry> telemetry);
   std::vector<bool> in_view() const;
   void fit_scale(double time);
@@ -152,9 +152,9 @@ class GroupScene {
   std::vector<Trail> trails_;
   Later later_ = Later::forget;
   std::vector<render::Path> paths_;
-  std::vector<std::vector<float>> marks_;  // of the paths
-  std::vector<bool> seeks_target_;         // robots with a sensor of the target
-  std::vector<float> target_circles_;      // around the target, in the robots' coordinates
+  std::vector<std::vector<float>> marks_;         // of the paths
+  std::vector<bool> seeks_target_, seeks_light_;  // robots with a sensor of the target, of the light
+  std::vector<std::vector<float>> sense_lines_;   // around these and towards them, in the robots' coordinates
   std::vector<render::Label> labels_;
   std::vector<render::Patch> patches_;
   std::vector<render::Mover> movers_;

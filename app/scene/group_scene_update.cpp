@@ -43,7 +43,7 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
     lengthen_paths(time);
   else
     scene_.paths = {};
-  mark_targets();
+  mark_senses();
   if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
   color(time, std::move(details));
 }
@@ -92,8 +92,9 @@ void GroupScene::place_boxes() {
     if (exploded_[i] && !all_exploded) continue;
     bounds_[i] = last_boxes_[i];
     camera_boxes_[i] = motion_.camera_box(bounds_[i], offsets_[i], rooms_[i]);
-    if (seeks_target_[i] && motion_.layout() == Layout::grid)
-      camera_boxes_[i].extend(render::Vector3(environment_.target) + shown_offsets_[i]);
+    if (motion_.layout() != Layout::grid) continue;
+    if (seeks_target_[i]) camera_boxes_[i].extend(render::Vector3(environment_.target) + shown_offsets_[i]);
+    if (seeks_light_[i]) camera_boxes_[i].extend(render::Vector3(environment_.light) + shown_offsets_[i]);
   }
 }
 
@@ -162,30 +163,73 @@ void GroupScene::lengthen_paths(double time) {
   scene_.paths = paths_;
 }
 
-// Three circles around the target of each robot that senses it. In cells, where robots stay, there is no place for it.
-void GroupScene::mark_targets() {
-  if (motion_.layout() == Layout::cells || std::ranges::find(seeks_target_, true) == seeks_target_.end()) return;
+namespace {
+
+// Three circles around a point.
+void add_circles(std::vector<std::vector<float>>& lines, Vec3 at, float radius) {
   constexpr int corners = 32;
-  constexpr float share = 0.12f;  // of a room's radius
-  const auto first = std::ranges::find(seeks_target_, true) - seeks_target_.begin();
-  const float radius = share * rooms_[static_cast<std::size_t>(first)].radius;
-  const Vec3 target = environment_.target;
-  target_circles_.clear();
-  for (std::size_t plane = 0; plane < 3; ++plane)
+  for (std::size_t plane = 0; plane < 3; ++plane) {
+    std::vector<float>& line = lines.emplace_back();
     for (int k = 0; k <= corners; ++k) {
       const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / corners;
       const float u = radius * std::cos(angle), v = radius * std::sin(angle);
       const std::array<std::array<float, 3>, 3> offsets{{{0, u, v}, {u, 0, v}, {u, v, 0}}};
       const auto& [x, y, z] = offsets[plane];
-      target_circles_.insert(target_circles_.end(), {target.x + x, target.y + y, target.z + z});
+      line.insert(line.end(), {at.x + x, at.y + y, at.z + z});
     }
+  }
+}
+
+// Rays around a point, from one distance to another.
+void add_rays(std::vector<std::vector<float>>& lines, Vec3 at, float from, float to) {
+  for (const Vec3 ray : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+    const Vec3 a = at + from * ray, b = at + to * ray;
+    lines.push_back({a.x, a.y, a.z, b.x, b.y, b.z});
+  }
+}
+
+}  // namespace
+
+// What robots sense: three circles around the target, the same with rays around the light, and beside each robot a line
+// towards it. In cells, where robots stay, there is no place for target and light.
+void GroupScene::mark_senses() {
+  constexpr float share = 0.12f;              // of a room's radius: circles
+  constexpr float begin = 0.75f, end = 1.1f;  // the same: the line beside a robot
+  constexpr render::Color of_target = render::rgb(0xffc233), of_light = render::rgb(0xfff3b0);
+  sense_lines_.clear();
+  struct Mark {
+    std::uint32_t body;
+    std::size_t first, count;  // of the lines
+    render::Color color;
+  };
+  std::vector<Mark> marks;
+  const auto mark = [&](const std::vector<bool>& sensed_by, Vec3 goal, render::Color color, bool rays) {
+    const auto one = std::ranges::find(sensed_by, true);
+    if (one == sensed_by.end()) return;
+    const float radius = share * rooms_[static_cast<std::size_t>(one - sensed_by.begin())].radius;
+    const std::size_t first = sense_lines_.size();
+    add_circles(sense_lines_, goal, (rays ? 0.7f : 1.0f) * radius);
+    if (rays) add_rays(sense_lines_, goal, radius, 1.6f * radius);
+    const std::size_t around = sense_lines_.size() - first;
+    for (std::size_t i = 0; i < sensed_by.size(); ++i) {
+      if (!sensed_by[i] || placements_[i].hidden) continue;
+      const auto body = static_cast<std::uint32_t>(i);
+      if (motion_.layout() != Layout::cells) marks.push_back({body, first, around, color});
+      const Vec3 center = trails_[i].last(), way = goal - center;
+      const float distance = length(way), room = rooms_[i].radius;
+      if (exploded_[i] || distance < end * room) continue;
+      const Vec3 a = center + begin * room / distance * way, b = center + end * room / distance * way;
+      marks.push_back({body, sense_lines_.size(), 1, color});
+      sense_lines_.push_back({a.x, a.y, a.z, b.x, b.y, b.z});
+    }
+  };
+  mark(seeks_target_, environment_.target, of_target, false);
+  mark(seeks_light_, environment_.light, of_light, true);
+  if (marks.empty()) return;
   std::vector<render::Path> paths(scene_.paths.begin(), scene_.paths.end());
-  for (std::size_t i = 0; i < seeks_target_.size(); ++i)
-    for (std::size_t plane = 0; plane < 3 && seeks_target_[i] && !placements_[i].hidden; ++plane)
-      paths.push_back({.body = static_cast<std::uint32_t>(i),
-                       .points = std::span(target_circles_).subspan(plane * 3 * (corners + 1), 3 * (corners + 1)),
-                       .color = render::rgb(0xffc233),
-                       .fades = false});
+  for (const Mark& one : marks)
+    for (std::size_t line = one.first; line < one.first + one.count; ++line)
+      paths.push_back({.body = one.body, .points = sense_lines_[line], .color = one.color, .fades = false});
   paths_ = std::move(paths);
   scene_.paths = paths_;
 }

@@ -386,6 +386,40 @@ TEST_P(DrivenOn, MusclesGlowAsTheyAreDriven) {
   EXPECT_NEAR(glow(1), -1, 1e-5);
 }
 
+// Circles around what is sensed, and a line from beside the robot towards it, in the robot's own coordinates.
+TEST(Senses, TargetAndLightAreMarked) {
+  Robot seeker = pair();
+  seeker.sensors = {{.kind = SensorKind::target_direction}, {.kind = SensorKind::light}};
+  Configuration configuration = cpu;
+  configuration.environment.target = {40, 0, 0};
+  configuration.environment.light = {0, -30, 0};
+  const Simulation simulation(configuration, std::vector<Robot>{pair(), seeker});
+  for (const Layout layout : {Layout::grid, Layout::cells}) {
+    GroupScene scene(group_of(simulation), {{0, 0, 0}, {90, 0, 0}}, {.layout = layout});
+    scene.update(0, simulation.telemetry(), {});
+    const render::Vector3 center(0.5f, 0, 0);
+    std::size_t around_target = 0, around_light = 0, needles = 0;
+    for (const render::Path& path : scene.scene().paths) {
+      EXPECT_EQ(path.body, 1u) << "the other one senses nothing";
+      const render::Vector3 first(path.points.data()), last(path.points.data() + path.points.size() - 3);
+      around_target += (first - render::Vector3(40, 0, 0)).norm() < 3;
+      around_light += (first - render::Vector3(0, -30, 0)).norm() < 3;
+      for (const render::Vector3 goal : {render::Vector3(40, 0, 0), render::Vector3(0, -30, 0)}) {
+        const render::Vector3 ahead = (goal - center).normalized();
+        needles += (first - center).norm() < 5 && ((first - center).normalized() - ahead).norm() < 1e-4f &&
+                   ((last - first).normalized() - ahead).norm() < 1e-4f;
+      }
+    }
+    EXPECT_EQ(needles, 2u);
+    EXPECT_EQ(around_target, layout == Layout::grid ? 3u : 0u);
+    EXPECT_EQ(around_light, layout == Layout::grid ? 9u : 0u);
+    if (layout == Layout::grid) {
+      EXPECT_GE(scene.camera_boxes()[1].high.x, 130);
+      EXPECT_LE(scene.camera_boxes()[1].low.y, -30);
+    }
+  }
+}
+
 TEST(Plants, AreLeftOutOfLargeGroups) {
   for (const std::size_t count : {GroupScene::most_with_plants, GroupScene::most_with_plants + 1}) {
     const Simulation simulation(cpu, std::vector<Robot>(count, pair()));
