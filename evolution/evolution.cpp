@@ -290,10 +290,11 @@ std::vector<Individual> Evolution::begun(Assessor& assessor, const Watch& watch)
 
 std::optional<Generation> Evolution::advance(Assessor& assessor, const Watch& watch) {
   if (is_over()) return std::nullopt;
-  std::vector<Individual> born = begun(assessor, watch);
-  if (born.empty()) throw InputError("generation " + std::to_string(next_generation_), "no robot could be made");
+  std::vector<Individual> born;
   std::optional<std::vector<Assessment>> assessments;
   try {
+    born = begun(assessor, watch);
+    if (born.empty()) throw InputError("generation " + std::to_string(next_generation_), "no robot could be made");
     assessments = assessor.assess(genomes_of(born), interim_limits(), watch);
   } catch (...) {
     begun_.clear();

@@ -497,4 +497,12 @@ BrainLayout brain_layout(const Robot& robot) {
   return layout;
 }
 
+bool seeks_target(const Robot& robot) {
+  return std::ranges::any_of(robot.sensors, [](const Sensor& sensor) {
+    return sensor.kind == SensorKind::target_direction || sensor.kind == SensorKind::target_distance;
+  });
+}
+
+bool seeks_light(const Robot& robot) { return std::ranges::count(robot.sensors, SensorKind::light, &Sensor::kind) > 0; }
+
 }  // namespace mercury

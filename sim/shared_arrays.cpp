@@ -195,13 +195,19 @@ void SharedActuation::hold(const Backend& backend, std::span<const HeldDrive> he
   backend.copy_shared(arrays_.driven.data.get(), driven.data(), driven.size());
 }
 
+struct DrivenMaterials::Arrays {
+  std::size_t columns = 0;
+  std::vector<ActuatorSetting> settings;  // [robot][columns]
+  std::vector<std::uint8_t> actuator_of;  // ActuationSources::actuator_of
+};
+
 DrivenMaterials SharedActuation::driven_materials(const Backend& backend) const {
   DrivenMaterials now;
   if (!made_) return now;
   const auto amplitude = read(backend, arrays_.amplitude), frequency = read(backend, arrays_.frequency),
              phase = read(backend, arrays_.phase), drive = read(backend, arrays_.drive);
   std::vector<std::uint8_t> driven = read(backend, arrays_.driven);
-  DrivenMaterials::Arrays arrays{.columns = arrays_.drive.columns, .actuator_of = actuator_of_};
+  DrivenMaterials::Arrays arrays{.columns = arrays_.drive.columns, .settings = {}, .actuator_of = actuator_of_};
   arrays.settings.reserve(drive.size());
   for (std::size_t at = 0; at < drive.size(); ++at)
     arrays.settings.push_back({amplitude[at], frequency[at], phase[at], drive[at], is_driven(driven[at], drive[at])});
@@ -209,23 +215,23 @@ DrivenMaterials SharedActuation::driven_materials(const Backend& backend) const 
   return now;
 }
 
-std::span<const DrivenMaterials::Setting> DrivenMaterials::settings(std::size_t robot) const {
+std::span<const ActuatorSetting> DrivenMaterials::settings(std::size_t robot) const {
   if (!arrays_ || (robot + 1) * arrays_->columns > arrays_->settings.size()) return {};
   return std::span(arrays_->settings).subspan(robot * arrays_->columns, arrays_->columns);
 }
 
-bool DrivenMaterials::drives(std::size_t robot) const { return std::ranges::any_of(settings(robot), &Setting::driven); }
+bool DrivenMaterials::drives(std::size_t robot) const {
+  return std::ranges::any_of(settings(robot), &ActuatorSetting::driven);
+}
 
 std::vector<Material> DrivenMaterials::of(std::size_t robot, std::span<const Material> own) const {
   std::vector<Material> table(own.begin(), own.end());
-  const std::span<const Setting> all = settings(robot);
+  const std::span<const ActuatorSetting> all = settings(robot);
   if (all.empty()) return table;
   const auto actuators = std::span(arrays_->actuator_of).subspan(robot * max_materials, max_materials);
   for (std::size_t id = 0; id < std::min<std::size_t>(table.size(), max_materials); ++id) {
     if (actuators[id] == ActuationSources::no_actuator) continue;
-    const Setting& setting = all[actuators[id]];
-    table[id] =
-        actuated(table[id], {setting.amplitude, setting.frequency, setting.phase, setting.drive, setting.driven});
+    table[id] = actuated(table[id], all[actuators[id]]);
   }
   return table;
 }

@@ -151,9 +151,7 @@ double quantity(std::string_view name, const Evaluation& evaluation, const Confi
 bool has_target(const Robot& robot, const Environment& environment, const TrialSettings& settings) {
   constexpr Environment usual{};
   return settings.target_radius > 0 || environment.target != usual.target || environment.reach != usual.reach ||
-         std::ranges::any_of(robot.sensors, [](const Sensor& sensor) {
-           return sensor.kind == SensorKind::target_direction || sensor.kind == SensorKind::target_distance;
-         });
+         seeks_target(robot);
 }
 
 RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationRequest& request,

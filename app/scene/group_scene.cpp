@@ -51,14 +51,6 @@ float mark_distance_for(std::span<const Room> rooms) {
 
 }  // namespace
 
-bool seeks_light(const Robot& robot) { return std::ranges::count(robot.sensors, SensorKind::light, &Sensor::kind) > 0; }
-
-bool seeks_target(const Robot& robot) {
-  return std::ranges::any_of(robot.sensors, [](const Sensor& sensor) {
-    return sensor.kind == SensorKind::target_direction || sensor.kind == SensorKind::target_distance;
-  });
-}
-
 Group group_of(const Simulation& simulation) {
   Group group{.telemetry = simulation.telemetry(), .environment = simulation.configuration().environment};
   for (std::size_t i = 0; i < simulation.size(); ++i) {

@@ -21,9 +21,6 @@
 
 namespace mercury {
 
-// Whether a sensor of the robot is of the target.
-bool seeks_target(const Robot& robot);
-
 // The robots of a group, for making its scene. The scene does not refer to it afterwards.
 struct Group {
   std::vector<const Robot*> robots;

@@ -61,7 +61,7 @@ class Settings(TypedDict, total=False):
     overlap_limit: float
     least_masses: float
     median: bool  # of the trials counts, not their mean
-    mean: bool  # their mean counts after all, with all else as in runs whose median counts
+    mean: bool  # the mean counts, not the median; all else is as with `median`
     target_radius: float  # each trial starts this far from the target, in a random direction [m]
     target_spread: float  # or nearer by up to this share of it
     target_sphere: bool  # the direction may point up and down, too

@@ -284,7 +284,7 @@ void BrainPanel::draw_menu(PanelContext& context, const BrainActivity& now, std:
     context.log.write("clamp", {{"neuron", name}, {"value", *wanted ? nlohmann::json(**wanted) : nlohmann::json()}});
   }
   // A whole drag of the slider is one undo step.
-  if (wanted && (ImGui::IsMouseReleased(0) || !ImGui::IsMouseDown(0))) context.scene.end_edit();
+  if (ImGui::IsMouseReleased(0)) context.scene.end_edit();
   ImGui::EndPopup();
 }
 

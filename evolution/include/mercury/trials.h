@@ -28,22 +28,21 @@ namespace mercury {
 // The trials of every robot. Initial values are what files of earlier versions mean that lack a key: one trial of the
 // robot as it is. Searches use search_trials().
 struct TrialSettings {
-  double seconds = 10;        // of a trial, settling included [s]
-  double settle = 0;          // at its start; nothing is measured before [s]
-  int trials = 1;             // per individual
-  double jitter = 0;          // standard deviation of each coordinate at the start, per shortest rest length [1]
-  double delay = 100;         // all trials but the first start at random moments of the movement, up to here [s]
-  double noise = 0;           // standard deviation by which the trials' stiffnesses and amplitudes differ [1]
-  double damage = 0;          // share of the voxels that a trial's robot lacks [1]
-  double strain_limit = 2;    // of a spring; limits() lists what robots must keep
-  double strained_limit = 1;  // share of the springs of a real body that may be strained by more than half at a time
-  double inverted_limit = 1;  // share of a real body that may be inside out at a time
-  double overlap_limit = 1;   // share of the masses that may be within other parts of the body at a time
-  double least_masses = 0;    // of a network robot
-  bool median = false;        // of the trials counts, not their mean
-  bool mean = false;          // their mean counts after all, with all else as in runs whose median counts
-  double target_radius =
-      0;  // each trial starts this far from the target, in a random direction; 0 = as in the file [m]
+  double seconds = 10;           // of a trial, settling included [s]
+  double settle = 0;             // at its start; nothing is measured before [s]
+  int trials = 1;                // per individual
+  double jitter = 0;             // standard deviation of each coordinate at the start, per shortest rest length [1]
+  double delay = 100;            // all trials but the first start at random moments of the movement, up to here [s]
+  double noise = 0;              // standard deviation by which the trials' stiffnesses and amplitudes differ [1]
+  double damage = 0;             // share of the voxels that a trial's robot lacks [1]
+  double strain_limit = 2;       // of a spring; limits() lists what robots must keep
+  double strained_limit = 1;     // share of the springs of a real body that may be strained by more than half at a time
+  double inverted_limit = 1;     // share of a real body that may be inside out at a time
+  double overlap_limit = 1;      // share of the masses that may be within other parts of the body at a time
+  double least_masses = 0;       // of a network robot
+  bool median = false;           // of the trials counts, not their mean
+  bool mean = false;             // the mean counts, not the median; all else is as with `median`
+  double target_radius = 0;      // each trial starts this far from the target, in a random direction; 0 = not [m]
   double target_spread = 0;      // by which share of target_radius it may start nearer
   bool target_sphere = false;    // the direction may point up and down, too
   bool turned = false;           // each trial starts turned about the vertical by a random angle

@@ -184,6 +184,10 @@ void set_weights(Brain& brain, const std::vector<float>& weights);
 // robot and each other. The rest of the robot is valid. Sensors need no brain.
 void validate_brain(const Robot& robot);
 
+// Whether a sensor of the robot is of the target, of the light.
+bool seeks_target(const Robot& robot);
+bool seeks_light(const Robot& robot);
+
 // The state of a robot's brain; empty without one.
 struct BrainState {
   std::vector<float> neurons;  // y, by neuron

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -11,6 +10,8 @@
 #include "mercury/material.h"
 
 namespace mercury {
+
+struct ActuatorSetting;
 
 // A copy of what drives the actuators of all robots (Simulation::driven_materials()); empty if nothing does. Copies of
 // it share their memory.
@@ -24,16 +25,8 @@ class DrivenMaterials {
 
  private:
   friend class SharedActuation;
-  struct Setting {
-    float amplitude, frequency, phase, drive;  // those of shared_array.h; not finite = none
-    bool driven;
-  };
-  struct Arrays {
-    std::size_t columns = 0;
-    std::vector<Setting> settings;          // [robot][columns]
-    std::vector<std::uint8_t> actuator_of;  // [robot][max_materials], its column; 255 = none drives it
-  };
-  std::span<const Setting> settings(std::size_t robot) const;
+  struct Arrays;
+  std::span<const ActuatorSetting> settings(std::size_t robot) const;
   std::shared_ptr<const Arrays> arrays_;
 };
 
