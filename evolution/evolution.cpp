@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/evolution.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <iterator>
 #include <numeric>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "mercury/parallel.h"
 #include "mercury/random.h"
 
 namespace mercury {
@@ -142,8 +141,8 @@ class Breeding {
     for (int attempt = 0; !missing.empty() && attempt < tries; ++attempt) {
       for (std::size_t first = 0; first < missing.size(); first += portion) {
         if (watch) watch(0, plans_.size());
-        oneapi::tbb::parallel_for(first, std::min(first + portion, missing.size()),
-                                  [&](std::size_t k) { make(missing[k], attempt); });
+        parallel_for(first, std::min(first + portion, missing.size()),
+                     [&](std::size_t k) { make(missing[k], attempt); });
       }
       std::erase_if(missing, [&](std::size_t i) { return genomes_[i] && known.insert(identities_[i]).second; });
     }

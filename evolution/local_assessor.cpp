@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tries candidates on the devices of this process, by one Evaluator: it grows them while others are stepped, and its
 // devices stay ready from one generation to the next.
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -15,6 +14,7 @@
 #include "mercury/assessor.h"
 #include "mercury/evaluator.h"
 #include "mercury/fnv.h"
+#include "mercury/parallel.h"
 #include "mercury/quantity.h"
 #include "mercury/spread.h"
 #include "mercury/trials.h"
@@ -222,7 +222,7 @@ class LocalAssessor : public Assessor {
     std::vector<Evaluation> waiting;  // of whole candidates; their quantities are computed on all cores
     std::size_t assessed = 0;
     const auto assess_waiting = [&] {
-      oneapi::tbb::parallel_for(std::size_t{0}, waiting.size() / trials(), [&](std::size_t k) {
+      parallel_for(0, waiting.size() / trials(), [&](std::size_t k) {
         Tally tally(request_, settings_, objectives_);
         for (std::size_t t = 0; t < trials(); ++t) tally.add(waiting[k * trials() + t]);
         assessments[assessed + k] = tally.result(std::move(batch.interim_scores[assessed + k]));

@@ -2,10 +2,6 @@
 // Makes many robots on all cores.
 #pragma once
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
-
 #include <algorithm>
 #include <mutex>
 #include <string>
@@ -14,6 +10,7 @@
 
 #include "mercury/error.h"
 #include "mercury/generator.h"
+#include "mercury/parallel.h"
 #include "mercury/work_counter.h"
 
 namespace mercury {
@@ -28,22 +25,16 @@ std::vector<Robot> make_all(const std::string& kind, std::uint64_t seed, std::si
   std::vector<FailedRobot> missing;
   std::mutex of_missing;
   WorkCounter counter(watch, "making robots", count);
-  // Pieces of one robot each: robots differ in work, and the smallest take a hundred times as long as a task costs.
-  const oneapi::tbb::blocked_range<std::size_t> indices(0, count, 1);
-  oneapi::tbb::parallel_for(
-      indices,
-      [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          try {
-            robots[i] = make(first + i);
-          } catch (const InputError& error) {
-            const std::scoped_lock lock(of_missing);
-            missing.push_back({first + i, error.what()});
-          }
-          counter.add_one();
-        }
-      },
-      oneapi::tbb::simple_partitioner());
+  // Robots differ in work, and the smallest take a hundred times as long as a task costs.
+  parallel_tasks(0, count, [&](std::size_t i) {
+    try {
+      robots[i] = make(first + i);
+    } catch (const InputError& error) {
+      const std::scoped_lock lock(of_missing);
+      missing.push_back({first + i, error.what()});
+    }
+    counter.add_one();
+  });
   if (missing.empty()) return robots;
   std::ranges::sort(missing, {}, &FailedRobot::index);
   if (!failed) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/brains.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "sim/physics/activation.h"
 
 namespace mercury {
@@ -208,7 +207,7 @@ void Brains::think(const Clock& clock, std::span<const std::shared_ptr<const Rob
                    std::span<const std::size_t> mass_offsets, std::span<const Vec3> positions,
                    std::span<const Vec3> velocities, const Environment& environment) {
   const SensedWorld world = SensedWorld::of(environment);
-  oneapi::tbb::parallel_for(std::size_t{0}, of_.size(), [&](std::size_t i) {
+  parallel_for(0, of_.size(), [&](std::size_t i) {
     if (!of_[i] || steps_since_thought(of_[i]->plan->period, clock) != 0) return;
     OfRobot& brain = *of_[i];
     const BrainPlan& plan = *brain.plan;

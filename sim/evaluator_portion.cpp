@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/evaluator_portion.h"
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <deque>
 #include <mutex>
 
 #include "mercury/error.h"
+#include "mercury/parallel.h"
 
 namespace mercury {
 namespace {
@@ -111,9 +108,7 @@ Portion make_portion(const RobotSource& source, std::size_t first, std::size_t e
     maker.work();
     return maker.result();
   }
-  oneapi::tbb::parallel_for(
-      0, oneapi::tbb::this_task_arena::max_concurrency(), [&](int) { maker.work(); },
-      oneapi::tbb::simple_partitioner());
+  parallel_tasks(0, parallel_threads(), [&](std::size_t) { maker.work(); });
   return maker.result();
 }
 

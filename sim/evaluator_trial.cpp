@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/evaluator_trial.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "mercury/error.h"
+#include "mercury/parallel.h"
 
 namespace mercury {
 namespace {
@@ -78,7 +77,7 @@ bool PortionTrial::run() {
 // Puts the masses where the request wants them.
 void PortionTrial::place() {
   std::vector<Vec3> positions(simulation_.mass_count());
-  oneapi::tbb::parallel_for(std::size_t{0}, simulation_.size(), [&](std::size_t i) {
+  parallel_for(0, simulation_.size(), [&](std::size_t i) {
     const std::vector<Vec3>& rest = simulation_.robot(i).masses;
     const std::span<Vec3> own = std::span(positions).subspan(simulation_.mass_offsets()[i], rest.size());
     std::ranges::copy(rest, own.begin());
@@ -152,7 +151,7 @@ void PortionTrial::observe_now() { observe(simulation_.telemetry(), steps_done()
 
 void PortionTrial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
   const std::size_t robots = measures_.size();
-  oneapi::tbb::parallel_for(std::size_t{0}, robots, [&](std::size_t i) {
+  parallel_for(0, robots, [&](std::size_t i) {
     for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds(steps));
   });
   observed_ = steps_done();
@@ -167,7 +166,7 @@ void PortionTrial::remove_losers() {
   const std::vector<Telemetry> telemetry = is_sampled ? std::vector<Telemetry>() : simulation_.telemetry();
   std::vector<Evaluation> reached(robots);
   std::vector<std::uint8_t> goes_on(robots);
-  oneapi::tbb::parallel_for(std::size_t{0}, robots, [&](std::size_t i) {
+  parallel_for(0, robots, [&](std::size_t i) {
     TrialMeasures measures = measures_[i];
     if (!is_sampled) measures.add(telemetry[i], seconds(now - observed_));
     reached[i] = results_[candidates_[i]];

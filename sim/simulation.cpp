@@ -2,8 +2,6 @@
 // Robots, configuration and time of a Simulation.
 #include "mercury/simulation.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "mercury/parallel.h"
 #include "mercury/stopwatch.h"
 #include "mercury/work_counter.h"
 #include "sim/physics/measures.h"
@@ -45,7 +44,7 @@ bool is_sound(const Robot& robot) {
 void validate_all(std::span<const std::shared_ptr<const Robot>> robots, std::size_t first, const WorkWatch& watch) {
   std::atomic<std::size_t> bad = robots.size();
   WorkCounter counter(watch, "checking robots", robots.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
+  parallel_for(0, robots.size(), [&](std::size_t i) {
     counter.add_one();
     if ((i > 0 && robots[i] == robots[i - 1]) || is_sound(*robots[i])) return;
     for (std::size_t known = bad; i < known && !bad.compare_exchange_weak(known, i);) {
@@ -56,8 +55,7 @@ void validate_all(std::span<const std::shared_ptr<const Robot>> robots, std::siz
 
 std::vector<std::shared_ptr<const Robot>> copies_of(std::span<const Robot> robots) {
   std::vector<std::shared_ptr<const Robot>> copies(robots.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(),
-                            [&](std::size_t i) { copies[i] = std::make_shared<const Robot>(robots[i]); });
+  parallel_for(0, robots.size(), [&](std::size_t i) { copies[i] = std::make_shared<const Robot>(robots[i]); });
   return copies;
 }
 
@@ -108,8 +106,8 @@ std::span<const float> Simulation::Parts::rest_lifts() {
   const std::size_t known = std::min(lifts.size(), size());
   lifts.resize(size());
   if (has_ground(configuration.environment))
-    oneapi::tbb::parallel_for(
-        known, size(), [&](std::size_t i) { lifts[i] = lift_to_floor(robots[i]->masses, configuration.environment); });
+    parallel_for(known, size(),
+                 [&](std::size_t i) { lifts[i] = lift_to_floor(robots[i]->masses, configuration.environment); });
   return lifts;
 }
 
@@ -229,7 +227,7 @@ std::string Simulation::Parts::softening_note() const {
   if (configuration.solver != Solver::xpbd) return {};
   constexpr double allowed = 0.05;
   std::vector<double> softening(size());
-  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+  parallel_for(0, size(), [&](std::size_t i) {
     const bool known = i > 0 && robots[i] == robots[i - 1];
     softening[i] = known ? 0 : xpbd_softening(*robots[i], configuration);
   });
@@ -246,7 +244,7 @@ std::string Simulation::Parts::softening_note() const {
 }
 std::string Simulation::Parts::stability_note() const {
   std::vector<double> allowed(size(), std::numeric_limits<double>::infinity());
-  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+  parallel_for(0, size(), [&](std::size_t i) {
     if (i == 0 || robots[i] != robots[i - 1]) allowed[i] = exceeded_dt(*robots[i], configuration);
   });
   const auto least = std::ranges::min_element(allowed);
@@ -413,7 +411,7 @@ void Simulation::reset_to(std::span<const Vec3> positions) {
   std::vector<Robot> starts(size());
   std::vector<const Robot*> pointers(size());
   std::vector<float> lifts(size());
-  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+  parallel_for(0, size(), [&](std::size_t i) {
     const auto own = positions.subspan(parts_->offsets[i], parts_->masses(i));
     starts[i].masses.assign(own.begin(), own.end());
     starts[i].velocity = parts_->robots[i]->velocity;

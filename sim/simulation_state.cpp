@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // States, explosions and telemetry of a Simulation.
-#include <oneapi/tbb/parallel_for.h>
 
 #include <stdexcept>
 #include <utility>
 
 #include "mercury/fnv.h"
+#include "mercury/parallel.h"
 #include "mercury/simulation.h"
 #include "sim/physics/measures.h"
 #include "sim/simulation_parts.h"
@@ -168,7 +168,7 @@ bool Simulation::measures_folding() const { return parts_->find_cells(); }
 bool Simulation::Parts::find_cells() const {
   if (!folding_of) return false;
   const auto is_repeated = [&](std::size_t i) { return i > 0 && robots[i] == robots[i - 1]; };
-  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+  parallel_for(0, size(), [&](std::size_t i) {
     if (cells[i] || is_repeated(i)) return;
     const MeasuredFolding measured = folding_of(*robots[i]);
     cells[i] = measured == MeasuredFolding::none ? nullptr : std::make_shared<const BodyCells>(*robots[i], measured);
@@ -182,7 +182,7 @@ void Simulation::Parts::add_folding(std::span<Telemetry> telemetry) const {
   if (telemetry.empty() || !find_cells()) return;
   std::vector<Vec3> positions(offsets.back());
   backend->read_positions(positions);
-  oneapi::tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t i) {
+  parallel_for(0, size(), [&](std::size_t i) {
     const BodyCells* of_robot = cells[i]->get();
     if (!of_robot || telemetry[i].exploded) return;
     const Folding folding = of_robot->folding(std::span(positions).subspan(offsets[i], masses(i)));
@@ -205,7 +205,7 @@ std::vector<std::uint64_t> Simulation::hashes() const {
   std::vector<std::uint64_t> all(size(), Fnv1a::empty);
   std::vector<Vec3> values(mass_count());
   const auto take_values = [&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+    parallel_for(0, all.size(), [&](std::size_t i) {
       all[i] = fnv1a(std::span(values).subspan(parts_->offsets[i], parts_->masses(i)), all[i]);
     });
   };

@@ -2,7 +2,6 @@
 #include "app/commands/run_evaluation.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "mercury/error.h"
 #include "mercury/evaluator.h"
 #include "mercury/host_memory.h"
+#include "mercury/parallel.h"
 #include "mercury/trial_measures.h"
 
 namespace mercury {
@@ -252,7 +252,7 @@ GatheredRobots gather(const RobotSequence& robots) {
     for (std::size_t first = 0; first < robots.count; first += portion) {
       throw_if_interrupted();
       progress.update(static_cast<std::int64_t>(first));
-      oneapi::tbb::parallel_for(first, std::min(first + portion, robots.count), [&](std::size_t i) {
+      parallel_for(first, std::min(first + portion, robots.count), [&](std::size_t i) {
         try {
           made[i] = robots.source(i);
         } catch (const InputError& error) {

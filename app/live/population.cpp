@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/live/population.h"
-
-#include <oneapi/tbb/parallel_for.h>
+#include "mercury/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -27,7 +26,7 @@ Shapes shapes_of(const std::vector<LiveRobot>& robots, const LiveRobots& before)
   for (const LiveRobot& robot : robots)
     if (known.emplace(robot.robot.get(), nullptr).second) added.push_back(robot.robot.get());
   Shapes made(added.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t i) { made[i] = shape_of(*added[i]); });
+  parallel_for(0, added.size(), [&](std::size_t i) { made[i] = shape_of(*added[i]); });
   for (std::size_t i = 0; i < added.size(); ++i) known[added[i]] = made[i];
   Shapes shapes;
   for (const LiveRobot& robot : robots) shapes.push_back(known[robot.robot.get()]);

@@ -2,7 +2,6 @@
 #include "app/options/robot_output.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <charconv>
@@ -15,6 +14,7 @@
 #include "app/options/option_values.h"
 #include "mercury/error.h"
 #include "mercury/file_links.h"
+#include "mercury/parallel.h"
 
 namespace mercury {
 namespace {
@@ -27,7 +27,7 @@ constexpr std::uint64_t at_once = 64;  // robots made together, then written
 
 std::vector<MadeRobot> make_robots(const MakeRobot& make, std::uint64_t seed, std::uint64_t first, std::size_t count) {
   std::vector<MadeRobot> made(count);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+  parallel_for(0, count, [&](std::size_t i) {
     try {
       made[i].robot = make(seed, first + i);
     } catch (const InputError& error) {

@@ -2,10 +2,10 @@
 #include "app/scene/coloring.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include "app/scene/appearance.h"
 #include "mercury/error.h"
+#include "mercury/parallel.h"
 
 namespace mercury {
 namespace {
@@ -50,7 +50,7 @@ ColorValues Coloring::values(const GroupState& state) const {
   if (quantity_.of_face) values.face.resize(face_offsets_.back());
   if (quantity_.of_spring) values.spring.resize(spring_offsets_.back());
   if (quantity_.of_mass || averages_springs(quantity_)) values.mass.resize(state.positions.size());
-  tbb::parallel_for(std::size_t{0}, simulation_.size(), [&](std::size_t i) { fill(values, i, state); });
+  parallel_for(0, simulation_.size(), [&](std::size_t i) { fill(values, i, state); });
   return values;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/run_folder/derived_files.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,6 +18,7 @@
 #include "mercury/csv.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
+#include "mercury/parallel.h"
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
@@ -174,7 +173,7 @@ std::string lines_of(const RunHistory& run, const CsvLines& head,
   constexpr std::size_t portion = 4096;
   const std::span<const Individual> all = run.individuals();
   std::vector<std::string> parts((all.size() + portion - 1) / portion);
-  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+  parallel_for(0, parts.size(), [&](std::size_t part) {
     CsvLines csv;
     for (const Individual& individual : all.subspan(part * portion, std::min(portion, all.size() - part * portion))) {
       add(individual, csv);

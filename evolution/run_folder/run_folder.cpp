@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/run_folder.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <future>
 #include <limits>
@@ -14,6 +12,7 @@
 #include "evolution/run_folder/run_history.h"
 #include "mercury/error.h"
 #include "mercury/file_links.h"
+#include "mercury/parallel.h"
 #include "mercury/quantity.h"
 #include "robots/bytes.h"
 #include "robots/file/whole_file.h"
@@ -43,7 +42,7 @@ std::string store_genomes(GenerationRecord& record, const GenomeStore& store) {
   std::vector<Individual>& born = record.generation.born;
   std::vector<std::string> stored(born.size());
   record.genomes.resize(born.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, born.size(), [&](std::size_t i) {
+  parallel_for(0, born.size(), [&](std::size_t i) {
     StoredGenome& genome = record.genomes[i];
     stored[i] = born[i].genome->encode();
     if (!born[i].parents.empty() && store.chain_of(born[i].parents.front()) < longest_chain) {
@@ -121,7 +120,7 @@ void restore(const RunHistory& history, Evolution& evolution) {
   history.space();  // made once, before several threads need it
   const auto with_genomes = [&](std::span<const std::uint64_t> ids) {
     std::vector<Individual> individuals(ids.size());
-    oneapi::tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
+    parallel_for(0, ids.size(), [&](std::size_t i) {
       individuals[i] = history.individuals()[ids[i]];
       individuals[i].genome = history.genome(ids[i]);
     });

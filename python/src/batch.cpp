@@ -68,25 +68,41 @@ class LiveBatches {
   }
   void before_fork() {
     const ReleasedGil released;
+    ++forks_;
     mutex_.lock();
     for (Batch* const batch : batches_) batch->mutex_.lock();
   }
   // In both processes, by the thread that forked.
-  void after_fork() {
+  void after_fork_in_parent() {
+    unlock();
+    --forks_;
+    forks_.notify_all();
+  }
+  void after_fork_in_child() {
+    unlock();
+    forks_ = 0;  // the other threads that were about to fork are not here
+  }
+  // A mutex goes to whom it finds awake: threads that do nothing but step would keep one that forks waiting forever.
+  void let_forks_pass() const {
+    for (int forks; (forks = forks_) > 0;) forks_.wait(forks);
+  }
+
+ private:
+  void unlock() {
     for (Batch* const batch : batches_) batch->mutex_.unlock();
     mutex_.unlock();
   }
 
- private:
+  std::atomic<int> forks_ = 0;  // begun and not over
   std::mutex mutex_;
   std::set<Batch*> batches_;
 };
 
 void watch_forks() {
-  const nb::object after = nb::cpp_function([] { LiveBatches::get().after_fork(); });
   nb::module_::import_("os").attr("register_at_fork")(
       nb::arg("before") = nb::cpp_function([] { LiveBatches::get().before_fork(); }),
-      nb::arg("after_in_parent") = after, nb::arg("after_in_child") = after);
+      nb::arg("after_in_parent") = nb::cpp_function([] { LiveBatches::get().after_fork_in_parent(); }),
+      nb::arg("after_in_child") = nb::cpp_function([] { LiveBatches::get().after_fork_in_child(); }));
 }
 
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
@@ -116,6 +132,11 @@ Batch::~Batch() {
   simulation_.reset();
 }
 
+std::unique_lock<std::mutex> Batch::lock() const {
+  LiveBatches::get().let_forks_pass();
+  return std::unique_lock(mutex_);
+}
+
 void Batch::leave_stream() {
   if (const int device = simulation_->cuda_device(); device >= 0 && last_stream_->exchange(nullptr))
     synchronize_cuda_device(device);
@@ -137,7 +158,7 @@ void Batch::step(std::int64_t steps, nb::handle stream) {
   for (bool first = true; first || steps > 0; first = false) {
     if (!first && PyErr_CheckSignals() != 0) throw nb::python_error();
     const ReleasedGil released;
-    const std::lock_guard lock(mutex_);
+    const std::unique_lock lock = this->lock();
     if (steps > std::numeric_limits<std::int64_t>::max() - simulation_->steps())
       throw InputError("n", std::to_string(steps) + " is too large; a batch counts up to 2^63 steps");
     const std::int64_t count = std::min(steps, steps_at_once_);
@@ -180,7 +201,7 @@ void Batch::reset(nb::handle mask, nb::handle stream) {
   }
   const DeviceMask on_device = device_mask_from(mask, cuda_stream);
   const ReleasedGil released;
-  const std::lock_guard lock(mutex_);
+  const std::unique_lock lock = this->lock();
   if (simulation_->cuda_device() != device)
     throw InputError("mask", "memory of cuda:" + std::to_string(device) + " is not accepted; the batch is on " +
                                  name_of(simulation_->configuration().device));

@@ -31,7 +31,7 @@ class Batch {
   template <class Use>
   auto use(const Use& use) const {
     const ReleasedGil released;
-    const std::lock_guard lock(mutex_);
+    const std::unique_lock lock = this->lock();
     return use(*simulation_);
   }
   // The same for what changes the robots. Without a stream, that is in the legacy default stream of a CUDA device: what
@@ -39,7 +39,7 @@ class Batch {
   template <class Change>
   auto change(const Change& change) {
     const ReleasedGil released;
-    const std::lock_guard lock(mutex_);
+    const std::unique_lock lock = this->lock();
     leave_stream();
     return change(*simulation_);
   }
@@ -63,6 +63,7 @@ class Batch {
  private:
   static constexpr std::size_t exploded_place = 4, actuation_place = 5;
 
+  std::unique_lock<std::mutex> lock() const;  // to be called without the GIL
   template <class Make>
   nb::object cached(std::size_t place, const Make& make);
   void leave_stream();   // to be called with the lock

@@ -2,20 +2,14 @@
 // The CPU backend: work batches of robots run on a thread pool.
 #include "mercury/backend.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <iterator>
-#include <optional>
 #include <unordered_set>
 
 #include "mercury/error.h"
+#include "mercury/parallel.h"
 #include "mercury/stopwatch.h"
 #include "mercury/threads.h"
 #include "mercury/work_counter.h"
@@ -31,23 +25,17 @@ using namespace cpu;
 
 class CpuBackend final : public Backend {
  public:
-  CpuBackend(const Device& device, const Kernel& kernel)
-      : kernel_(kernel), arena_(device.threads > 0 ? device.threads : oneapi::tbb::task_arena::automatic) {
-    // Without this, TBB refuses more threads than cores, with a warning on stderr.
-    if (device.threads > oneapi::tbb::info::default_concurrency())
-      allowance_.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
-                         static_cast<std::size_t>(device.threads));
-  }
+  CpuBackend(const Device& device, const Kernel& kernel) : kernel_(kernel), pool_(device.threads) {}
 
   std::string device_name() const override {
-    const int threads = arena_.max_concurrency();
+    const std::size_t threads = pool_.threads();
     return "CPU, " + std::to_string(threads) + (threads == 1 ? " thread, " : " threads, ") + std::string(kernel_.name);
   }
   std::vector<std::string> notes() const override { return {}; }
 
   std::size_t robots_at_once() const override {
     const bool together = !bodies_.empty() && fits_in_group(*bodies_.front());
-    return static_cast<std::size_t>(arena_.max_concurrency()) * (together ? kernel_.lanes : 1);
+    return pool_.threads() * (together ? kernel_.lanes : 1);
   }
   double spring_limit() const override { return 0; }
   double busy_seconds() const override { return busy_seconds_; }
@@ -106,14 +94,13 @@ class CpuBackend final : public Backend {
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
-    arena_.execute([&] { group_bodies(); });
+    pool_.execute([&] { group_bodies(); });
     watch_ = {};
     const auto start = std::chrono::steady_clock::now();
     std::atomic<std::size_t> broken_up = 0;
-    arena_.execute([&] {
-      oneapi::tbb::parallel_for(std::size_t{0}, batches_.size(), [&](std::size_t i) {
-        broken_up += advance(kernel_, batches_[i], setting_, clock, steps);
-      });
+    pool_.execute([&] {
+      parallel_for(0, batches_.size(),
+                   [&](std::size_t i) { broken_up += advance(kernel_, batches_[i], setting_, clock, steps); });
     });
     changes_since_grouping_ += broken_up;
     // New groups exclude the robots that have exploded. They are not worth it at each explosion.
@@ -146,7 +133,7 @@ class CpuBackend final : public Backend {
       for (Vec3& x : positions) x += Vec3{0, 0, lifts[i]};
       set_state(*bodies_[first + i], positions, start_velocities(*robots[i]));
     };
-    arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, lifts.size(), set_down); });
+    pool_.execute([&] { parallel_for(0, lifts.size(), set_down); });
   }
 
   void read_positions(std::span<Vec3> out) const override { read_all(out, &Body::position); }
@@ -194,7 +181,7 @@ class CpuBackend final : public Backend {
  private:
   template <class Work>
   void for_each_body(const Work& work) const {
-    arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t i) { work(i); }); });
+    pool_.execute([&] { parallel_for(0, bodies_.size(), [&](std::size_t i) { work(i); }); });
   }
 
   void read_all(std::span<Vec3> out, Vec3 (Body::*value)(std::size_t) const) const {
@@ -219,7 +206,7 @@ class CpuBackend final : public Backend {
       set_state(*bodies_[i], robot.masses, start_velocities(robot));
       counter.add_one();
     };
-    arena_.execute([&] { oneapi::tbb::parallel_for(first, bodies_.size(), make); });
+    pool_.execute([&] { parallel_for(first, bodies_.size(), make); });
     choose_model();
     if (batches_.empty()) return;
     for (std::size_t i = first; i < bodies_.size(); ++i) loose_.push_back(bodies_[i].get());
@@ -231,7 +218,7 @@ class CpuBackend final : public Backend {
     const Stopwatch stopwatch(load_times_.schedule);
     loosened_since_grouping_ += loose_.size();
     if (4 * loosened_since_grouping_ > bodies_.size()) ungroup();
-    const auto threads = static_cast<std::size_t>(arena_.max_concurrency());
+    const auto threads = pool_.threads();
     if (batches_.empty()) {
       std::vector<Body*> all;
       for (const auto& body : bodies_) all.push_back(body.get());
@@ -277,8 +264,7 @@ class CpuBackend final : public Backend {
 
   const Kernel kernel_;
   WorkWatch watch_;  // until the first step
-  std::optional<oneapi::tbb::global_control> allowance_;
-  mutable oneapi::tbb::task_arena arena_;
+  ThreadPool pool_;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<WorkBatch> batches_;           // empty = all are to be made before the next step
   std::vector<Body*> loose_;                 // in no batch, if there are batches

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/arrangement.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <unordered_map>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "sim/physics/fixed_point.h"
 
 namespace mercury::cuda {
@@ -67,11 +66,11 @@ Arrangement arrange(const Robot& robot) {
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {
   std::vector<std::uint64_t> keys(robots.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) { keys[i] = topology_key(*robots[i]); });
+  parallel_for(0, robots.size(), [&](std::size_t i) { keys[i] = topology_key(*robots[i]); });
   std::unordered_map<std::uint64_t, std::uint32_t> first_of_key;
   for (std::uint32_t i = 0; i < robots.size(); ++i) first_of_key.try_emplace(keys[i], i);
   std::vector<std::uint32_t> first(robots.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
+  parallel_for(0, robots.size(), [&](std::size_t i) {
     const std::uint32_t candidate = first_of_key.at(keys[i]);
     const bool same = candidate == i || same_topology(*robots[candidate], *robots[i]);
     first[i] = same ? candidate : static_cast<std::uint32_t>(i);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps and reports of the CUDA backend.
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "sim/cuda/backend.h"
 
 namespace mercury::cuda {
@@ -71,7 +71,7 @@ void CudaBackend::step_and_report(const Clock& clock, std::int64_t steps, std::i
       launch(now, every, on_device.data() + k * robots, main().get());
     end_launches(owned_->sleepy_end);
     on_device.read(0, std::span(reports.get(), count * robots), main().get());
-    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    parallel_for(0, count, [&](std::size_t k) {
       const std::size_t at = (first + k) * robots;
       copy_reports([&](std::size_t i) -> const DeviceTelemetry& { return reports[k * robots + i]; },
                    samples.subspan(at, robots), statuses.subspan(at, robots));

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/intake.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <numeric>
 
+#include "mercury/parallel.h"
 #include "mercury/stopwatch.h"
 #include "mercury/work_counter.h"
 #include "sim/cuda/rest_lengths.h"
@@ -38,7 +37,7 @@ class Intake {
         users_(robots.size()), order_(robots.size()) {
     const Stopwatch stopwatch(times_.schedule);
     const std::vector<std::uint32_t> first = first_of_topology(robots);
-    oneapi::tbb::parallel_for(std::size_t{0}, robots.size(), [&](std::size_t i) {
+    parallel_for(0, robots.size(), [&](std::size_t i) {
       new_robots_[i] = {robots[i], measure(*robots[i]), record_words_for(*robots[i]), {}, first[i]};
     });
     for (const std::uint32_t f : first) ++users_[f];
@@ -114,7 +113,7 @@ class Intake {
     std::ranges::sort(wanted);
     wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
     WorkCounter counter(watch_, "arranging robots", wanted.size());
-    oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t k) {
+    parallel_for(0, wanted.size(), [&](std::size_t k) {
       arrangements_[wanted[k]] = std::make_unique<const Arrangement>(arrange(*new_robots_[wanted[k]].robot));
       counter.add_one();
     });
@@ -149,7 +148,7 @@ class Intake {
     for (const Run& run : runs) {
       Chunks chunks(run.to.sizes(), run.robots.size(), memory);
       memory += run.robots.size() * run.to.sizes().bytes();
-      oneapi::tbb::parallel_for(std::size_t{0}, run.robots.size(), [&](std::size_t k) {
+      parallel_for(0, run.robots.size(), [&](std::size_t k) {
         const NewRobot& entry = new_robots_[run.robots[k]];
         const Arrangement& arrangement = arrangement_of(run.robots[k]);
         run.to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/size_class.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "mercury/parallel.h"
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/kernels.h"
 
@@ -134,7 +133,8 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
   const std::size_t count = size() - first_place;
   if (count == 0) return;
   find_same_materials(first_place);
-  oneapi::tbb::parallel_for(first_place, size(), [&](std::uint32_t place) { describe(place, configuration); });
+  parallel_for(first_place, size(),
+               [&](std::size_t place) { describe(static_cast<std::uint32_t>(place), configuration); });
   points_stale_ = true;
   const cudaStream_t stream = urgent_->get();
   device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
@@ -179,7 +179,7 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
 }
 
 void SizeClass::configure(const Configuration& configuration) {
-  oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) { describe(place, configuration); });
+  parallel_for(0, size(), [&](std::size_t place) { describe(static_cast<std::uint32_t>(place), configuration); });
   points_stale_ = true;
   device_headers_.write(0, headers_, urgent_->get());
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials of a size class: tables, phases, and copies of the tables that actuators drive.
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/kernels.h"
 #include "sim/cuda/size_class.h"
@@ -48,11 +48,12 @@ void SizeClass::publish_points() {
   const std::size_t stride = sizes_.slots();
   std::vector<PointProperties> points(size() * stride, PointProperties{0, 0});
   std::vector<float> masses(size() * stride), valences(size() * stride);
-  oneapi::tbb::parallel_for(0u, size(), [&](std::uint32_t place) {
+  parallel_for(0, size(), [&](std::size_t index) {
+    const auto place = static_cast<std::uint32_t>(index);
     const Robot& robot = *robots_[place];
     const std::vector<std::uint32_t> springs = mercury::valences(robot);
     for (std::uint32_t mass = 0; mass < robot.masses.size(); ++mass) {
-      const std::size_t slot = place * stride + order_of(place).slot_of(mass);
+      const std::size_t slot = index * stride + order_of(place).slot_of(mass);
       points[slot] = point_properties_[place].empty() ? PointProperties{} : point_properties_[place][mass];
       masses[slot] = mass_of(robot, mass);
       valences[slot] = static_cast<float>(springs[mass]) * points[slot].inverse_inertia;

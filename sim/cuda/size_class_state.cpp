@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // States and statuses of a size class on their way from and to the host.
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 
+#include "mercury/parallel.h"
 #include "sim/cuda/size_class.h"
 
 namespace mercury::cuda {
@@ -39,7 +39,7 @@ void SizeClass::put_at_rest(std::uint32_t first_place, std::span<const Robot* co
   for (std::size_t first = 0; first < robots.size(); first += most) {
     const std::size_t count = std::min(most, robots.size() - first);
     const std::span states(reinterpret_cast<float*>(memory.data()), count * stride);
-    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    parallel_for(0, count, [&](std::size_t k) {
       const auto place = first_place + static_cast<std::uint32_t>(first + k);
       fill_state(states.subspan(k * stride, stride), *robots[first + k], order_of(place), lifts[first + k]);
     });
@@ -56,7 +56,7 @@ void SizeClass::read_all(Field first_field, std::span<Vec3> out) const {
     const std::size_t count = std::min(most, size() - first);
     const std::span states(reinterpret_cast<float*>(memory.data()), count * stride);
     state_.read(first, states, urgent_->get());
-    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
+    parallel_for(0, count, [&](std::size_t k) {
       const SlotOrder& order = order_of(static_cast<std::uint32_t>(first + k));
       Vec3* const to = &out[first_mass_[first + k]];
       for (std::uint32_t mass = 0; mass < headers_[first + k].masses; ++mass)

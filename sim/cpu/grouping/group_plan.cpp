@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/grouping/group_plan.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "mercury/work_counter.h"
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/merged_topology.h"
@@ -48,7 +47,7 @@ using Patterns = std::vector<std::vector<LatticeCell>>;
 
 Patterns patterns_of(std::span<Body* const> bodies, std::span<const std::size_t> wanted, bool faces) {
   Patterns patterns(bodies.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t w) {
+  parallel_for(0, wanted.size(), [&](std::size_t w) {
     const std::vector<LatticeCell>& cells = bodies[wanted[w]]->cells;
     patterns[wanted[w]] = faces || cells.empty() ? cells : in_common_pose(cells);
   });
@@ -177,7 +176,7 @@ std::vector<GroupPlan> plan_lockstep_groups(std::span<Body* const> bodies, std::
 
   std::vector<GroupPlan> plans(groups.size());
   WorkCounter counter(watch, "planning groups", groups.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+  parallel_for(0, groups.size(), [&](std::size_t g) {
     plans[g] = g < same ? plan_same_topology(bodies, std::move(groups[g]))
                         : plan_similar(bodies, patterns, std::move(groups[g]));
     if (g >= same && !is_faster_than_alone(bodies, plans[g], faces)) plans[g] = {};

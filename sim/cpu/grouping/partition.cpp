@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/grouping/partition.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -10,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "mercury/work_counter.h"
 #include "sim/cpu/grouping/cost_model.h"
 
@@ -307,7 +306,7 @@ std::vector<std::vector<std::size_t>> partition_by_similarity(std::span<const Ro
   std::ranges::stable_sort(by_size, std::greater{}, [&](std::size_t i) { return robots[i].cells.size(); });
   std::vector<std::vector<Group>> parts((robots.size() + limits.robots_compared - 1) / limits.robots_compared);
   WorkCounter counter(watch, "comparing robots", parts.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t p) {
+  parallel_for(0, parts.size(), [&](std::size_t p) {
     const std::span<const std::size_t> members = std::span(by_size).subspan(p * limits.robots_compared);
     parts[p] = groups_of(robots, members.first(std::min(limits.robots_compared, members.size())), group_size);
     counter.add_one();

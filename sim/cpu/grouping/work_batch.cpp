@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/grouping/work_batch.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <functional>
 #include <iterator>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "mercury/work_counter.h"
 #include "sim/cpu/grouping/cost_model.h"
 #include "sim/cpu/grouping/group_plan.h"
@@ -47,7 +46,7 @@ std::vector<LockstepGroup> make_groups(std::span<Body* const> bodies, std::vecto
                                        const WorkWatch& watch) {
   std::vector<LockstepGroup> groups(plans.size());
   WorkCounter counter(watch, "grouping robots", plans.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, plans.size(), [&](std::size_t g) {
+  parallel_for(0, plans.size(), [&](std::size_t g) {
     std::vector<Body*> members;
     for (const std::size_t i : plans[g].bodies) members.push_back(bodies[i]);
     groups[g] = make_lockstep_group(std::move(members), std::move(plans[g].merged), contacts);
@@ -66,7 +65,7 @@ std::vector<WorkBatch> make_work_batches(std::span<Body* const> bodies, std::siz
   for (const GroupPlan& plan : plans)
     for (const std::size_t i : plan.bodies) is_member[i] = 1;
   WorkCounter counter(watch, "scheduling springs", bodies.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t i) {
+  parallel_for(0, bodies.size(), [&](std::size_t i) {
     if (contacts) prepare_contacts(*bodies[i]);
     if (!is_member[i]) prepare_to_step_alone(*bodies[i]);
     counter.add_one();
