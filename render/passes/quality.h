@@ -11,7 +11,7 @@ namespace mercury::render {
 struct QualitySettings {
   int samples = 4;                           // per pixel
   int shadow_side = 1024;                    // texels
-  int ground_side = 512;                     // texels of the floor's light map
+  int ground_side = 256;                     // texels of the floor's light map
   int caustics_side = 320;                   // texels of a tile
   int caustics_cells = 64;                   // of the grid of light rays that is drawn into it, per side
   int shadow_blockers = 5, shadow_taps = 8;  // of shadows on the floor
