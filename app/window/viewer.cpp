@@ -219,8 +219,8 @@ void Viewer::frame(double dt) {
   if (DrawnScene* second = scene_.second_drawn(); second && drawn_ > 0) second->see(shown_camera_, area_.aspect());
   scene_.frame(area_.aspect());
   // Whoever edits a body sees its voxels. At low quality, round skins would take as long as all else.
-  const bool rounded = !scene_.view().faceted && context_.body_edit.robot == 0 &&
-                       viewport_.renderer().quality() != render::Quality::low;
+  const bool rounded =
+      !scene_.view().faceted && context_.body_edit.robot == 0 && viewport_.renderer().quality() != render::Quality::low;
   scene_.drawn().scene().rounded = rounded;
   if (DrawnScene* second = scene_.second_drawn()) second->scene().rounded = rounded;
   run_.frame();
