@@ -505,4 +505,18 @@ bool seeks_target(const Robot& robot) {
 
 bool seeks_light(const Robot& robot) { return std::ranges::count(robot.sensors, SensorKind::light, &Sensor::kind) > 0; }
 
+std::vector<std::vector<std::uint16_t>> touch_places(const Robot& robot) {
+  std::vector<std::vector<std::uint16_t>> places;
+  if (!robot.brain || !std::ranges::count(robot.sensors, SensorKind::touch, &Sensor::kind)) return places;
+  const BrainPlan plan = make_brain_plan(robot);
+  for (const BrainPlan::Place& place : plan.places) {
+    if (!(place.measures & measure_touch)) continue;
+    std::vector<std::uint16_t>& masses = places.emplace_back(place.masses);
+    if (&place != &plan.places.front()) continue;
+    masses.resize(robot.masses.size());  // the whole robot
+    std::iota(masses.begin(), masses.end(), std::uint16_t{0});
+  }
+  return places;
+}
+
 }  // namespace mercury

@@ -221,6 +221,9 @@ class LiveScene {
   void set_perturbation_stiffness(float stiffness);
   void end_perturbation();
   std::optional<PerturbationDetails> perturbation() const;
+  // Pushes all robots a tenth of a second from now, or in the next step while time stands: the parameters push and
+  // push_at of the environment. Returns false, with a message, if the velocity cannot be [m/s].
+  bool push(const Vec3& velocity);
   // Springs that stay until they are removed or their robot goes; each change is an edit. attach_perturbation() ends
   // the perturbation and leaves its spring; pin() holds a mass where it is, and after a reset where it starts.
   void attach_perturbation();

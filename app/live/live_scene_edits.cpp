@@ -171,6 +171,18 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
   return true;
 }
 
+bool LiveScene::push(const Vec3& velocity) {
+  constexpr double reaction = 0.1;  // physics has carried the change out by then [s]
+  end_edit();
+  Configuration configuration = parts_->document.configuration;
+  configuration.environment.push = velocity;
+  configuration.environment.push_at =
+      static_cast<float>(snapshot().time + configuration.dt + reaction * snapshot().achieved_speed);
+  const bool accepted = set_configuration(configuration);
+  end_edit();
+  return accepted;
+}
+
 std::span<const Material> LiveScene::materials(RobotId robot) const {
   const DocumentRobot* found = parts_->document.find(robot);
   return found ? materials_of(found->body) : std::span<const Material>{};

@@ -34,7 +34,7 @@ float sand_below(std::span<const render::Bounds> robots) {
 // Plants that suit the robots: in water about as tall as they are wide, on land short grass. Among many robots they
 // would be a few pixels high, and each keeps clear of all robots, which takes time.
 render::GroundCover ground_cover_for(std::span<const Room> rooms, bool land) {
-  if (rooms.size() > GroupScene::most_with_plants) return {.height = 0};
+  if (rooms.size() > most_with_extras) return {.height = 0};
   std::vector<float> radii;
   for (const Room& room : rooms) radii.push_back(room.radius);
   if (radii.empty()) radii.push_back(0.5f);

@@ -87,7 +87,6 @@ class GroupScene {
   }
 
   // Larger groups have neither plants around them nor water that they carry along.
-  static constexpr std::size_t most_with_plants = 300;
 
  private:
   // The render materials of robots with the same materials. `own` are those of the robot's file, which give the
@@ -114,7 +113,7 @@ class GroupScene {
   void hide_wrecks(std::span<const Telemetry> telemetry);
   void lengthen_paths(double time);
   void race(double time);
-  void mark_senses();
+  void mark_senses(std::span<const TouchMark> touches);
   void write_labels(std::span<const Telemetry> telemetry);
   std::vector<bool> in_view() const;
   void fit_scale(double time);

@@ -43,7 +43,7 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
     lengthen_paths(time);
   else
     scene_.paths = {};
-  mark_senses();
+  mark_senses(details.touches);
   if (settings_.shown.labels || settings_.shown.captions) write_labels(telemetry);
   color(time, std::move(details));
 }
@@ -101,7 +101,7 @@ void GroupScene::place_boxes() {
 // Swimmers, which carry water along.
 void GroupScene::note_movers(std::span<const Telemetry> telemetry) {
   movers_.clear();
-  const std::size_t count = placements_.size() > most_with_plants ? 0 : placements_.size();
+  const std::size_t count = placements_.size() > most_with_extras ? 0 : placements_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const render::Vector3 velocity(telemetry[i].velocity);
     if (exploded_[i] || hidden_[i] || !velocity.is_finite()) continue;
@@ -165,18 +165,16 @@ void GroupScene::lengthen_paths(double time) {
 
 namespace {
 
-// Three circles around a point.
-void add_circles(std::vector<std::vector<float>>& lines, Vec3 at, float radius) {
+// A circle around a point, across an axis.
+void add_circle(std::vector<std::vector<float>>& lines, Vec3 at, float radius, std::size_t axis) {
   constexpr int corners = 32;
-  for (std::size_t plane = 0; plane < 3; ++plane) {
-    std::vector<float>& line = lines.emplace_back();
-    for (int k = 0; k <= corners; ++k) {
-      const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / corners;
-      const float u = radius * std::cos(angle), v = radius * std::sin(angle);
-      const std::array<std::array<float, 3>, 3> offsets{{{0, u, v}, {u, 0, v}, {u, v, 0}}};
-      const auto& [x, y, z] = offsets[plane];
-      line.insert(line.end(), {at.x + x, at.y + y, at.z + z});
-    }
+  std::vector<float>& line = lines.emplace_back();
+  for (int k = 0; k <= corners; ++k) {
+    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(k) / corners;
+    const float u = radius * std::cos(angle), v = radius * std::sin(angle);
+    const std::array<std::array<float, 3>, 3> offsets{{{0, u, v}, {u, 0, v}, {u, v, 0}}};
+    const auto& [x, y, z] = offsets[axis];
+    line.insert(line.end(), {at.x + x, at.y + y, at.z + z});
   }
 }
 
@@ -190,12 +188,14 @@ void add_rays(std::vector<std::vector<float>>& lines, Vec3 at, float from, float
 
 }  // namespace
 
-// What robots sense: three circles around the target, the same with rays around the light, and beside each robot a line
-// towards it. In cells, where robots stay, there is no place for target and light.
-void GroupScene::mark_senses() {
+// What robots sense: rings where they feel the ground, brighter where more of a sensor's masses do; three circles
+// around the target, the same with rays around the light, and beside each robot a line towards it. In cells, where
+// robots stay, there is no place for target and light.
+void GroupScene::mark_senses(std::span<const TouchMark> touches) {
   constexpr float share = 0.12f;              // of a room's radius: circles
   constexpr float begin = 0.75f, end = 1.1f;  // the same: the line beside a robot
-  constexpr render::Color of_target = render::rgb(0xffc233), of_light = render::rgb(0xfff3b0);
+  constexpr render::Color of_target = render::rgb(0xffc233), of_light = render::rgb(0xfff3b0),
+                          of_touch = render::rgb(0xff9d2e);
   sense_lines_.clear();
   struct Mark {
     std::uint32_t body;
@@ -208,7 +208,7 @@ void GroupScene::mark_senses() {
     if (one == sensed_by.end()) return;
     const float radius = share * rooms_[static_cast<std::size_t>(one - sensed_by.begin())].radius;
     const std::size_t first = sense_lines_.size();
-    add_circles(sense_lines_, goal, (rays ? 0.7f : 1.0f) * radius);
+    for (std::size_t axis = 0; axis < 3; ++axis) add_circle(sense_lines_, goal, (rays ? 0.7f : 1.0f) * radius, axis);
     if (rays) add_rays(sense_lines_, goal, radius, 1.6f * radius);
     const std::size_t around = sense_lines_.size() - first;
     for (std::size_t i = 0; i < sensed_by.size(); ++i) {
@@ -225,6 +225,15 @@ void GroupScene::mark_senses() {
   };
   mark(seeks_target_, environment_.target, of_target, false);
   mark(seeks_light_, environment_.light, of_light, true);
+  for (const TouchMark& touch : touches) {
+    if (placements_[touch.body].hidden) continue;
+    constexpr std::array radii{1.0f, 0.7f, 0.4f};
+    render::Color color = of_touch;
+    color.a = static_cast<std::uint8_t>(std::lround(255 * (0.3f + 0.7f * touch.share)));
+    marks.push_back({touch.body, sense_lines_.size(), radii.size(), color});
+    for (const float radius : radii)
+      add_circle(sense_lines_, {touch.center.x, touch.center.y, 0.02f * touch.radius}, radius * touch.radius, 2);
+  }
   if (marks.empty()) return;
   std::vector<render::Path> paths(scene_.paths.begin(), scene_.paths.end());
   for (const Mark& one : marks)

@@ -18,12 +18,22 @@ ViewSettings known_in(const ViewSettings& settings, const Environment& environme
 DetailObserver::DetailObserver(const Simulation& simulation, const ViewSettings& settings) : simulation_(simulation) {
   if (settings.color->has_values()) coloring_.emplace(simulation, *settings.color);
   if (settings.shown.arrows.any()) arrows_.emplace(simulation, settings.shown.arrows);
+  if (simulation.size() <= most_with_extras) touch_.emplace(simulation);
 }
 
 SceneDetails DetailObserver::observe(std::span<const Telemetry> telemetry) {
-  if (!coloring_ && !arrows_) return {.driven = simulation_.driven_materials()};
-  GroupState state = read_state(simulation_);
   SceneDetails details;
+  if (!coloring_ && !arrows_) {
+    details.driven = simulation_.driven_materials();
+    if (touch_ && touch_->feels()) {
+      std::vector<Vec3> positions(simulation_.mass_count());
+      simulation_.read_positions(positions);
+      details.touches = touch_->marks(positions, telemetry);
+    }
+    return details;
+  }
+  GroupState state = read_state(simulation_);
+  if (touch_) details.touches = touch_->marks(state.positions, telemetry);
   if (coloring_) details.values = coloring_->values(state);
   if (arrows_) {
     details.arrows = arrows_->at(state, telemetry);

@@ -106,6 +106,7 @@ constexpr MouseGesture mouse_table[] = {
     {"Right click", "a menu for the robot"},
     {"Double click", "follow a robot"},
     {"Ctrl drag", "pull a mass; its force is shown. With Shift as well, the spring stays"},
+    {"Ctrl right drag", "push all robots: every mass gets the velocity that is shown"},
     {"Rest on a robot", "its name, and details of the mass and spring there; a click keeps them in the side panel"},
     {"Drop files", "open their robots, or a run"},
 };

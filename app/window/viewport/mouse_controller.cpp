@@ -20,6 +20,7 @@ constexpr double mark_delay = 0.05;     // the same for its name and for marks [
 constexpr double pick_period = 0.05;    // between two looks at what is under a mouse that rests [s]
 constexpr double pick_share = 0.1;      // of the time, for looking what is under a mouse that rests
 constexpr float wheel_factor = 0.88f;   // of the distance to the target, per notch
+constexpr float push_speed = 2;         // of a push, per length of its arrow [1/s]
 
 render::Ray ray_at(const ViewportArea& area, const render::Camera& camera, ImVec2 p) {
   return camera.ray(p.x - area.low.x, p.y - area.low.y, static_cast<int>(area.width()),
@@ -70,7 +71,15 @@ void MouseController::press(const ViewportArea& area, const render::Camera& came
     pressed_at_ = io.MousePos;
     follows_ = button == 0 && ImGui::IsMouseDoubleClicked(0);
     drag_ = button == 0 ? (io.KeyShift && !io.KeyCtrl ? Drag::box : Drag::turn) : Drag::pan;
-    if (button != 0 || !io.KeyCtrl) return;
+    if (button == 2 || !io.KeyCtrl) return;
+    if (button == 1) {
+      const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, io.MousePos));
+      if (!hit) return;
+      drag_ = Drag::push;
+      pushed_ = hit->point;
+      pull_depth_ = (pushed_ - camera.eye).dot(forward_of(camera));
+      return;
+    }
     drag_ = Drag::pull;
     if (const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, io.MousePos))) {
       pull_depth_ = (hit->point - camera.eye).dot(forward_of(camera));
@@ -95,7 +104,7 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
     used_.pulled = used_.pulled || dragged_;
     return;
   }
-  if (drag_ == Drag::box || !dragged_ || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
+  if (drag_ == Drag::box || drag_ == Drag::push || !dragged_ || (io.MouseDelta.x == 0 && io.MouseDelta.y == 0)) return;
   const float right = io.MouseDelta.x / area.height(), up = -io.MouseDelta.y / area.height();
   (drag_ == Drag::turn ? used_.turned : used_.moved) = true;
   if (drag_ == Drag::turn) camera_.turn(right, up);
@@ -112,6 +121,12 @@ void MouseController::release(const ViewportArea& area, const render::Camera& ca
       scene_.attach_perturbation();
     else
       scene_.end_perturbation();
+  } else if (drag_ == Drag::push) {
+    const render::Vector3 velocity = push_speed * (pushed_to(area, camera) - pushed_);
+    if (dragged_ && scene_.push({velocity.x, velocity.y, velocity.z})) {
+      log_.write("push", {{"velocity", {velocity.x, velocity.y, velocity.z}}});
+      toasts_.show(Tone::info, fmt::format("pushed all robots by {:.2f} m/s", velocity.norm()));
+    }
   } else if (drag_ == Drag::box && dragged_) {
     select_box(area, camera);
   } else if (!dragged_) {
@@ -176,6 +191,7 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
 void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
   draw_springs(area, camera);
   draw_pull(area, camera);
+  draw_push(area, camera);
   draw_box();
   const bool stays =
       pinned_ && scene_.is_selected(pinned_->robot) && scene_.pointed_snapshot().robots->index_of(pinned_->robot);
@@ -189,6 +205,29 @@ void MouseController::draw(const ViewportArea& area, const render::Camera& camer
 
 std::optional<std::size_t> MouseController::hovered() const {
   return hovered_ ? scene_.snapshot().robots->index_of(hovered_->robot) : std::nullopt;
+}
+
+// Where there is ground, a push is along it.
+render::Vector3 MouseController::pushed_to(const ViewportArea& area, const render::Camera& camera) const {
+  const render::Ray ray = ray_at(area, camera, ImGui::GetIO().MousePos);
+  const float drop = (pushed_.z - ray.origin.z) / ray.direction.z;
+  if (has_ground(scene_.configuration().environment) && drop > 0 && std::isfinite(drop))
+    return ray.origin + std::min(drop, 4 * pull_depth_) * ray.direction;
+  return ray.origin + pull_depth_ / std::max(0.05f, ray.direction.dot(forward_of(camera))) * ray.direction;
+}
+
+void MouseController::draw_push(const ViewportArea& area, const render::Camera& camera) const {
+  if (drag_ != Drag::push || !dragged_) return;
+  const render::Vector3 to = pushed_to(area, camera);
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const ImVec2 tail = on_screen(area, camera, pushed_), tip = on_screen(area, camera, to);
+  const float text = ImGui::GetFontSize(), length = std::hypot(tip.x - tail.x, tip.y - tail.y);
+  if (length < 1) return;
+  const ImVec2 along{0.6f * text * (tip.x - tail.x) / length, 0.6f * text * (tip.y - tail.y) / length};
+  list.AddLine(tail, {tip.x - along.x, tip.y - along.y}, palette().accent, 0.2f * text);
+  list.AddTriangleFilled(tip, {tip.x - 1.5f * along.x + along.y, tip.y - 1.5f * along.y - along.x},
+                         {tip.x - 1.5f * along.x - along.y, tip.y - 1.5f * along.y + along.x}, palette().accent);
+  label({tip.x + text, tip.y - 0.5f * text}, fmt::format("{:.2f} m/s", push_speed * (to - pushed_).norm()));
 }
 
 void MouseController::draw_pull(const ViewportArea& area, const render::Camera& camera) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mouse on the viewport: turns and moves the camera, selects robots, pulls on masses, shows details of what is
-// under the pointer.
+// The mouse on the viewport: turns and moves the camera, selects robots, pulls on masses, pushes robots, shows details
+// of what is under the pointer.
 #pragma once
 
 #include <functional>
@@ -35,7 +35,7 @@ class MouseController {
   // Handles the mouse where no panel uses it. Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the
   // one the last frame was drawn with.
   void update(const ViewportArea& area, const render::Camera& camera);
-  // Draws the force of a pull and the details under the pointer.
+  // Draws the force of a pull, the velocity of a push and the details under the pointer.
   void draw(const ViewportArea& area, const render::Camera& camera);
   // The robot under the pointer, by its index in the snapshot.
   std::optional<std::size_t> hovered() const;
@@ -46,7 +46,7 @@ class MouseController {
   const UsedGestures& used() const { return used_; }
 
  private:
-  enum class Drag { none, turn, pan, pull, box };
+  enum class Drag { none, turn, pan, pull, push, box };
   void press(const ViewportArea& area, const render::Camera& camera);
   void drag(const ViewportArea& area, const render::Camera& camera);
   void release(const ViewportArea& area, const render::Camera& camera);
@@ -56,6 +56,8 @@ class MouseController {
   void select_box(const ViewportArea& area, const render::Camera& camera);
   void draw_springs(const ViewportArea& area, const render::Camera& camera) const;
   void draw_box() const;
+  render::Vector3 pushed_to(const ViewportArea& area, const render::Camera& camera) const;
+  void draw_push(const ViewportArea& area, const render::Camera& camera) const;
   void draw_pull(const ViewportArea& area, const render::Camera& camera) const;
   void draw_details(const ViewportArea& area) const;
 
@@ -69,8 +71,9 @@ class MouseController {
   int button_ = 0;
   bool dragged_ = false;
   ImVec2 pressed_at_{0, 0};
-  float pull_depth_ = 0;  // of the pulled point along the line of sight [m]
-  bool follows_ = false;  // the press was a double click
+  float pull_depth_ = 0;      // of the pulled or pushed point along the line of sight [m]
+  render::Vector3 pushed_{};  // the point where a push begins [m]
+  bool follows_ = false;      // the press was a double click
   std::optional<Hit> hovered_;
   std::optional<Hit>& pinned_;
   ImVec2 last_position_{-1, -1};

@@ -187,6 +187,8 @@ void validate_brain(const Robot& robot);
 // Whether a sensor of the robot is of the target, of the light.
 bool seeks_target(const Robot& robot);
 bool seeks_light(const Robot& robot);
+// The masses of each place whose touch the robot feels.
+std::vector<std::vector<std::uint16_t>> touch_places(const Robot& robot);
 
 // The state of a robot's brain; empty without one.
 struct BrainState {

@@ -118,6 +118,25 @@ TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(again->index), frozen));
 }
 
+TEST_P(LiveOn, APushAddsItsVelocityToAllRobotsOnce) {
+  LiveScene scene(options());
+  test::make_robots(scene, 2);
+  scene.step(50);
+  scene.wait_until_done();
+  const std::vector<Telemetry> before = scene.snapshot().telemetry;
+  EXPECT_FALSE(scene.push({NAN, 0, 0}));
+  ASSERT_TRUE(scene.push({3, 0, -1}));
+  EXPECT_EQ(scene.undo_name(), "change parameters");
+  scene.step(3);
+  scene.wait_until_done();
+  const std::vector<Telemetry> after = scene.snapshot().telemetry;
+  // What forces did meanwhile is little: no robot reaches 0.3 m/s in three steps.
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(after[i].velocity.x - before[i].velocity.x, 3, 0.3) << i;
+    EXPECT_NEAR(after[i].velocity.z - before[i].velocity.z, -1, 0.3) << i;
+  }
+}
+
 TEST_P(LiveOn, ReproGivesTheSameStateFromItsStart) {
   Robot robot = random_voxel_robot({}, 5, 0);
   Simulation simulation({.device = device()}, std::span(&robot, 1));

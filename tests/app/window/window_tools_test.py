@@ -28,6 +28,26 @@ class ToolsTest(WindowCase):
         window.until("release", lambda: "actuator.0.release" not in window.items)
         self.finish(window)
 
+    def test_a_drag_pushes_all_robots_along_its_arrow(self):
+        window = self.open(str(SAMPLES / "quadruped.json"), "--environment", "land", "--paused")
+        x, y = window.frame(lambda frame: len(frame["where"]) == 1)["where"][0]
+        pushes = []
+        for way in (80, 160):
+            since = window.mark()
+            window.act("mousemove", round(x), round(y))
+            window.act("keydown", "Control_L")
+            window.act("mousedown", 3)
+            for step in (way // 2, way):
+                window.act("mousemove", round(x) + step, round(y))
+            window.act("mouseup", 3)
+            window.act("keyup", "Control_L")
+            pushes.append(window.wait("push", since)["velocity"])
+        for velocity in pushes:
+            self.assertAlmostEqual(velocity[2], 0, places=4)  # along the ground
+        # Twice the arrow is twice the velocity, but for perspective.
+        self.assertAlmostEqual(numpy.linalg.norm(pushes[1]) / numpy.linalg.norm(pushes[0]), 2, delta=0.2)
+        self.finish(window)
+
     def test_probes_plot_a_mass_and_a_spring_over_time_until_they_are_removed(self):
         window = self.small()
         x, y = map(round, window.frame(lambda frame: len(frame["where"]) == 2)["where"][1])
