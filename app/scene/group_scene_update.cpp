@@ -227,7 +227,7 @@ void GroupScene::mark_senses(std::span<const TouchMark> touches) {
   mark(seeks_light_, environment_.light, of_light, true);
   for (const TouchMark& touch : touches) {
     if (placements_[touch.body].hidden) continue;
-    constexpr std::array radii{1.0f, 0.7f, 0.4f};
+    constexpr std::array radii{0.9f, 0.5f};
     render::Color color = of_touch;
     color.a = static_cast<std::uint8_t>(std::lround(255 * (0.3f + 0.7f * touch.share)));
     marks.push_back({touch.body, sense_lines_.size(), radii.size(), color});

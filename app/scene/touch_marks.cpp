@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/touch_marks.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "mercury/brain.h"
 
 namespace mercury {
@@ -26,7 +23,7 @@ TouchObserver::TouchObserver(const Simulation& simulation) {
       Place& place = places_.emplace_back();
       place.robot = static_cast<std::uint32_t>(i);
       for (const std::uint16_t mass : masses) place.masses.push_back(simulation.mass_offsets()[i] + mass);
-      place.margin = 0.5f * mean_spring_length(robot);
+      place.radius = 0.5f * mean_spring_length(robot);
     }
   }
 }
@@ -36,21 +33,13 @@ std::vector<TouchMark> TouchObserver::marks(std::span<const Vec3> positions,
   std::vector<TouchMark> marks;
   for (const Place& place : places_) {
     if (telemetry[place.robot].exploded) continue;
-    Vec3 center;
-    float touching = 0;
-    const auto touches = [&](std::size_t mass) { return positions[mass].z <= 0; };
+    const std::size_t first = marks.size();
     for (const std::size_t mass : place.masses)
-      if (touches(mass)) center = center + positions[mass], ++touching;
-    if (touching == 0) continue;
-    center = (1 / touching) * center;
-    float radius = 0;
-    for (const std::size_t mass : place.masses)
-      if (touches(mass))
-        radius = std::max(radius, std::hypot(positions[mass].x - center.x, positions[mass].y - center.y));
-    marks.push_back({place.robot,
-                     {center.x, center.y, 0},
-                     radius + place.margin,
-                     touching / static_cast<float>(place.masses.size())});
+      if (const Vec3 at = positions[mass]; at.z <= 0)
+        marks.push_back({.body = place.robot, .center = {at.x, at.y, 0}, .radius = place.radius});
+    const auto touching = static_cast<float>(marks.size() - first);
+    for (TouchMark& mark : std::span(marks).subspan(first))
+      mark.share = touching / static_cast<float>(place.masses.size());
   }
   return marks;
 }

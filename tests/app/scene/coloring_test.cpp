@@ -421,11 +421,11 @@ TEST(Senses, TargetAndLightAreMarked) {
 }
 
 TEST(Plants, AreLeftOutOfLargeGroups) {
-  for (const std::size_t count : {GroupScene::most_with_plants, GroupScene::most_with_plants + 1}) {
+  for (const std::size_t count : {most_with_extras, most_with_extras + 1}) {
     const Simulation simulation(cpu, std::vector<Robot>(count, pair()));
     GroupScene scene(group_of(simulation), std::vector<render::Vector3>(count), {});
     scene.update(0, simulation.telemetry(), {});
-    const bool many = count > GroupScene::most_with_plants;
+    const bool many = count > most_with_extras;
     EXPECT_EQ(scene.scene().ground_cover->height > 0, !many);
     EXPECT_EQ(scene.scene().movers.size(), many ? 0 : count);
   }

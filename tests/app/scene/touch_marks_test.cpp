@@ -29,18 +29,23 @@ std::vector<TouchMark> marks_of(const Robot& robot, const Environment& environme
 TEST(TouchObserver, MarksTheMassesOfASensorThatAreOnTheGround) {
   const Robot whole = cube({{.kind = SensorKind::touch}});
   const std::size_t masses = whole.masses.size();
-  // Two of all masses are on the ground, at a distance of 2.
+  // Two of all masses are on the ground.
   std::vector<Vec3> positions(masses, Vec3{0, 0, 1});
   positions[3] = {4, 1, 0};
   positions[5] = {6, 1, -0.01f};
   const std::vector<TouchMark> marks = marks_of(whole, Land{}, positions);
-  ASSERT_EQ(marks.size(), 1u);
-  EXPECT_EQ(marks[0].body, 0u);
-  EXPECT_EQ(marks[0].center.x, 5);
-  EXPECT_EQ(marks[0].center.y, 1);
-  EXPECT_EQ(marks[0].center.z, 0);
-  EXPECT_GT(marks[0].radius, 1);
-  EXPECT_FLOAT_EQ(marks[0].share, 2 / static_cast<float>(masses));
+  ASSERT_EQ(marks.size(), 2u);
+  for (const TouchMark& mark : marks) {
+    EXPECT_EQ(mark.body, 0u);
+    EXPECT_EQ(mark.center.y, 1);
+    EXPECT_EQ(mark.center.z, 0);
+    EXPECT_FLOAT_EQ(mark.share, 2 / static_cast<float>(masses));
+    // Springs of a cube are as long as its edge, 0.1 m, up to its diagonal.
+    EXPECT_GT(mark.radius, 0.05f);
+    EXPECT_LT(mark.radius, 0.087f);
+  }
+  EXPECT_EQ(marks[0].center.x, 4);
+  EXPECT_EQ(marks[1].center.x, 6);
   // A sensor of masses that are in the air has no mark; one that has one of them there is half on the ground.
   EXPECT_EQ(marks_of(cube({{.kind = SensorKind::touch, .masses = {0, 1}}}), Land{}, positions).size(), 0u);
   const auto half = marks_of(cube({{.kind = SensorKind::touch, .masses = {2, 3}}}), Land{}, positions);
@@ -52,7 +57,7 @@ TEST(TouchObserver, MarksTheMassesOfASensorThatAreOnTheGround) {
 TEST(TouchObserver, MarksNothingWithoutGroundOrTouch) {
   const Robot robot = cube({{.kind = SensorKind::touch}});
   const std::vector<Vec3> low(robot.masses.size(), Vec3{0, 0, -1});
-  EXPECT_EQ(marks_of(robot, Land{}, low).size(), 1u);
+  EXPECT_EQ(marks_of(robot, Land{}, low).size(), robot.masses.size());
   EXPECT_EQ(marks_of(robot, Ocean{}, low).size(), 0u);
   EXPECT_EQ(marks_of(cube({{.kind = SensorKind::clock, .frequency = 1}}), Land{}, low).size(), 0u);
 }
