@@ -85,9 +85,12 @@ Evolution::Evolution(const EvolutionSettings& settings, const GenomeSpace& space
     : settings_(settings), space_(space), algorithm_(make_algorithm(settings.algorithm)) {
   validate(settings);
   validate(settings, space);
-  if (!algorithm_named(settings.algorithm.name).of_numbers) return;
-  start_ = start_of_search(space, settings.seed);
-  algorithm_->begin(start_->numbers(), settings.mutation);
+  if (algorithm_named(settings.algorithm.name).of_numbers) start_ = start_of_search(space, settings.seed);
+  begin_to_learn();
+}
+
+void Evolution::begin_to_learn() {
+  algorithm_->begin(start_ ? start_->numbers() : std::vector<double>(), settings_.mutation);
 }
 
 void Evolution::restore(int generation, std::vector<Individual> living, std::span<const Individual> born,
@@ -97,14 +100,14 @@ void Evolution::restore(int generation, std::vector<Individual> living, std::spa
   before_ = std::move(before);
   begun_.clear();
   next_id_ = born.size();
-  if (!start_) return;
-  algorithm_->begin(start_->numbers(), settings_.mutation);
+  begin_to_learn();
+  if (!algorithm_named(settings_.algorithm.name).learns) return;
   std::size_t first = 0;
   for (int number = 0; number <= generation; ++number) {
     std::size_t end = first;
     while (end < born.size() && born[end].generation == number) ++end;
     const Random random(seed_of_plan(settings_.seed, number));
-    if (number == generation) {
+    if (start_ && number == generation) {
       Random again = random;
       const std::vector<ChildPlan> plans = algorithm_->plan({}, settings_.algorithm.population, again);
       for (const Individual& individual : living_) {

@@ -43,8 +43,8 @@ void validate_axes(std::span<const MapAxis> axes) {
 void validate(const AlgorithmSettings& settings) {
   check_parameters(settings);
   validate_axes(settings.axes);
-  require(settings.name != "map-elites" || !settings.axes.empty(), "axes",
-          "map-elites needs one or more quantities, such as size and muscle_share");
+  require(!algorithm_named(settings.name).of_behavior || !settings.axes.empty(), "axes",
+          settings.name + " needs one or more quantities, such as size and muscle_share");
 }
 
 void validate(const TrialSettings& trials) {
@@ -68,7 +68,7 @@ void validate(const EvolutionSettings& settings) {
             "algorithm", std::string(algorithm.name) + " takes one objective; with several, give nsga2");
   require(settings.children == 0 || !algorithm_named(settings.algorithm.name).of_numbers, "children",
           settings.algorithm.name + " makes as many as its population; give that alone");
-  require(!settings.pipelined || !algorithm_named(settings.algorithm.name).of_numbers, "pipelined",
+  require(!settings.pipelined || !algorithm_named(settings.algorithm.name).learns, "pipelined",
           settings.algorithm.name + " learns from each generation before it makes the next; leave it out");
   require(!trials.racing || (trials.trials == 1 && settings.objectives.size() == 1), "racing",
           "works with one objective and one trial per robot");

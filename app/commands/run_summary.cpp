@@ -78,7 +78,7 @@ std::string algorithm_text(const EvolutionSettings& settings) {
   if (algorithm.name != "map-elites") text += fmt::format(", population {}", algorithm.population);
   text += fmt::format(", {} children per generation, crossover {:g}, mutation {:g}, seed {}", children,
                       algorithm.crossover, settings.mutation, settings.seed);
-  if (algorithm.name == "map-elites")
+  if (algorithm_named(algorithm.name).of_behavior)
     for (const MapAxis& axis : algorithm.axes)
       text += fmt::format("; {} {:g} to {:g} in {} cells", axis.quantity, axis.lowest, axis.highest, axis.cells);
   return text;

@@ -95,7 +95,8 @@ void EvolutionOptions::add_to(const Command& command) {
       "FORMULA")
       .offering(names_of_quantities())
       .on_first_screen();
-  repeated("--axis", axes_, "Axis of the map of map-elites; may be given several times", "NAME[:LOW:HIGH[:CELLS]]")
+  repeated("--axis", axes_, "Quantity by which map-elites and novelty tell robots apart; may be given several times",
+           "NAME[:LOW:HIGH[:CELLS]]")
       .offering(names_of_quantities());
   add_parameters(command, given_.algorithm, search_group);
   given_.confirm = true;
@@ -155,10 +156,10 @@ AlgorithmSettings EvolutionOptions::algorithm() const {
   AlgorithmSettings algorithm = given_.algorithm;
   for (const std::string& axis : axes_) algorithm.axes.push_back(axis_from(axis));
   algorithm.name = algorithm_.value_or(!axes_.empty() ? "map-elites" : objectives_.size() > 1 ? "nsga2" : "afpo");
-  if (algorithm.name == "map-elites") {
+  if (algorithm_named(algorithm.name).of_behavior) {
     if (algorithm.axes.empty()) algorithm.axes = {axis_from("masses"), axis_from("muscle_share")};
   } else if (!algorithm.axes.empty()) {
-    throw InputError("--axis", "goes with --algorithm map-elites");
+    throw InputError("--axis", "goes with --algorithm map-elites or novelty");
   }
   if (algorithm_named(algorithm.name).of_numbers)
     for (const char* option : {"--tournament", "--elites", "--crossover", "--children"})

@@ -240,8 +240,8 @@ void write_generations(const RunHistory& run) {
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})
       csv.cell(name + score_name(i, objectives));
-  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed",
-                           "physics", "seconds", "robots_per_second", "device"})
+  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed", "lines",
+                           "cells", "coverage", "qd_score", "physics", "seconds", "robots_per_second", "device"})
     csv.cell(name);
   csv.end_line();
   for (const GenerationSummary& generation : run.generations()) {
@@ -256,7 +256,15 @@ void write_generations(const RunHistory& run) {
         .cell(generation.too_small)
         .cell(generation.undefined)
         .cell(generation.failed)
-        .cell(name_of(physics_of(run.settings().space)));
+        .cell(generation.lines);
+    if (has_map(run))
+      csv.cell(generation.scored)
+          .cell(static_cast<double>(generation.scored) /
+                static_cast<double>(map_cells(run.settings().evolution.algorithm)))
+          .cell(generation.score_sum);
+    else
+      csv.cell(std::string()).cell(std::string()).cell(std::string());
+    csv.cell(name_of(physics_of(run.settings().space)));
     const double seconds = generation.times.seconds;
     csv.cell(fixed_text(seconds, 3))
         .cell(seconds > 0 ? fixed_text(static_cast<double>(generation.born) / seconds, 1) : std::string())

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -93,7 +94,7 @@ ScoreSpread score_spread_of(std::span<const std::uint64_t> living, std::span<con
 
 GenerationSummary summary_of(int number, GenerationTimes times, std::span<const Individual> born,
                              std::span<const std::uint64_t> living, std::span<const Individual> individuals,
-                             std::size_t objectives) {
+                             std::span<const std::uint64_t> first_ancestors, std::size_t objectives) {
   GenerationSummary summary{.number = number, .born = born.size(), .living = living.size()};
   for (const Individual& individual : born) {
     const Fate fate = individual.assessment.fate;
@@ -108,6 +109,15 @@ GenerationSummary summary_of(int number, GenerationTimes times, std::span<const 
     summary.best = living.front();
     summary.best_scores = individuals[living.front()].assessment.scores;
   }
+  std::set<std::uint64_t> lines;
+  for (const std::uint64_t id : living) {
+    lines.insert(first_ancestors[id]);
+    const double score = individuals[id].score();
+    if (!(score > worst_score)) continue;
+    ++summary.scored;
+    summary.score_sum += score;
+  }
+  summary.lines = lines.size();
   for (std::size_t i = 0; i < objectives; ++i) summary.scores.push_back(score_spread_of(living, individuals, i));
   summary.median_score = summary.scores.empty() ? worst_score : summary.scores.front().median;
   summary.times = std::move(times);
@@ -177,13 +187,17 @@ void RunHistory::Parts::add(GenerationRecord record) {
     use_known_quantities(assessment);
   }
   genomes.add(record.genomes);
+  for (const Individual& individual : generation.born)
+    first_ancestors.push_back(individual.parents.empty() ? first_ancestors.size()
+                                                         : first_ancestors[individual.parents.front()]);
   std::ranges::move(generation.born, std::back_inserter(individuals));
   died.resize(individuals.size(), alive);
   living_before = living;
   note_deaths(generation);
   living = std::move(generation.living);
   generations.push_back(summary_of(generation.number, std::move(record.times),
-                                   std::span(individuals).subspan(record.first_id), living, individuals, objectives));
+                                   std::span(individuals).subspan(record.first_id), living, individuals,
+                                   first_ancestors, objectives));
 }
 
 void RunHistory::Parts::note_deaths(const Generation& generation) {

@@ -47,7 +47,7 @@ class GenomeStore {
 // `living` = ids, the best first; `individuals` = everyone, by id.
 GenerationSummary summary_of(int number, GenerationTimes times, std::span<const Individual> born,
                              std::span<const std::uint64_t> living, std::span<const Individual> individuals,
-                             std::size_t objectives);
+                             std::span<const std::uint64_t> first_ancestors, std::size_t objectives);
 
 // What RunHistory and RunFolder know of a run.
 
@@ -69,8 +69,9 @@ struct RunHistory::Parts {
   const GenomeSpaceMaker make_space;
   JournalReader journal;
   GenomeStore genomes{journal};
-  std::vector<Individual> individuals;  // by id
-  std::vector<int> died;                // by id; alive = -1
+  std::vector<Individual> individuals;         // by id
+  std::vector<std::uint64_t> first_ancestors;  // by id, along first parents
+  std::vector<int> died;                       // by id; alive = -1
   std::vector<std::uint64_t> living, living_before;
   std::vector<GenerationSummary> generations;
 

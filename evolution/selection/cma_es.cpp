@@ -320,6 +320,7 @@ AlgorithmDescription cma_es() {
   return {.name = "cma-es",
           .help = "CMA-ES, for muscles and brains: a distribution of numbers that learns how they go together",
           .of_numbers = true,
+          .learns = true,
           .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
             return std::make_unique<CovarianceMatrixAdaptation>(settings, false);
           }};
@@ -329,6 +330,7 @@ AlgorithmDescription sep_cma_es() {
   return {.name = "sep-cma-es",
           .help = "separable CMA-ES, for hundreds of weights: a distribution that learns the scale of each number",
           .of_numbers = true,
+          .learns = true,
           .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
             return std::make_unique<CovarianceMatrixAdaptation>(settings, true);
           }};

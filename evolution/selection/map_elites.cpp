@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // MAP-Elites (Mouret and Clune 2015, "Illuminating search spaces by mapping elites", figure 2): the space of some
-// quantities is cut into cells; the best robot of each cell lives on, and every elite is as likely a parent.
+// quantities is cut into cells; the best robot of each cell lives on, and every elite is as likely a parent. The cells
+// are those of a grid, or of a centroidal Voronoi tessellation (Vassiliades, Chatzilygeroudis and Mouret 2018, "Using
+// Centroidal Voronoi Tessellations to Scale Up the Multidimensional Archive of Phenotypic Elites Algorithm"), of which
+// many axes do not need more.
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <unordered_set>
 
+#include "evolution/selection/behavior.h"
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 #include "mercury/quantity.h"
@@ -41,14 +46,29 @@ class MapElites : public Algorithm {
       const Assessment& assessment = pool[i].assessment;
       const bool has_measured = assessment.violation > 0 && std::isfinite(assessment.violation);
       if (comparable(pool[i].score()) == worst_score && !(all_unsound && has_measured)) break;
-      if (filled.insert(map_cell(settings_.axes, pool[i].assessment.values)).second) elites.push_back(i);
+      if (filled.insert(cell_of(pool[i])).second) elites.push_back(i);
     }
     if (elites.empty() && !order.empty()) elites.push_back(order.front());
     return elites;
   }
 
  private:
+  std::size_t cell_of(const Individual& individual) const {
+    const std::vector<double>& values = individual.assessment.values;
+    if (settings_.niches == 0) return map_cell(settings_.axes, values);
+    std::call_once(centers_made_, [&] { centers_ = centroids(settings_.axes.size(), settings_.niches); });
+    Behavior behavior;
+    for (const MapAxis& axis : settings_.axes) {
+      const double value = values[find_quantity(axis.quantity).value()];
+      const double place = (value - axis.lowest) / (axis.highest - axis.lowest);
+      behavior.push_back(place > 0 ? std::min(place, 1.0) : 0);  // NaN is 0
+    }
+    return nearest_of(centers_, behavior);
+  }
+
   const AlgorithmSettings settings_;
+  mutable std::once_flag centers_made_;
+  mutable std::vector<Behavior> centers_;
 };
 
 }  // namespace
@@ -62,9 +82,16 @@ std::size_t map_cell(std::span<const MapAxis> axes, std::span<const double> valu
   return cell;
 }
 
+std::size_t map_cells(const AlgorithmSettings& settings) {
+  std::size_t cells = 1;
+  for (const MapAxis& axis : settings.axes) cells *= static_cast<std::size_t>(axis.cells);
+  return settings.niches > 0 ? settings.niches : cells;
+}
+
 AlgorithmDescription map_elites() {
   return {.name = "map-elites",
           .help = "MAP-Elites: the best robot for each cell of a map of their properties",
+          .of_behavior = true,
           .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
             return std::make_unique<MapElites>(settings);
           }};

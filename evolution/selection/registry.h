@@ -11,8 +11,10 @@ void validate(const AlgorithmSettings& settings);
 
 AlgorithmDescription ga();
 AlgorithmDescription afpo();
+AlgorithmDescription alps();
 AlgorithmDescription nsga2();
 AlgorithmDescription map_elites();
+AlgorithmDescription novelty_search();
 AlgorithmDescription cma_es();
 AlgorithmDescription sep_cma_es();
 AlgorithmDescription random_search();

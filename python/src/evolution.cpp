@@ -189,7 +189,7 @@ EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space
   require_possible_threads(settings.configuration.device);
   if (!has_algorithm)
     algorithm.name = !algorithm.axes.empty() ? "map-elites" : settings.objectives.size() > 1 ? "nsga2" : "afpo";
-  if (algorithm.name == "map-elites" && algorithm.axes.empty())
+  if (algorithm_named(algorithm.name).of_behavior && algorithm.axes.empty())
     for (const char* usual : {"masses", "muscle_share"}) algorithm.axes.push_back(axis_from(nb::str(usual)));
   if (settings.trials.racing && !has_trials) settings.trials.trials = 1;
   validate(settings);
@@ -232,7 +232,7 @@ class Search {
 
   bool is_over() const { return evolution_->is_over(); }
   int next_generation() const { return evolution_->next_generation(); }
-  bool needs_values() const { return settings_.algorithm.name == "map-elites"; }
+  bool needs_values() const { return algorithm_named(settings_.algorithm.name).of_behavior; }
   std::size_t objectives() const { return settings_.objectives.size(); }
   const std::vector<Individual>& living() const { return evolution_->living(); }
 
@@ -408,8 +408,17 @@ nb::dict generations_of(const RunHistory& self) {
   column("exploded", Integer{}, [](const GenerationSummary& one) { return one.exploded; });
   column("overstretched", Integer{}, [](const GenerationSummary& one) { return one.overstretched; });
   column("too_small", Integer{}, [](const GenerationSummary& one) { return one.too_small; });
+  column("undefined", Integer{}, [](const GenerationSummary& one) { return one.undefined; });
   column("stopped", Integer{}, [](const GenerationSummary& one) { return one.stopped; });
   column("failed", Integer{}, [](const GenerationSummary& one) { return one.failed; });
+  column("lines", Integer{}, [](const GenerationSummary& one) { return one.lines; });
+  if (const AlgorithmSettings& algorithm = self.settings().evolution.algorithm; algorithm.name == "map-elites") {
+    column("cells", Integer{}, [](const GenerationSummary& one) { return one.scored; });
+    column("coverage", double{}, [&](const GenerationSummary& one) {
+      return static_cast<double>(one.scored) / static_cast<double>(map_cells(algorithm));
+    });
+    column("qd_score", double{}, [](const GenerationSummary& one) { return one.score_sum; });
+  }
   column("seconds", double{}, [](const GenerationSummary& one) { return one.times.seconds; });
   return columns;
 }

@@ -57,13 +57,15 @@ std::string suite_name(const testing::TestParamInfo<std::string_view>& test) {
   return name;
 }
 INSTANTIATE_TEST_SUITE_P(Algorithms, AnyEvolution,
-                         testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es", "random"),
+                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es",
+                                         "random"),
                          suite_name);
 
 // Algorithms whose children have parents.
 class Inheritance : public testing::TestWithParam<std::string_view> {};
 INSTANTIATE_TEST_SUITE_P(Algorithms, Inheritance,
-                         testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es"), suite_name);
+                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "cma-es", "sep-cma-es"),
+                         suite_name);
 
 // The squared distance to the optimum that is left is less than half of what random search leaves.
 TEST_P(Inheritance, BeatsRandomSearchAtAsManyTrials) {
@@ -115,7 +117,7 @@ class Pipelined : public testing::TestWithParam<std::string_view> {
     return settings;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Algorithms, Pipelined, testing::Values("ga", "afpo", "nsga2", "map-elites", "random"),
+INSTANTIATE_TEST_SUITE_P(Algorithms, Pipelined, testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "random"),
                          suite_name);
 
 TEST_P(Pipelined, ParentsAreThoseWhoLivedAfterTheGenerationBeforeTheLast) {

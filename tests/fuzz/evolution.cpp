@@ -42,7 +42,7 @@ RunSettings settings(const std::string& algorithm) {
   RunSettings settings{.program = "a test"};
   settings.evolution.algorithm = {.name = algorithm, .population = 3};
   settings.evolution.generations = 2;
-  if (algorithm == "map-elites")
+  if (algorithm_named(algorithm).of_behavior)
     settings.evolution.algorithm.axes = {{.quantity = "size", .lowest = -1, .highest = 1, .cells = 4}};
   return settings;
 }
@@ -75,7 +75,7 @@ void check_run_file(std::string_view input) {
 
 std::vector<std::string> run_file_seeds() {
   std::vector<std::string> seeds;
-  for (const char* algorithm : {"afpo", "nsga2", "map-elites"})
+  for (const char* algorithm : {"afpo", "nsga2", "map-elites", "novelty", "alps"})
     seeds.push_back(run_file_texts(settings(algorithm)).run);
   RunSettings land = settings("ga");
   land.evolution.configuration.environment = Land{};

@@ -132,7 +132,7 @@ std::string EvolveForm::problem_of(const EvolveRequest& request) const {
     return request.folder.filename().string() + " exists already; give another name";
   if (std::string problem = problem_of_founders(request.genes); !problem.empty()) return problem;
   EvolutionSettings settings = request.settings;
-  if (settings.algorithm.name == "map-elites")
+  if (algorithm_named(settings.algorithm.name).of_behavior)
     settings.algorithm.axes = {{.quantity = std::string(quantities().front().name)}};
   try {
     validate(settings);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Algorithms of evolution. An algorithm sees the living individuals, says what children to make, and then who lives on.
 // Most keep no state, so a run can be continued from its living individuals alone. The state of those that search among
-// numbers (CMA-ES) follows from the seeds and scores of all generations, from which it is computed again.
+// numbers (CMA-ES) or keep an archive (novelty) follows from the seeds and scores of all generations, from which it is
+// computed again.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +34,12 @@ struct AlgorithmSettings {
   int tournament = 4;            // individuals among which the best becomes a parent
   double elites = 0.1;           // ga: share of the population that lives on unconditionally
   double crossover = 0.25;       // share of the children that have two parents
-  std::vector<MapAxis> axes;     // map-elites: one or more
+  std::vector<MapAxis> axes;     // map-elites, novelty: one or more
+  std::size_t niches = 0;        // map-elites: cells of equal size in place of the axes' cells; 0 = those
+  int neighbors = 15;            // novelty: the nearest robots, whose mean distance is the novelty
+  std::size_t archived = 6;      // novelty: robots of each generation that come into the archive
+  int age_layers = 5;            // alps
+  int age_gap = 5;               // alps: generations
 
   static constexpr std::tuple parameters{
       Parameter("population", &AlgorithmSettings::population, "", Accepts::between(1, 1e6), {1, 4096, true},
@@ -45,7 +51,18 @@ struct AlgorithmSettings {
           .with_form("0..1"),
       Parameter("crossover", &AlgorithmSettings::crossover, "", Accepts::between(0, 1), {0, 1},
                 "Share of the children with two parents")
-          .with_form("0..1")};
+          .with_form("0..1"),
+      Parameter("niches", &AlgorithmSettings::niches, "", Accepts::between(0, 4096), {0, 1000},
+                "map-elites: cells of equal size, a centroidal Voronoi tessellation, in place of the cells of --axis"),
+      Parameter("neighbors", &AlgorithmSettings::neighbors, "", Accepts::between(1, 10000), {1, 50},
+                "novelty: nearest robots whose mean distance counts"),
+      Parameter("archived", &AlgorithmSettings::archived, "", Accepts::between(0, 10000), {0, 50},
+                "novelty: robots of each generation that come into the archive"),
+      Parameter("age_layers", &AlgorithmSettings::age_layers, "", Accepts::between(1, 40), {2, 12},
+                "alps: layers of ages"),
+      Parameter(
+          "age_gap", &AlgorithmSettings::age_gap, "", Accepts::between(1, 10000), {1, 20},
+          "alps: generations below which robots are in the lowest layer; above it, 2, 4, 9, 16, ... times as many")};
 };
 
 // What a child is made from: indices of its parents among the living. None = a new random genome. Algorithms that
@@ -67,8 +84,8 @@ class Algorithm {
   // assessed; the best first. In generation 0, `living` is 0. The order of equal ones is that of their ids.
   virtual std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t living) const = 0;
 
-  // Of algorithms that search among numbers; others have nothing to do.
-  // Begins at these numbers, with children about `step` from them in each.
+  // Of algorithms that learn; others have nothing to do.
+  // Begins: at these numbers, with children about `step` from them in each, if it searches among numbers.
   virtual void begin(std::span<const double> /*numbers*/, double /*step*/) {}
   // Learns from the children that plan() gave, in its order, assessed, and with `random` as plan() had it. Called after
   // each generation; when a run goes on, after begin(), for each generation that it has.
@@ -79,9 +96,11 @@ struct AlgorithmDescription {
   std::string_view name, help;
   bool many_objectives = false;  // whether it takes more than one
   bool of_numbers = false;       // whether it searches among numbers: its genomes need Genome::numbers()
+  bool of_behavior = false;      // whether it needs axes
+  bool learns = false;           // whether it knows more than the living
   std::unique_ptr<Algorithm> (*make)(const AlgorithmSettings& settings) = nullptr;
 };
-// ga, afpo, nsga2, map-elites, cma-es, sep-cma-es, random.
+// ga, afpo, alps, nsga2, map-elites, novelty, cma-es, sep-cma-es, random.
 std::span<const AlgorithmDescription> algorithms();
 // Throws ParameterError("algorithm", ...) for an unknown name.
 const AlgorithmDescription& algorithm_named(std::string_view name);
@@ -91,5 +110,7 @@ std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings);
 
 // The cell of an individual in a map of elites, counted with the first axis fastest; `values` as in Assessment.
 std::size_t map_cell(std::span<const MapAxis> axes, std::span<const double> values);
+// How many cells the map of map-elites has.
+std::size_t map_cells(const AlgorithmSettings& settings);
 
 }  // namespace mercury

@@ -111,6 +111,7 @@ class Evolution {
   std::optional<Generation> advance(Assessor& assessor, const Watch& watch = {});
 
  private:
+  void begin_to_learn();
   // Those who are the parents of the next generation.
   const std::vector<Individual>& parents() const;
   // The children of a generation.

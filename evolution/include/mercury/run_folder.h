@@ -55,6 +55,9 @@ struct GenerationSummary {
   std::uint64_t best = 0;           // id of the best living individual
   std::vector<double> best_scores;  // its scores
   double median_score = 0;          // of the living, first objective
+  std::size_t scored = 0;           // of the living, those that have more than the worst score
+  double score_sum = 0;             // of these, first objective
+  std::size_t lines = 0;            // first ancestors of the living, by first parents
   std::vector<ScoreSpread> scores;  // of the living, per objective
   GenerationTimes times;
 };

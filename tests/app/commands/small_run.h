@@ -16,7 +16,7 @@ inline RunSettings small_run(const std::string& algorithm = "afpo", int generati
   RunSettings settings{.program = "a test"};
   EvolutionSettings& evolution = settings.evolution;
   evolution.algorithm = {.name = algorithm, .population = 6};
-  if (algorithm == "map-elites")
+  if (algorithm_named(algorithm).of_behavior)
     evolution.algorithm.axes = {{.quantity = "masses", .lowest = 0, .highest = 40, .cells = 4},
                                 {.quantity = "muscle_share", .lowest = 0, .highest = 1, .cells = 2}};
   evolution.trials.seconds = 0.5;

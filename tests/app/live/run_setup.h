@@ -15,7 +15,7 @@ inline RunSettings small_run(const std::string& algorithm = "ga") {
   evolution.algorithm.name = algorithm;
   evolution.algorithm.population = 8;
   evolution.algorithm.crossover = 0.5;
-  if (algorithm == "map-elites")
+  if (algorithm_named(algorithm).of_behavior)
     evolution.algorithm.axes = {{.quantity = "masses", .lowest = 8, .highest = 30, .cells = 4},
                                 {.quantity = "muscle_share", .cells = 3},
                                 {.quantity = "symmetry", .cells = 2}};

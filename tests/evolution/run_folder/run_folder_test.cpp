@@ -39,7 +39,7 @@ TEST_F(RunFolders, AllAlgorithmsResume) {
   for (std::size_t i = 0; i < 2 * algorithms().size(); ++i) {
     const AlgorithmDescription& algorithm = algorithms()[i / 2];
     const bool pipelined = i % 2;
-    if (pipelined && algorithm.of_numbers) continue;
+    if (pipelined && algorithm.learns) continue;
     const std::string name = std::string(algorithm.name) + (pipelined ? "-pipelined" : "");
     RunSettings settings = test_settings(6);
     settings.evolution.pipelined = pipelined;

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "evolution/selection/behavior.h"
 #include "mercury/algorithm.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
@@ -60,7 +61,7 @@ std::vector<Individual> random_pool(std::size_t count, std::size_t objectives, s
 
 AlgorithmSettings algorithm_settings(std::string_view name, std::size_t population) {
   AlgorithmSettings settings{.name = std::string(name), .population = population};
-  if (name == "map-elites")
+  if (algorithm_named(name).of_behavior)
     settings.axes = {{.quantity = "size", .lowest = 0, .highest = 1, .cells = 4},
                      {.quantity = "symmetry", .lowest = 0, .highest = 1, .cells = 5}};
   return settings;
@@ -89,7 +90,8 @@ std::string algorithm_name(const testing::TestParamInfo<std::string_view>& test)
   return name;
 }
 INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithm,
-                         testing::Values("ga", "afpo", "nsga2", "map-elites", "cma-es", "sep-cma-es", "random"),
+                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es",
+                                         "random"),
                          algorithm_name);
 
 TEST_P(EveryAlgorithm, SurvivorsAreDifferentMembersOfThePoolTheBestFirst) {
@@ -163,7 +165,8 @@ TEST_P(EveryAlgorithm, PlansDependOnTheirArgumentsAlone) {
 
 // Algorithms whose children have parents.
 class Parents : public EveryAlgorithm {};
-INSTANTIATE_TEST_SUITE_P(Algorithms, Parents, testing::Values("ga", "afpo", "nsga2", "map-elites"), algorithm_name);
+INSTANTIATE_TEST_SUITE_P(Algorithms, Parents, testing::Values("ga", "afpo", "nsga2", "map-elites", "novelty"),
+                         algorithm_name);
 
 TEST_P(Parents, AreTwoForTheShareOfChildrenThatIsSet) {
   const std::vector<Individual> living = random_pool(30, 1, 1);
@@ -368,6 +371,139 @@ TEST(MapElites, EveryEliteIsAsLikelyAParent) {
   EXPECT_THAT(count, testing::Each(AllOf(Ge(850), Le(1150))));  // five standard deviations of 30
 }
 
+// Voronoi cells are centroidal if each point is the mean of what is nearest to it, here of other samples than those it
+// was made from.
+TEST(MapElites, NichesAreEqualCellsOfWhichEachPointIsTheMiddle) {
+  constexpr std::size_t cells = 16, samples = 80'000;
+  for (const std::size_t dimensions : {1u, 2u, 3u}) {
+    const std::vector<Behavior> centers = centroids(dimensions, cells);
+    ASSERT_EQ(centers.size(), cells);
+    std::vector<Behavior> sums(cells, Behavior(dimensions, 0));
+    std::vector<double> counts(cells, 0);
+    Random random(7);
+    for (std::size_t i = 0; i < samples; ++i) {
+      Behavior point(dimensions);
+      for (double& value : point) value = random.uniform();
+      const std::size_t cell = nearest_of(centers, point);
+      for (const Behavior& center : centers)
+        ASSERT_LE(squared_distance(centers[cell], point), squared_distance(center, point));
+      ++counts[cell];
+      for (std::size_t k = 0; k < dimensions; ++k) sums[cell][k] += point[k];
+    }
+    const double width = std::pow(1.0 / cells, 1.0 / static_cast<double>(dimensions));
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+      EXPECT_NEAR(counts[cell] * cells / samples, 1, 0.6) << dimensions;
+      for (std::size_t k = 0; k < dimensions; ++k)
+        EXPECT_NEAR(sums[cell][k] / counts[cell], centers[cell][k], 0.2 * width) << dimensions;
+    }
+  }
+  EXPECT_EQ(centroids(3, 5), centroids(3, 5));
+}
+
+TEST(MapElites, KeepsTheBestOfEachNiche) {
+  AlgorithmSettings settings = algorithm_settings("map-elites", 10);
+  settings.niches = 12;
+  EXPECT_EQ(map_cells(settings), 12u);
+  const std::vector<Behavior> centers = centroids(2, 12);
+  const std::size_t size = find_quantity("size").value(), symmetry = find_quantity("symmetry").value();
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<Individual> pool = random_pool(80, 1, seed);
+    std::map<std::size_t, const Individual*> best;
+    for (const Individual& one : pool) {
+      if (one.score() == worst_score) continue;
+      const auto& values = one.assessment.values;
+      const Individual*& elite = best[nearest_of(centers, Behavior{values[size], values[symmetry]})];
+      if (!elite || scores_before(one, *elite)) elite = &one;
+    }
+    std::vector<std::uint64_t> expected;
+    for (const auto& [cell, elite] : best) expected.push_back(elite->id);
+    EXPECT_THAT(ids_of(pool, make_algorithm(settings)->survivors(pool, 40)),
+                testing::UnorderedElementsAreArray(expected));
+  }
+}
+
+// One axis, on which robots stand at these places.
+std::vector<Individual> line_of(const std::vector<double>& places) {
+  std::vector<Individual> pool;
+  for (const double place : places) {
+    pool.push_back(individual(pool.size(), {static_cast<double>(pool.size())}));
+    pool.back().assessment.values[find_quantity("size").value()] = place;
+  }
+  return pool;
+}
+
+AlgorithmSettings novelty_settings(std::size_t population, int neighbors) {
+  return {.name = "novelty",
+          .population = population,
+          .axes = {{.quantity = "size", .lowest = 0, .highest = 1}},
+          .neighbors = neighbors,
+          .archived = 2};
+}
+
+TEST(Novelty, IsTheMeanDistanceFromTheNearestNeighbors) {
+  // With two neighbors: 0: (0.1 + 0.3) / 2, 0.1: (0.1 + 0.2) / 2, 0.3: (0.2 + 0.3) / 2, 1: (0.7 + 0.9) / 2.
+  const std::vector<Individual> pool = line_of({0, 0.1, 0.3, 1});
+  // The best by score is the last one, and it is the newest, too; then by novelty 0.3 and 0.
+  EXPECT_THAT(make_algorithm(novelty_settings(3, 2))->survivors(pool, 0), ElementsAre(3, 2, 0));
+  EXPECT_THAT(make_algorithm(novelty_settings(2, 2))->survivors(pool, 0), ElementsAre(3, 2));
+  // With one neighbor, 0.3 is 0.2 away from another one, and 0 and 0.1 from each other 0.1.
+  EXPECT_THAT(make_algorithm(novelty_settings(2, 1))->survivors(pool, 0), ElementsAre(3, 2));
+}
+
+TEST(Novelty, WhoIsNearToTheArchiveIsNotNew) {
+  const std::vector<Individual> pool = line_of({0.9, 0.45, 0.1});  // the last one is the best, and stays
+  const auto algorithm = make_algorithm(novelty_settings(2, 1));
+  EXPECT_THAT(algorithm->survivors(pool, 0), ElementsAre(2, 0));
+  algorithm->learn(line_of({0.8, 0.8}), Random(1));  // both come into the archive
+  EXPECT_THAT(algorithm->survivors(pool, 0), ElementsAre(2, 1));
+  algorithm->begin({}, 1);
+  EXPECT_THAT(algorithm->survivors(pool, 0), ElementsAre(2, 0));
+}
+
+// Robots of these scores, whose lines began so many generations ago.
+std::vector<Individual> aged(const std::vector<std::pair<double, int>>& scores_and_ages) {
+  constexpr int now = 100;
+  std::vector<Individual> pool;
+  for (const auto& [score, age] : scores_and_ages) {
+    pool.push_back(individual(pool.size(), {score}, now - age));
+    pool.back().generation = now;
+  }
+  return pool;
+}
+
+TEST(Alps, RobotsCompeteWithinTheLayerOfTheirAge) {
+  // Limits of age: 2, 4, none. One robot per layer.
+  const AlgorithmSettings settings{.name = "alps", .population = 3, .age_layers = 3, .age_gap = 2};
+  const auto algorithm = make_algorithm(settings);
+  // The young one of score 1 stays beside older ones of more; of those in the upper layer, the best.
+  EXPECT_THAT(algorithm->survivors(aged({{1, 0}, {5, 2}, {9, 4}, {8, 50}, {7, 4}}), 0), ElementsAre(2, 1, 0));
+  // Whoever is not the best of a layer tries the next one: 6 goes up past 5 and then loses against 9.
+  EXPECT_THAT(algorithm->survivors(aged({{7, 0}, {6, 1}, {5, 3}, {9, 10}}), 0), ElementsAre(3, 0, 1));
+  // An empty layer is filled from below.
+  EXPECT_THAT(algorithm->survivors(aged({{1, 0}, {2, 0}, {3, 0}, {4, 0}}), 0), ElementsAre(3, 2, 1));
+  // The old ones do not come down.
+  EXPECT_THAT(algorithm->survivors(aged({{1, 9}, {2, 9}, {3, 9}, {4, 9}}), 0), ElementsAre(3));
+}
+
+TEST(Alps, ParentsAreOfTheLayerOfTheChildOrTheOneBelowAndSomeChildrenAreNew) {
+  AlgorithmSettings settings{.name = "alps", .population = 12, .age_layers = 3, .age_gap = 2};
+  const auto algorithm = make_algorithm(settings);
+  std::vector<std::pair<double, int>> robots;
+  for (int i = 0; i < 12; ++i) robots.push_back({i, i < 4 ? 0 : i < 8 ? 3 : 20});
+  const std::vector<Individual> living = aged(robots);
+  Random random(3);
+  const std::vector<ChildPlan> plans = algorithm->plan(living, 300, random);
+  std::size_t fresh = 0;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    fresh += plans[i].parents.empty();
+    for (const std::size_t parent : plans[i].parents) {
+      const std::size_t layer = parent / 4;
+      EXPECT_TRUE(layer == i % 3 || layer + 1 == i % 3) << i;
+    }
+  }
+  EXPECT_EQ(fresh, 2u);  // 4 robots of the lowest layer are replaced within 2 generations
+}
+
 TEST(RandomSearch, KeepsTheBestAndMakesRandomChildren) {
   const auto algorithm = make_algorithm({.name = "random", .population = 2});
   const std::vector<Individual> pool{individual(4, {1}), individual(3, {5}), individual(2, {5}), individual(1, {0})};
@@ -396,6 +532,11 @@ TEST(Algorithms, SettingsOutOfRangeAreNamed) {
   EXPECT_EQ(parameter_of({.crossover = -0.1}), "crossover");
   EXPECT_EQ(parameter_of({.crossover = std::nan("")}), "crossover");
   EXPECT_EQ(parameter_of({.name = "map-elites"}), "axes");
+  EXPECT_EQ(parameter_of({.name = "novelty"}), "axes");
+  EXPECT_EQ(parameter_of({.name = "map-elites", .axes = {good}, .niches = 5000}), "niches");
+  EXPECT_EQ(parameter_of({.neighbors = 0}), "neighbors");
+  EXPECT_EQ(parameter_of({.age_layers = 0}), "age_layers");
+  EXPECT_EQ(parameter_of({.age_gap = 0}), "age_gap");
   EXPECT_EQ(parameter_of({.axes = {{.quantity = "beauty"}}}), "axes");
   EXPECT_EQ(parameter_of({.axes = {{.quantity = "size", .lowest = 1, .highest = 1}}}), "axes");
   EXPECT_EQ(parameter_of({.axes = {{.quantity = "size", .lowest = 0, .highest = infinite}}}), "axes");
@@ -408,7 +549,7 @@ TEST(Algorithms, AnUnknownNameListsAll) {
     make_algorithm({.name = "cma"});
     FAIL();
   } catch (const ParameterError& error) {
-    EXPECT_THAT(error.problem(), HasSubstr("ga, afpo, nsga2, map-elites, cma-es, sep-cma-es, random"));
+    EXPECT_THAT(error.problem(), HasSubstr("ga, afpo, alps, nsga2, map-elites, novelty, cma-es, sep-cma-es, random"));
   }
 }
 
@@ -428,7 +569,7 @@ TEST(AnyAlgorithm, RobotsThatAreNotSoundAreRankedByHowMuchTheyBreakLimits) {
     pool.back().assessment.violation = static_cast<double>((id * 5 + 3) % 12 + 1);  // 1 .. 12, each once
     pool.back().assessment.values[*find_quantity("size")] = 0.25 * static_cast<double>(id % 4) + 0.1;
   }
-  for (const char* name : {"ga", "afpo", "nsga2", "random", "map-elites", "cma-es", "sep-cma-es"}) {
+  for (const char* name : {"ga", "afpo", "alps", "nsga2", "random", "map-elites", "novelty", "cma-es", "sep-cma-es"}) {
     std::vector<Individual> with_sound = pool;
     const std::vector<std::size_t> alive = make_algorithm(algorithm_settings(name, 4))->survivors(pool, 0);
     ASSERT_EQ(alive.size(), 4u) << name;
