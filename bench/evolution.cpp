@@ -6,7 +6,8 @@
 //     bench_evolution [--seeds 10] [--evaluations 1280] [--kinds voxel,cppn,nn] [--environments ocean,land] ...
 //
 // All algorithms start from the same random robots, those of the seed. Runs are spread over the cores, whole runs at a
-// time. nsga2 has two objectives, distance and distance per work; the table shows its best distance.
+// time. nsga2 has two objectives, distance and distance per work; the table shows its best distance. map-elites has a
+// map of size and share of muscles; novelty tells robots apart by where they end.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -28,7 +29,7 @@ namespace mercury {
 namespace {
 
 struct Options {
-  std::vector<std::string> algorithms{"random", "ga", "afpo", "nsga2", "map-elites"};
+  std::vector<std::string> algorithms{"random", "ga", "afpo", "alps", "nsga2", "map-elites", "novelty"};
   std::vector<std::string> kinds{"voxel", "cppn", "nn"}, environments{"ocean", "land"};
   std::uint64_t seeds = 10, first_seed = 1;
   std::size_t evaluations = 1280, population = 64;
@@ -117,6 +118,9 @@ EvolutionSettings settings_of(const Task& task, const Options& options) {
   const double volume = 1e-3 * options.voxels.largest[0] * options.voxels.largest[1] * options.voxels.largest[2];
   settings.algorithm.axes = {{.quantity = "size", .lowest = 0, .highest = volume, .cells = 8},
                              {.quantity = "muscle_share", .lowest = 0, .highest = 1, .cells = 8}};
+  if (task.algorithm == "novelty")  // where robots end
+    settings.algorithm.axes = {{.quantity = "speed_x", .lowest = -0.1, .highest = 0.1},
+                               {.quantity = "speed_y", .lowest = -0.1, .highest = 0.1}};
   if (task.algorithm == "nsga2") settings.objectives = {"distance", "efficiency"};
   settings.configuration.environment = environment_named(task.environment);
   settings.configuration.device = device_named(options.device);

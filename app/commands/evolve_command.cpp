@@ -155,7 +155,7 @@ void report_checks(const EvolveOptions& options, const RunHistory& run, const Ch
                                       ? "is confirmed"
                                       : fmt::format("is not confirmed: {}{}{}", name_of(best->verdict),
                                                     best->reason.empty() ? "" : ": ", best->reason));
-  const bool has_map = run.settings().evolution.algorithm.name == "map-elites";
+  const bool has_map = algorithm_named(run.settings().evolution.algorithm.name).has_map;
   std::size_t confirmed = 0, checked = 0;
   for (const auto& [id, generation] : champions)
     if (const Confirmation* check = check_of(id)) {

@@ -75,7 +75,7 @@ struct RunBoard {
 RunBoard board_of(const RunHistory& run) {
   const RunSettings& settings = run.settings();
   const std::vector<MapAxis>& axes = settings.evolution.algorithm.axes;
-  if (settings.evolution.algorithm.name != "map-elites" || axes.empty())
+  if (!algorithm_named(settings.evolution.algorithm.name).has_map || axes.empty())
     throw InputError(run.folder().string(),
                      fmt::format("has no map, since its algorithm is {}; --map takes runs of map-elites",
                                  settings.evolution.algorithm.name));

@@ -75,7 +75,7 @@ std::string algorithm_text(const EvolutionSettings& settings) {
   const AlgorithmSettings& algorithm = settings.algorithm;
   const std::size_t children = settings.children > 0 ? settings.children : algorithm.population;
   std::string text = algorithm.name;
-  if (algorithm.name != "map-elites") text += fmt::format(", population {}", algorithm.population);
+  if (!algorithm_named(algorithm.name).has_map) text += fmt::format(", population {}", algorithm.population);
   text += fmt::format(", {} children per generation, crossover {:g}, mutation {:g}, seed {}", children,
                       algorithm.crossover, settings.mutation, settings.seed);
   if (algorithm_named(algorithm.name).of_behavior)

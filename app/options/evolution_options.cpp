@@ -95,7 +95,8 @@ void EvolutionOptions::add_to(const Command& command) {
       "FORMULA")
       .offering(names_of_quantities())
       .on_first_screen();
-  repeated("--axis", axes_, "Quantity by which map-elites and novelty tell robots apart; may be given several times",
+  repeated("--axis", axes_,
+           "Quantity by which map-elites, novelty and cma-me tell robots apart; may be given several times",
            "NAME[:LOW:HIGH[:CELLS]]")
       .offering(names_of_quantities());
   add_parameters(command, given_.algorithm, search_group);
@@ -159,7 +160,7 @@ AlgorithmSettings EvolutionOptions::algorithm() const {
   if (algorithm_named(algorithm.name).of_behavior) {
     if (algorithm.axes.empty()) algorithm.axes = {axis_from("masses"), axis_from("muscle_share")};
   } else if (!algorithm.axes.empty()) {
-    throw InputError("--axis", "goes with --algorithm map-elites or novelty");
+    throw InputError("--axis", "goes with --algorithm map-elites, novelty or cma-me");
   }
   if (algorithm_named(algorithm.name).of_numbers)
     for (const char* option : {"--tournament", "--elites", "--crossover", "--children"})

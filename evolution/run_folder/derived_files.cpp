@@ -64,7 +64,7 @@ std::optional<Robot> grown(const RunHistory& run, std::uint64_t id) {
   }
 }
 
-bool has_map(const RunHistory& run) { return run.settings().evolution.algorithm.name == "map-elites"; }
+bool has_map(const RunHistory& run) { return algorithm_named(run.settings().evolution.algorithm.name).has_map; }
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;

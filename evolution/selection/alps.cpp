@@ -54,7 +54,9 @@ class AgeLayers : public Algorithm {
  private:
   using Layers = std::vector<std::vector<std::size_t>>;  // the best of each first
 
-  std::size_t layer_count() const { return std::min(static_cast<std::size_t>(settings_.age_layers), settings_.population); }
+  std::size_t layer_count() const {
+    return std::min(static_cast<std::size_t>(settings_.age_layers), settings_.population);
+  }
   // The upper ones are the larger ones, if they cannot be equal.
   std::size_t capacity(std::size_t layer) const { return (settings_.population + layer) / layer_count(); }
   std::size_t newcomers() const {

@@ -19,7 +19,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "evolution/selection/elite_map.h"
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 #include "robots/portable_math.h"
@@ -39,6 +41,12 @@ struct Rates {
   double expected_length;     // of a normal vector
   std::size_t postponed = 0;  // generations between two decompositions of C
 
+  // Of children that all move the mean: the better half of twice as many.
+  static Rates of_parents(std::size_t n, std::size_t parents) {
+    Rates rates(n, 2 * parents, false);
+    rates.weights.resize(parents);
+    return rates;
+  }
   Rates(std::size_t n, std::size_t lambda, bool separable) : weights(lambda), parents(lambda / 2) {
     const auto dimensions = static_cast<double>(n);
     double positive = 0, negative = 0, squares = 0, negative_squares = 0;
@@ -166,54 +174,52 @@ class DiagonalCovariance : public Covariance {
   Vector variances_, deviations_;
 };
 
-class CovarianceMatrixAdaptation : public Algorithm {
+// The distribution: its mean, step size and covariance.
+class Distribution {
  public:
-  CovarianceMatrixAdaptation(const AlgorithmSettings& settings, bool separable)
-      : settings_(settings), separable_(separable) {
-    reset();
+  explicit Distribution(bool separable = false) : separable_(separable) {}
+
+  void reset(Vector mean, double step) {
+    const std::size_t n = mean.size();
+    mean_ = std::move(mean);
+    sigma_ = first_step_ = step;
+    sigma_path_.assign(n, 0);
+    path_.assign(n, 0);
+    if (separable_)
+      covariance_ = std::make_unique<DiagonalCovariance>(n);
+    else
+      covariance_ = std::make_unique<FullCovariance>(n);
+    forgotten_ = 1;
+    since_decomposition_ = 0;
   }
 
-  void begin(std::span<const double> numbers, double step) override {
-    start_.assign(numbers.begin(), numbers.end());
-    first_step_ = step;
-    restarts_ = 0;
-    is_first_ = true;
-    reset();
+  std::size_t dimensions() const { return mean_.size(); }
+  Vector drawn(Random& random) const {
+    Vector z(mean_.size());
+    for (double& number : z) number = random.normal();
+    return z;
+  }
+  Vector child(const Vector& z) const {
+    Vector numbers = covariance_->stretched(z);
+    for (std::size_t k = 0; k < mean_.size(); ++k) numbers[k] = mean_[k] + sigma_ * numbers[k];
+    return numbers;
   }
 
-  std::vector<ChildPlan> plan(std::span<const Individual> living, std::size_t children, Random& random) const override {
-    std::vector<ChildPlan> plans(children << restarts_);
-    const std::optional<std::size_t> parent = best_of_last_generation(living);
-    for (std::size_t i = 0; i < plans.size(); ++i) {
-      if (parent) plans[i].parents = {*parent};
-      if (is_start(i)) continue;
-      plans[i].numbers = covariance_->stretched(drawn(random));
-      for (std::size_t k = 0; k < mean_.size(); ++k) plans[i].numbers[k] = mean_[k] + sigma_ * plans[i].numbers[k];
-    }
-    return plans;
-  }
-
-  void learn(std::span<const Individual> born, Random random) override {
-    if (mean_.empty() || born.empty()) return;
-    const std::size_t n = mean_.size(), lambda = born.size();
-    const Rates rates(n, lambda, separable_);
-    std::vector<Vector> z(lambda, Vector(n, 0)), y(lambda);  // by rank below
-    for (std::size_t i = 0; i < lambda; ++i)
-      if (!is_start(i)) z[i] = drawn(random);
-    is_first_ = false;
-    const std::vector<std::size_t> order = best_first(born);
+  // Learns from the z of children, the best first, as many as the rates are for. Returns false if the distribution
+  // cannot be used any more.
+  bool learn(const std::vector<Vector>& z, const Rates& rates) {
+    const std::size_t n = mean_.size(), lambda = z.size();
     Vector mean_z(n, 0), mean_y(n, 0), weights(lambda);
     std::vector<Vector> ranked(lambda);
     for (std::size_t rank = 0; rank < lambda; ++rank) {
-      const Vector& its_z = z[order[rank]];
-      ranked[rank] = covariance_->stretched(its_z);
+      ranked[rank] = covariance_->stretched(z[rank]);
       double w = rates.weights[rank];
       if (rank < rates.parents) {
         for (std::size_t k = 0; k < n; ++k) {
-          mean_z[k] += w * its_z[k];
+          mean_z[k] += w * z[rank][k];
           mean_y[k] += w * ranked[rank][k];
         }
-      } else if (const double squared = squared_length(its_z); squared > 0) {
+      } else if (const double squared = squared_length(z[rank]); squared > 0) {
         w *= static_cast<double>(n) / squared;
       }
       weights[rank] = rates.c_mu * w;
@@ -238,13 +244,73 @@ class CovarianceMatrixAdaptation : public Algorithm {
       usable = covariance_->decompose();
       since_decomposition_ = 0;
     }
+    const bool converged = sigma_ * std::sqrt(covariance_->largest_variance()) < 1e-12 * first_step_;
+    return usable && !converged && std::isfinite(sigma_);
+  }
+
+ private:
+  static double squared_length(const Vector& v) {
+    double sum = 0;
+    for (const double x : v) sum += x * x;
+    return sum;
+  }
+
+  bool separable_;
+  Vector mean_, sigma_path_, path_;
+  double sigma_ = 1, first_step_ = 1;
+  std::unique_ptr<Covariance> covariance_;
+  double forgotten_ = 1;  // (1 - c_sigma)^(2 g), of the path's start
+  std::size_t since_decomposition_ = 0;
+};
+
+// As whose child the lineage shows those of a distribution.
+std::vector<std::size_t> best_of_last_generation(std::span<const Individual> living) {
+  std::vector<std::size_t> best;
+  for (std::size_t i = 0; i < living.size(); ++i)
+    if (best.empty() || living[i].generation > living[best.front()].generation) best = {i};
+  return best;
+}
+
+class CovarianceMatrixAdaptation : public Algorithm {
+ public:
+  CovarianceMatrixAdaptation(const AlgorithmSettings& settings, bool separable)
+      : settings_(settings), separable_(separable), distribution_(separable) {
+    reset();
+  }
+
+  void begin(std::span<const double> numbers, double step) override {
+    start_.assign(numbers.begin(), numbers.end());
+    first_step_ = step;
+    restarts_ = 0;
+    is_first_ = true;
+    reset();
+  }
+
+  std::vector<ChildPlan> plan(std::span<const Individual> living, std::size_t children, Random& random) const override {
+    std::vector<ChildPlan> plans(children << restarts_);
+    const std::vector<std::size_t> parents = best_of_last_generation(living);
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      plans[i].parents = parents;
+      if (!is_start(i)) plans[i].numbers = distribution_.child(distribution_.drawn(random));
+    }
+    return plans;
+  }
+
+  void learn(std::span<const Individual> born, Random random) override {
+    if (start_.empty() || born.empty()) return;
+    const std::size_t n = start_.size(), lambda = born.size();
+    std::vector<Vector> z(lambda, Vector(n, 0)), ranked;
+    for (std::size_t i = 0; i < lambda; ++i)
+      if (!is_start(i)) z[i] = distribution_.drawn(random);
+    is_first_ = false;
+    const std::vector<std::size_t> order = best_first(born);
+    for (const std::size_t i : order) ranked.push_back(std::move(z[i]));
+    const bool usable = distribution_.learn(ranked, Rates(n, lambda, separable_));
     note_best(born[order.front()].score());
     const std::size_t patience = 10 + (30 * n + lambda - 1) / lambda;
-    const bool converged = sigma_ * std::sqrt(covariance_->largest_variance()) < 1e-12 * first_step_;
-    if (!usable || converged || same_best_ >= patience || !std::isfinite(sigma_)) {
-      if (restarts_ < most_restarts) ++restarts_;
-      reset();
-    }
+    if (usable && same_best_ < patience) return;
+    if (restarts_ < most_restarts) ++restarts_;
+    reset();
   }
 
   // The best one so far, then the best children; if those are too few, the next best.
@@ -261,56 +327,113 @@ class CovarianceMatrixAdaptation : public Algorithm {
   static constexpr int most_restarts = 9;
 
   void reset() {
-    const std::size_t n = start_.size();
-    mean_ = start_;
-    sigma_ = first_step_;
-    sigma_path_.assign(n, 0);
-    path_.assign(n, 0);
-    if (separable_)
-      covariance_ = std::make_unique<DiagonalCovariance>(n);
-    else
-      covariance_ = std::make_unique<FullCovariance>(n);
-    forgotten_ = 1;
-    since_decomposition_ = 0;
+    distribution_.reset(start_, first_step_);
     same_best_ = 0;
     last_best_ = std::numeric_limits<double>::quiet_NaN();
   }
 
   bool is_start(std::size_t child) const { return is_first_ && child == 0; }
 
-  Vector drawn(Random& random) const {
-    Vector z(mean_.size());
-    for (double& number : z) number = random.normal();
-    return z;
-  }
-
-  static double squared_length(const Vector& v) {
-    double sum = 0;
-    for (const double x : v) sum += x * x;
-    return sum;
-  }
-
   void note_best(double score) {
     same_best_ = score == last_best_ ? same_best_ + 1 : 0;
     last_best_ = score;
   }
 
-  static std::optional<std::size_t> best_of_last_generation(std::span<const Individual> living) {
-    std::optional<std::size_t> best;
-    for (std::size_t i = 0; i < living.size(); ++i)
-      if (!best || living[i].generation > living[*best].generation) best = i;
-    return best;
-  }
-
   const AlgorithmSettings settings_;
   const bool separable_;
-  Vector start_, mean_, sigma_path_, path_;
-  double first_step_ = 1, sigma_ = 1;
-  std::unique_ptr<Covariance> covariance_;
-  double forgotten_ = 1;  // (1 - c_sigma)^(2 g), of the path's start
-  std::size_t since_decomposition_ = 0, same_best_ = 0;
+  Vector start_;
+  double first_step_ = 1;
+  Distribution distribution_;
+  std::size_t same_best_ = 0;
   double last_best_ = 0;
   int restarts_ = 0;
+  bool is_first_ = true;
+};
+
+// CMA-ME (Fontaine, Togelius, Nikolaidis and Hoover 2020, "Covariance Matrix Adaptation for the Rapid Illumination of
+// Behavior Space", algorithm 1, with improvement emitters): some CMA-ES fill a map of elites. A child that fills an
+// empty cell ranks before all that improve a cell; among either, more improvement is better; the others do not count.
+// An emitter whose children improve nothing begins again at an elite that is drawn at random. The map and the emitters
+// follow from the children, which learn() draws again.
+class MapOfEmitters : public Algorithm {
+ public:
+  explicit MapOfEmitters(const AlgorithmSettings& settings)
+      : map_(settings), emitters_(std::max<std::size_t>(1, settings.population / children_per_emitter)) {
+    begin({}, step_);
+  }
+
+  void begin(std::span<const double> numbers, double step) override {
+    start_.assign(numbers.begin(), numbers.end());
+    step_ = step;
+    is_first_ = true;
+    elites_.clear();
+    for (Distribution& emitter : emitters_) emitter.reset(start_, step);
+  }
+
+  // The emitters' children take turns.
+  std::vector<ChildPlan> plan(std::span<const Individual> living, std::size_t children, Random& random) const override {
+    std::vector<ChildPlan> plans(children);
+    const std::vector<std::size_t> parents = best_of_last_generation(living);
+    for (std::size_t i = 0; i < children; ++i) {
+      plans[i].parents = parents;
+      const Distribution& emitter = emitters_[i % emitters_.size()];
+      if (!is_start(i)) plans[i].numbers = emitter.child(emitter.drawn(random));
+    }
+    return plans;
+  }
+
+  void learn(std::span<const Individual> born, Random random) override {
+    if (start_.empty()) return;
+    struct Improvement {
+      bool is_new;
+      double by;
+      Vector z;
+    };
+    std::vector<std::vector<Improvement>> improvements(emitters_.size());
+    for (std::size_t i = 0; i < born.size(); ++i) {
+      const Distribution& emitter = emitters_[i % emitters_.size()];
+      Vector z = is_start(i) ? Vector(start_.size(), 0) : emitter.drawn(random);
+      const double score = comparable(born[i].score());
+      if (score == worst_score || born[i].assessment.values.empty()) continue;
+      const auto [place, is_new] = elites_.try_emplace(map_.cell_of(born[i]), Elite{score, {}});
+      const double by = is_new ? score : score - place->second.score;
+      if (!is_new && by <= 0) continue;
+      place->second = {score, emitter.child(z)};
+      improvements[i % emitters_.size()].push_back({is_new, by, std::move(z)});
+    }
+    is_first_ = false;
+    for (std::size_t e = 0; e < emitters_.size(); ++e) {
+      std::ranges::stable_sort(improvements[e], [](const Improvement& a, const Improvement& b) {
+        return a.is_new != b.is_new ? a.is_new : a.by > b.by;
+      });
+      std::vector<Vector> ranked;
+      for (Improvement& one : improvements[e]) ranked.push_back(std::move(one.z));
+      const bool usable =
+          !ranked.empty() && emitters_[e].learn(ranked, Rates::of_parents(start_.size(), ranked.size()));
+      if (!usable && !elites_.empty())
+        emitters_[e].reset(std::next(elites_.begin(), std::ptrdiff_t(random.below(elites_.size())))->second.numbers,
+                           step_);
+    }
+  }
+
+  std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t) const override {
+    return map_.elites(pool);
+  }
+
+ private:
+  static constexpr std::size_t children_per_emitter = 36;
+  struct Elite {
+    double score;
+    Vector numbers;
+  };
+
+  bool is_start(std::size_t child) const { return is_first_ && child == 0; }
+
+  const EliteMap map_;
+  std::vector<Distribution> emitters_;
+  Vector start_;
+  double step_ = 1;
+  std::map<std::size_t, Elite> elites_;  // by cell
   bool is_first_ = true;
 };
 
@@ -323,6 +446,18 @@ AlgorithmDescription cma_es() {
           .learns = true,
           .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
             return std::make_unique<CovarianceMatrixAdaptation>(settings, false);
+          }};
+}
+
+AlgorithmDescription cma_me() {
+  return {.name = "cma-me",
+          .help = "CMA-ME: CMA-ES that fill the map of map-elites, for muscles and brains",
+          .of_numbers = true,
+          .of_behavior = true,
+          .has_map = true,
+          .learns = true,
+          .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
+            return std::make_unique<MapOfEmitters>(settings);
           }};
 }
 

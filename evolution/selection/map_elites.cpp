@@ -6,10 +6,10 @@
 // many axes do not need more.
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <unordered_set>
 
 #include "evolution/selection/behavior.h"
+#include "evolution/selection/elite_map.h"
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 #include "mercury/quantity.h"
@@ -25,7 +25,7 @@ std::size_t cell_on(const MapAxis& axis, double value) {
 
 class MapElites : public Algorithm {
  public:
-  explicit MapElites(const AlgorithmSettings& settings) : settings_(settings) {}
+  explicit MapElites(const AlgorithmSettings& settings) : settings_(settings), map_(settings) {}
 
   std::vector<ChildPlan> plan(std::span<const Individual> living, std::size_t children, Random& random) const override {
     std::vector<ChildPlan> plans;
@@ -35,43 +35,46 @@ class MapElites : public Algorithm {
     return plans;
   }
 
-  // Robots of the worst score get no cell, unless all have it: then those that are nearest to being sound do. What an
-  // exploded robot measured means nothing, so of those only the first one lives on, so that a run has always somebody.
   std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t) const override {
-    const std::vector<std::size_t> order = best_first(pool);
-    std::unordered_set<std::size_t> filled;
-    std::vector<std::size_t> elites;
-    const bool all_unsound = order.empty() || comparable(pool[order.front()].score()) == worst_score;
-    for (const std::size_t i : order) {
-      const Assessment& assessment = pool[i].assessment;
-      const bool has_measured = assessment.violation > 0 && std::isfinite(assessment.violation);
-      if (comparable(pool[i].score()) == worst_score && !(all_unsound && has_measured)) break;
-      if (filled.insert(cell_of(pool[i])).second) elites.push_back(i);
-    }
-    if (elites.empty() && !order.empty()) elites.push_back(order.front());
-    return elites;
+    return map_.elites(pool);
   }
 
  private:
-  std::size_t cell_of(const Individual& individual) const {
-    const std::vector<double>& values = individual.assessment.values;
-    if (settings_.niches == 0) return map_cell(settings_.axes, values);
-    std::call_once(centers_made_, [&] { centers_ = centroids(settings_.axes.size(), settings_.niches); });
-    Behavior behavior;
-    for (const MapAxis& axis : settings_.axes) {
-      const double value = values[find_quantity(axis.quantity).value()];
-      const double place = (value - axis.lowest) / (axis.highest - axis.lowest);
-      behavior.push_back(place > 0 ? std::min(place, 1.0) : 0);  // NaN is 0
-    }
-    return nearest_of(centers_, behavior);
-  }
-
   const AlgorithmSettings settings_;
-  mutable std::once_flag centers_made_;
-  mutable std::vector<Behavior> centers_;
+  const EliteMap map_;
 };
 
 }  // namespace
+
+// Robots of the worst score get no cell, unless all have it: then those that are nearest to being sound do. What an
+// exploded robot measured means nothing, so of those only the first one lives on, so that a run has always somebody.
+std::vector<std::size_t> EliteMap::elites(std::span<const Individual> pool) const {
+  const std::vector<std::size_t> order = best_first(pool);
+  std::unordered_set<std::size_t> filled;
+  std::vector<std::size_t> elites;
+  const bool all_unsound = order.empty() || comparable(pool[order.front()].score()) == worst_score;
+  for (const std::size_t i : order) {
+    const Assessment& assessment = pool[i].assessment;
+    const bool has_measured = assessment.violation > 0 && std::isfinite(assessment.violation);
+    if (comparable(pool[i].score()) == worst_score && !(all_unsound && has_measured)) break;
+    if (filled.insert(cell_of(pool[i])).second) elites.push_back(i);
+  }
+  if (elites.empty() && !order.empty()) elites.push_back(order.front());
+  return elites;
+}
+
+std::size_t EliteMap::cell_of(const Individual& individual) const {
+  const std::vector<double>& values = individual.assessment.values;
+  if (settings_.niches == 0) return map_cell(settings_.axes, values);
+  std::call_once(centers_made_, [&] { centers_ = centroids(settings_.axes.size(), settings_.niches); });
+  Behavior behavior;
+  for (const MapAxis& axis : settings_.axes) {
+    const double value = values[find_quantity(axis.quantity).value()];
+    const double place = (value - axis.lowest) / (axis.highest - axis.lowest);
+    behavior.push_back(place > 0 ? std::min(place, 1.0) : 0);  // NaN is 0
+  }
+  return nearest_of(centers_, behavior);
+}
 
 std::size_t map_cell(std::span<const MapAxis> axes, std::span<const double> values) {
   std::size_t cell = 0, stride = 1;
@@ -92,6 +95,7 @@ AlgorithmDescription map_elites() {
   return {.name = "map-elites",
           .help = "MAP-Elites: the best robot for each cell of a map of their properties",
           .of_behavior = true,
+          .has_map = true,
           .make = [](const AlgorithmSettings& settings) -> std::unique_ptr<Algorithm> {
             return std::make_unique<MapElites>(settings);
           }};

@@ -16,6 +16,7 @@ AlgorithmDescription nsga2();
 AlgorithmDescription map_elites();
 AlgorithmDescription novelty_search();
 AlgorithmDescription cma_es();
+AlgorithmDescription cma_me();
 AlgorithmDescription sep_cma_es();
 AlgorithmDescription random_search();
 

@@ -38,8 +38,10 @@ class Settings(TypedDict, total=False):
     """How robots are searched: the options of `mercury evolve`, all of them optional."""
 
     objective: str | Sequence[str]  # formulas of quantities, more is better; default "distance"
-    algorithm: str  # "afpo" (default), "ga", "nsga2", "map-elites", "cma-es", "sep-cma-es", "random"
-    axes: Sequence[str | tuple[str] | tuple[str, float, float] | tuple[str, float, float, int]]  # of map-elites
+    # "afpo" (default), "ga", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es", "cma-me", "random".
+    algorithm: str
+    # Of map-elites, novelty and cma-me.
+    axes: Sequence[str | tuple[str] | tuple[str, float, float] | tuple[str, float, float, int]]
     population: int  # robots that live on after each generation; of cma-es by default 4 + 3 ln n
     children: int  # born in a generation; 0 = as many as the population
     generations: int  # after the first, random one
@@ -47,6 +49,11 @@ class Settings(TypedDict, total=False):
     tournament: int  # robots among which the best becomes a parent
     elites: float  # ga: share that lives on unconditionally
     crossover: float  # share of the children with two parents
+    niches: int  # map-elites: cells of equal size in place of the axes' cells
+    neighbors: int  # novelty: nearest robots whose mean distance counts
+    archived: int  # novelty: robots of each generation that come into the archive
+    age_layers: int  # alps
+    age_gap: int  # alps: generations below which robots are in the lowest layer
     seed: int
     seconds: float  # of a trial, settling included [s]
     settle: float  # at its start; nothing is measured before [s]
@@ -290,8 +297,8 @@ class Search:
 
     def tell(self, scores: ArrayLike, results: Sequence[Result] | None = None) -> None:
         """Says how they did, in their order: a score each, or a row of them for several objectives; more is better. NaN
-        and infinities are those of robots that failed. `results` are those of evaluate(), where the axes of map-elites
-        find their quantities.
+        and infinities are those of robots that failed. `results` are those of evaluate(), where the axes of map-elites,
+        novelty and cma-me find their quantities.
         """
         numbers = np.asarray(scores, float)
         rows = np.array(numbers[:, None] if numbers.ndim == 1 else numbers)  # a copy
@@ -308,7 +315,7 @@ class Search:
                 if result.failure is not None or result.exploded:
                     row[:] = np.nan
         elif self._search.needs_values:
-            raise InputError("results: map-elites needs them, for the axes of its map")
+            raise InputError("results: map-elites, novelty and cma-me need them, for their axes")
         self._search.tell(rows.tolist(), values)
 
     def living(self) -> list[tuple[list[float], Genome]]:

@@ -159,7 +159,7 @@ def test_several_objectives_and_maps():
     assert [0, 0] not in [scores for scores, _ in search.living()[:3]]
     elites = evolution.Search("voxel", SIZE, axes=["masses"], population=4)
     robots = [genome.robot() for genome in elites.ask()]
-    with pytest.raises(InputError, match="map-elites needs them"):
+    with pytest.raises(InputError, match="map-elites, novelty and cma-me need them"):
         elites.tell([1, 2, 3, 4])
     results = list(mercurysim.evaluate(robots, 0.2, device="cpu"))
     elites.tell([1, 2, 3, 4], results)

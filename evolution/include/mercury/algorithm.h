@@ -53,7 +53,8 @@ struct AlgorithmSettings {
                 "Share of the children with two parents")
           .with_form("0..1"),
       Parameter("niches", &AlgorithmSettings::niches, "", Accepts::between(0, 4096), {0, 1000},
-                "map-elites: cells of equal size, a centroidal Voronoi tessellation, in place of the cells of --axis"),
+                "map-elites, cma-me: cells of equal size, a centroidal Voronoi tessellation, in place of the cells of "
+                "--axis"),
       Parameter("neighbors", &AlgorithmSettings::neighbors, "", Accepts::between(1, 10000), {1, 50},
                 "novelty: nearest robots whose mean distance counts"),
       Parameter("archived", &AlgorithmSettings::archived, "", Accepts::between(0, 10000), {0, 50},
@@ -97,10 +98,11 @@ struct AlgorithmDescription {
   bool many_objectives = false;  // whether it takes more than one
   bool of_numbers = false;       // whether it searches among numbers: its genomes need Genome::numbers()
   bool of_behavior = false;      // whether it needs axes
+  bool has_map = false;          // whether the best of each cell of a map live on
   bool learns = false;           // whether it knows more than the living
   std::unique_ptr<Algorithm> (*make)(const AlgorithmSettings& settings) = nullptr;
 };
-// ga, afpo, alps, nsga2, map-elites, novelty, cma-es, sep-cma-es, random.
+// ga, afpo, alps, nsga2, map-elites, novelty, cma-es, sep-cma-es, cma-me, random.
 std::span<const AlgorithmDescription> algorithms();
 // Throws ParameterError("algorithm", ...) for an unknown name.
 const AlgorithmDescription& algorithm_named(std::string_view name);
@@ -110,7 +112,7 @@ std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings);
 
 // The cell of an individual in a map of elites, counted with the first axis fastest; `values` as in Assessment.
 std::size_t map_cell(std::span<const MapAxis> axes, std::span<const double> values);
-// How many cells the map of map-elites has.
+// How many cells the map of map-elites and cma-me has.
 std::size_t map_cells(const AlgorithmSettings& settings);
 
 }  // namespace mercury
