@@ -7,7 +7,7 @@
 //
 // All algorithms start from the same random robots, those of the seed. Runs are spread over the cores, whole runs at a
 // time. nsga2 has two objectives, distance and distance per work; the table shows its best distance. map-elites has a
-// map of size and share of muscles; novelty tells robots apart by where they end.
+// map of size and share of muscles; novelty is of where they end.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>

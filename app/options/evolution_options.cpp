@@ -96,7 +96,7 @@ void EvolutionOptions::add_to(const Command& command) {
       .offering(names_of_quantities())
       .on_first_screen();
   repeated("--axis", axes_,
-           "Quantity by which map-elites, novelty and cma-me tell robots apart; may be given several times",
+           "Quantity that makes robots different for map-elites, novelty and cma-me; may be given several times",
            "NAME[:LOW:HIGH[:CELLS]]")
       .offering(names_of_quantities());
   add_parameters(command, given_.algorithm, search_group);

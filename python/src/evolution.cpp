@@ -412,7 +412,8 @@ nb::dict generations_of(const RunHistory& self) {
   column("stopped", Integer{}, [](const GenerationSummary& one) { return one.stopped; });
   column("failed", Integer{}, [](const GenerationSummary& one) { return one.failed; });
   column("lines", Integer{}, [](const GenerationSummary& one) { return one.lines; });
-  if (const AlgorithmSettings& algorithm = self.settings().evolution.algorithm; algorithm_named(algorithm.name).has_map) {
+  if (const AlgorithmSettings& algorithm = self.settings().evolution.algorithm;
+      algorithm_named(algorithm.name).has_map) {
     column("cells", Integer{}, [](const GenerationSummary& one) { return one.scored; });
     column("coverage", double{}, [&](const GenerationSummary& one) {
       return static_cast<double>(one.scored) / static_cast<double>(map_cells(algorithm));

@@ -460,7 +460,7 @@ TEST(Novelty, WhoIsNearToTheArchiveIsNotNew) {
   EXPECT_THAT(algorithm->survivors(pool, 0), ElementsAre(2, 0));
 }
 
-// Robots of these scores, whose lines began so many generations ago.
+// Robots of these scores, whose lines began that many generations ago.
 std::vector<Individual> aged(const std::vector<std::pair<double, int>>& scores_and_ages) {
   constexpr int now = 100;
   std::vector<Individual> pool;
