@@ -61,6 +61,7 @@ TEST(Parallel, PoolsLimitTheThreads) {
 
 // The child has none of its parent's threads, and the locks that these held are locked forever.
 TEST(Parallel, ForkedProcessesLoopWhateverTheirParentsThreadsDo) {
+  parallel_for(0, 50, [](std::size_t) {});  // there are threads from now on
   std::atomic<bool> stop = false;
   std::vector<std::thread> threads;
   for (int i = 0; i < 3; ++i)
@@ -72,6 +73,7 @@ TEST(Parallel, ForkedProcessesLoopWhateverTheirParentsThreadsDo) {
     if (child == 0) {
       alarm(20);
       const ThreadPool pool(2);
+      if (pool.threads() != 1) _exit(2);
       std::vector<int> squares(50);
       pool.execute(
           [&] { parallel_for(0, squares.size(), [&](std::size_t k) { squares[k] = static_cast<int>(k * k); }); });
