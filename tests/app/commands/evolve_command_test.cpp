@@ -264,6 +264,60 @@ TEST_F(EvolveCommand, BestOfMapElitesIsTheMap) {
   }
 }
 
+// By the table of all who lived.
+TEST_F(EvolveCommand, GenerationsSayHowFullTheMapIsAndHowManyLinesLive) {
+  const Arguments map{"--axis", "masses:8:36:4", "--axis", "muscle_share:0:1:3"};
+  for (const Arguments& cells : {Arguments{}, Arguments{"--niches", "20"}}) {
+    const std::string run = cells.empty() ? "grid" : "niches";
+    ASSERT_EQ(evolve(run, joined(joined(small("5"), map), cells)).status, 0);
+    std::map<std::string, std::string> line_of;  // the first ancestor, by id
+    std::set<std::string> lines;
+    double living = 0, sum = 0;
+    for (const auto& row : rows_of(read(run + "/first_parents.csv"))) {
+      const std::string& parent = row.at("ancestor_list");  // "[12]", "[none]"
+      const std::string& id = row.at("id");
+      line_of[id] = parent == "[none]" ? id : line_of.at(parent.substr(1, parent.size() - 2));
+      if (row.at("destruction_time") != "inf") continue;
+      ++living;
+      sum += std::stod(row.at("score"));
+      lines.insert(line_of[id]);
+    }
+    const auto last = rows_of(read(run + "/generations.csv")).back();
+    EXPECT_EQ(last.at("lines"), std::to_string(lines.size()));
+    EXPECT_EQ(std::stod(last.at("cells")), living);
+    EXPECT_DOUBLE_EQ(std::stod(last.at("coverage")), living / (cells.empty() ? 12 : 20));
+    EXPECT_NEAR(std::stod(last.at("qd_score")), sum, 1e-12 * sum);
+  }
+  ASSERT_EQ(evolve("no-map", small("1")).status, 0);
+  EXPECT_EQ(rows_of(read("no-map/generations.csv")).back().at("coverage"), "");
+}
+
+TEST_F(EvolveCommand, NoveltyAgesAndEmittersGoOnBitForBit) {
+  const Arguments axes{"--axis", "speed_x:-0.1:0.1", "--axis", "speed_y:-0.1:0.1"};
+  for (const Arguments& algorithm : {joined({"--algorithm", "novelty"}, axes),
+                                     Arguments{"--algorithm", "alps", "--age-layers", "3", "--age-gap", "2"},
+                                     joined({"--algorithm", "cma-me"}, axes)}) {
+    const std::string name = algorithm.at(1);
+    const auto options = [&](const std::string& generations) {
+      Arguments all = joined(small(generations), algorithm);
+      if (name != "cma-me") return all;
+      all.at(1) = "sample:eel";
+      return joined(all, {"--genes", "muscles"});
+    };
+    ASSERT_EQ(evolve(name, options("4")).status, 0) << name;
+    ASSERT_EQ(evolve(name + "-parts", options("2")).status, 0) << name;
+    ASSERT_EQ(evolve(name + "-parts", {"--resume", "--generations", "4", "--quiet"}).status, 0) << name;
+    EXPECT_EQ(read(name + "/first_parents.csv"), read(name + "-parts/first_parents.csv")) << name;
+  }
+  const Outcome refused = evolve("refused", joined(small("1"), {"--algorithm", "ga", "--axis", "masses"}));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.messages, testing::HasSubstr("--axis: goes with --algorithm map-elites, novelty or cma-me"));
+  const Outcome pipelined =
+      evolve("pipelined", joined(joined(small("1"), {"--algorithm", "novelty", "--pipelined"}), axes));
+  EXPECT_EQ(pipelined.status, 2);
+  EXPECT_THAT(pipelined.messages, testing::HasSubstr("novelty learns from each generation"));
+}
+
 // All champions are checked, beside the search; those whose results hold are in best/, and no others.
 TEST_F(EvolveCommand, OnlyConfirmedChampionsAreInBest) {
   const Arguments settings{"--from",   "voxel:3x2x2", "--population", "8", "--generations", "6", "--seconds", "1",
