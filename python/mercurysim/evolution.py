@@ -246,7 +246,8 @@ class Run:
     def generations(self) -> Table:
         """One element per generation: generation, born, living, best (an id), best_score, lower_quartile, median,
         upper_quartile and highest of the scores of the living (best_score2, ... of further objectives), how many of
-        those born exploded, overstretched, too_small, stopped, failed, and seconds."""
+        those born exploded, overstretched, too_small, undefined, stopped, failed; lines, the number of first ancestors of
+        the living; of a map cells (filled), coverage and qd_score (the sum of their scores); and seconds."""
         table: Table = self._history.generations()
         return table
 

@@ -110,6 +110,9 @@ def test_elites_of_a_map_are_the_best_of_their_cells(tmp_path):
     for id in np.flatnonzero(table["fate"] == "sound"):
         best[tuple(cells[id])] = max(best.get(tuple(cells[id]), -np.inf), table["score"][id])
     assert sorted(table["score"][run.living()]) == sorted(best.values())
+    last = {name: column[-1] for name, column in run.generations().items()}
+    assert (last["cells"], last["coverage"]) == (len(best), len(best) / 8)
+    assert last["qd_score"] == pytest.approx(sum(best.values()))
 
 
 def test_robots_that_are_given_are_the_first(tmp_path):

@@ -286,7 +286,7 @@ TEST_F(EvolveCommand, GenerationsSayHowFullTheMapIsAndHowManyLinesLive) {
     EXPECT_EQ(last.at("lines"), std::to_string(lines.size()));
     EXPECT_EQ(std::stod(last.at("cells")), living);
     EXPECT_DOUBLE_EQ(std::stod(last.at("coverage")), living / (cells.empty() ? 12 : 20));
-    EXPECT_NEAR(std::stod(last.at("qd_score")), sum, 1e-12 * sum);
+    EXPECT_NEAR(std::stod(last.at("qd_score")), sum, 1e-12 * std::abs(sum));
   }
   ASSERT_EQ(evolve("no-map", small("1")).status, 0);
   EXPECT_EQ(rows_of(read("no-map/generations.csv")).back().at("coverage"), "");
