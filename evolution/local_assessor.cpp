@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tries candidates on the devices of this process, by one Evaluator: it grows them while others are stepped, and its
 // devices stay ready from one generation to the next.
-
 #include <algorithm>
 #include <chrono>
 #include <deque>

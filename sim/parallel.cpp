@@ -9,6 +9,7 @@
 #include <oneapi/tbb/task_arena.h>
 #include <pthread.h>
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
 

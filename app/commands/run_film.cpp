@@ -75,9 +75,9 @@ struct RunBoard {
 RunBoard board_of(const RunHistory& run) {
   const RunSettings& settings = run.settings();
   const std::vector<MapAxis>& axes = settings.evolution.algorithm.axes;
-  if (!algorithm_named(settings.evolution.algorithm.name).has_map || axes.empty())
+  if (!algorithm_named(settings.evolution.algorithm.name).has_map)
     throw InputError(run.folder().string(),
-                     fmt::format("has no map, since its algorithm is {}; --map takes runs of map-elites",
+                     fmt::format("has no map, since its algorithm is {}; --map takes runs of map-elites or cma-me",
                                  settings.evolution.algorithm.name));
   const auto drawn = std::span(axes).first(std::min<std::size_t>(2, axes.size()));
   const auto columns = static_cast<std::size_t>(axes[0].cells),

@@ -75,12 +75,17 @@ std::string algorithm_text(const EvolutionSettings& settings) {
   const AlgorithmSettings& algorithm = settings.algorithm;
   const std::size_t children = settings.children > 0 ? settings.children : algorithm.population;
   std::string text = algorithm.name;
-  if (!algorithm_named(algorithm.name).has_map) text += fmt::format(", population {}", algorithm.population);
+  const AlgorithmDescription& description = algorithm_named(algorithm.name);
+  if (!description.has_map) text += fmt::format(", population {}", algorithm.population);
   text += fmt::format(", {} children per generation, crossover {:g}, mutation {:g}, seed {}", children,
                       algorithm.crossover, settings.mutation, settings.seed);
-  if (algorithm_named(algorithm.name).of_behavior)
-    for (const MapAxis& axis : algorithm.axes)
-      text += fmt::format("; {} {:g} to {:g} in {} cells", axis.quantity, axis.lowest, axis.highest, axis.cells);
+  if (!description.of_behavior) return text;
+  const bool is_grid = description.has_map && algorithm.niches == 0;
+  for (const MapAxis& axis : algorithm.axes) {
+    text += fmt::format("; {} {:g} to {:g}", axis.quantity, axis.lowest, axis.highest);
+    if (is_grid) text += fmt::format(" in {} cells", axis.cells);
+  }
+  if (description.has_map && !is_grid) text += fmt::format("; {} niches", algorithm.niches);
   return text;
 }
 

@@ -85,7 +85,7 @@ Curve curve_of(const SweepVariant& variant) {
 }
 
 void draw_curve(Svg& svg, const Curve& curve, const Scale& x, const Scale& y, std::string_view color) {
-  std::vector<Point> middle, upper, lower;
+  std::vector<PlotPoint> middle, upper, lower;
   for (std::size_t i = 0; i < curve.tried.size(); ++i) {
     const Spread& best = curve.best[i];
     if (!std::isfinite(best.median)) continue;

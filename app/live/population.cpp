@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/live/population.h"
-#include "mercury/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,8 @@
 #include <map>
 #include <unordered_map>
 #include <vector>
+
+#include "mercury/parallel.h"
 
 namespace mercury {
 namespace {

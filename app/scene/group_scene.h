@@ -86,8 +86,6 @@ class GroupScene {
     return motion_.ghost_offset(shown_offsets_[robot], rooms_[robot], trails_[robot], center_of_mass);
   }
 
-  // Larger groups have neither plants around them nor water that they carry along.
-
  private:
   // The render materials of robots with the same materials. `own` are those of the robot's file, which give the
   // colors; `materials` are those of the simulation now.

@@ -258,10 +258,7 @@ void write_generations(const RunHistory& run) {
         .cell(generation.failed)
         .cell(generation.lines);
     if (has_map(run))
-      csv.cell(generation.scored)
-          .cell(static_cast<double>(generation.scored) /
-                static_cast<double>(map_cells(run.settings().evolution.algorithm)))
-          .cell(generation.score_sum);
+      csv.cell(generation.scored).cell(generation.coverage).cell(generation.score_sum);
     else
       csv.cell(std::string()).cell(std::string()).cell(std::string());
     csv.cell(name_of(physics_of(run.settings().space)));

@@ -40,7 +40,7 @@ void append(std::string& text, std::initializer_list<std::string_view> parts) {
   for (const std::string_view part : parts) text += part;
 }
 
-bool is_finite(Point point) { return std::isfinite(point.x) && std::isfinite(point.y); }
+bool is_finite(PlotPoint point) { return std::isfinite(point.x) && std::isfinite(point.y); }
 
 }  // namespace
 
@@ -53,34 +53,34 @@ void Svg::rectangle(const Box& box, std::string_view fill, double corner) {
   body_ += "\"/>\n";
 }
 
-void Svg::line(Point a, Point b, std::string_view color, double width) {
+void Svg::line(PlotPoint a, PlotPoint b, std::string_view color, double width) {
   append(body_, {"<line x1=\"", pixels(a.x), "\" y1=\"", pixels(a.y), "\" x2=\"", pixels(b.x), "\" y2=\"", pixels(b.y),
                  "\" stroke=\"", color, "\" stroke-width=\"", pixels(width), "\"/>\n"});
 }
 
-void Svg::polyline(std::span<const Point> points, std::string_view color, double width) {
+void Svg::polyline(std::span<const PlotPoint> points, std::string_view color, double width) {
   append(body_, {"<path fill=\"none\" stroke=\"", color, "\" stroke-width=\"", pixels(width),
                  "\" stroke-linejoin=\"round\" stroke-linecap=\"round\" d=\""});
   bool pen_down = false;
-  for (const Point& point : points) {
+  for (const PlotPoint& point : points) {
     if (is_finite(point)) append(body_, {pen_down ? "L" : "M", pixels(point.x), " ", pixels(point.y)});
     pen_down = is_finite(point);
   }
   body_ += "\"/>\n";
 }
 
-void Svg::polygon(std::span<const Point> points, std::string_view fill, double opacity) {
+void Svg::polygon(std::span<const PlotPoint> points, std::string_view fill, double opacity) {
   append(body_, {"<polygon fill=\"", fill, "\" fill-opacity=\"", pixels(opacity), "\" points=\""});
-  for (const Point& point : points) append(body_, {pixels(point.x), ",", pixels(point.y), " "});
+  for (const PlotPoint& point : points) append(body_, {pixels(point.x), ",", pixels(point.y), " "});
   body_ += "\"/>\n";
 }
 
-void Svg::circle(Point center, double radius, std::string_view fill, std::string_view stroke) {
+void Svg::circle(PlotPoint center, double radius, std::string_view fill, std::string_view stroke) {
   append(body_, {"<circle cx=\"", pixels(center.x), "\" cy=\"", pixels(center.y), "\" r=\"", pixels(radius),
                  "\" fill=\"", fill, "\" stroke=\"", stroke, "\" stroke-width=\"1.5\"/>\n"});
 }
 
-void Svg::text(Point at, std::string_view text, const TextStyle& style) {
+void Svg::text(PlotPoint at, std::string_view text, const TextStyle& style) {
   constexpr std::string_view anchors[] = {"start", "middle", "end"};
   constexpr double baseline = 0.35;  // below the middle, as a share of the size
   const std::string place = pixels(at.x) + " " + pixels(at.y);

@@ -10,7 +10,7 @@
 
 namespace mercury {
 
-struct Point {
+struct PlotPoint {
   double x = 0, y = 0;
 };
 
@@ -35,13 +35,13 @@ class Svg {
   Svg(double width, double height);
 
   void rectangle(const Box& box, std::string_view fill, double corner = 0);
-  void line(Point a, Point b, std::string_view color, double width);
+  void line(PlotPoint a, PlotPoint b, std::string_view color, double width);
   // Through the points; a point that is not finite parts the line.
-  void polyline(std::span<const Point> points, std::string_view color, double width);
-  void polygon(std::span<const Point> points, std::string_view fill, double opacity);
-  void circle(Point center, double radius, std::string_view fill, std::string_view stroke);
+  void polyline(std::span<const PlotPoint> points, std::string_view color, double width);
+  void polygon(std::span<const PlotPoint> points, std::string_view fill, double opacity);
+  void circle(PlotPoint center, double radius, std::string_view fill, std::string_view stroke);
   // `at` is the middle of its height, and the place that the anchor names.
-  void text(Point at, std::string_view text, const TextStyle& style);
+  void text(PlotPoint at, std::string_view text, const TextStyle& style);
   // What follows is drawn inside of the box only, until end_clip().
   void begin_clip(const Box& box);
   void end_clip();

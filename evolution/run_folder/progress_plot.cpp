@@ -101,16 +101,16 @@ void draw_scores(Svg& svg, const Box& box, const RunHistory& run, std::size_t ob
 
   const std::vector<const GenerationSummary*> chosen = drawn(generations);
   const auto line = [&](Member member) {
-    std::vector<Point> points;
+    std::vector<PlotPoint> points;
     for (const GenerationSummary* generation : chosen) {
       const double score = generation->scores[objective].*member;
       points.push_back({x(generation->number), can_be_drawn(score) ? y(score) : std::nan("")});
     }
     return points;
   };
-  std::vector<Point> band = line(&ScoreSpread::upper_quartile), lower = line(&ScoreSpread::lower_quartile);
+  std::vector<PlotPoint> band = line(&ScoreSpread::upper_quartile), lower = line(&ScoreSpread::lower_quartile);
   band.insert(band.end(), lower.rbegin(), lower.rend());
-  for (Point& point : band) point.y = std::isfinite(point.y) ? std::clamp(point.y, -1e4, 1e4) : 1e4;
+  for (PlotPoint& point : band) point.y = std::isfinite(point.y) ? std::clamp(point.y, -1e4, 1e4) : 1e4;
   svg.begin_clip({box.x, box.y - 2, box.width + 2, box.height + 2});
   svg.polygon(band, half_color, 0.3);
   svg.polyline(line(&ScoreSpread::median), median_color, 1.8);
@@ -122,8 +122,8 @@ void draw_scores(Svg& svg, const Box& box, const RunHistory& run, std::size_t ob
 // The living in the plane of two objectives; those whom no other one beats in both form the front.
 namespace {
 
-std::vector<Point> scores_of_living(const RunHistory& run) {
-  std::vector<Point> scores;
+std::vector<PlotPoint> scores_of_living(const RunHistory& run) {
+  std::vector<PlotPoint> scores;
   for (const std::uint64_t id : run.living()) {
     const std::vector<double>& both = run.individuals()[id].assessment.scores;
     if (both.size() == 2 && std::abs(both[0]) < 1e300 && std::abs(both[1]) < 1e300)
@@ -133,19 +133,20 @@ std::vector<Point> scores_of_living(const RunHistory& run) {
 }
 
 // From left to right; leaves those who are beaten behind.
-std::vector<Point> front_of(std::vector<Point> scores) {
-  std::ranges::sort(scores, [](Point a, Point b) { return a.x != b.x ? a.x > b.x : a.y > b.y; });
-  std::vector<Point> front;
-  for (const Point& point : scores)
+std::vector<PlotPoint> front_of(std::vector<PlotPoint> scores) {
+  std::ranges::sort(scores, [](PlotPoint a, PlotPoint b) { return a.x != b.x ? a.x > b.x : a.y > b.y; });
+  std::vector<PlotPoint> front;
+  for (const PlotPoint& point : scores)
     if (front.empty() || point.y > front.back().y) front.push_back(point);
   std::ranges::reverse(front);
   return front;
 }
 
 template <class Member>
-Range range_of(const std::vector<Point>& points, Member member) {
+Range range_of(const std::vector<PlotPoint>& points, Member member) {
   if (points.empty()) return {};
-  const auto [low, high] = std::ranges::minmax_element(points, [&](Point a, Point b) { return a.*member < b.*member; });
+  const auto [low, high] =
+      std::ranges::minmax_element(points, [&](PlotPoint a, PlotPoint b) { return a.*member < b.*member; });
   const Range range = widened({(*low).*member, (*high).*member});
   const double margin = 0.06 * (range.high - range.low);
   return {range.low - margin, range.high + margin};
@@ -154,20 +155,20 @@ Range range_of(const std::vector<Point>& points, Member member) {
 }  // namespace
 
 void draw_front(Svg& svg, const Box& box, const RunHistory& run) {
-  const std::vector<Point> living = scores_of_living(run);
-  const Range across = range_of(living, &Point::x), up = range_of(living, &Point::y);
+  const std::vector<PlotPoint> living = scores_of_living(run);
+  const Range across = range_of(living, &PlotPoint::x), up = range_of(living, &PlotPoint::y);
   const Scale x{across.low, across.high, box.x, box.right()}, y{up.low, up.high, box.bottom(), box.y};
   const std::vector<std::string>& objectives = run.settings().evolution.objectives;
   draw_left_axis(svg, box, y, axis_title(objectives[1]));
   draw_bottom_axis(svg, box, x, axis_title(objectives[0]));
-  std::vector<Point> steps;  // an individual of the front beats all below and left of it
-  for (const Point& point : front_of(living)) {
+  std::vector<PlotPoint> steps;  // an individual of the front beats all below and left of it
+  for (const PlotPoint& point : front_of(living)) {
     if (!steps.empty()) steps.push_back({steps.back().x, y(point.y)});
     steps.push_back({x(point.x), y(point.y)});
   }
   svg.polyline(steps, "#d55e00", 1.4);
-  for (const Point& point : living) svg.circle({x(point.x), y(point.y)}, 3.2, "#56b4e9", "#ffffff");
-  for (const Point& point : front_of(living)) svg.circle({x(point.x), y(point.y)}, 4.6, "#d55e00", "#ffffff");
+  for (const PlotPoint& point : living) svg.circle({x(point.x), y(point.y)}, 3.2, "#56b4e9", "#ffffff");
+  for (const PlotPoint& point : front_of(living)) svg.circle({x(point.x), y(point.y)}, 4.6, "#d55e00", "#ffffff");
   svg.text({box.x, box.y - 14}, "the living; nobody beats those of the front in both objectives", {.size = 12});
   svg.text({box.right() + 12, box.y + 6}, "front", {.size = 12, .color = "#d55e00", .bold = true});
   svg.text({box.right() + 12, box.y + 26}, "other living", {.size = 12, .color = "#0072b2"});

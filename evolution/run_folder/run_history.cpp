@@ -198,6 +198,9 @@ void RunHistory::Parts::add(GenerationRecord record) {
   generations.push_back(summary_of(generation.number, std::move(record.times),
                                    std::span(individuals).subspan(record.first_id), living, individuals,
                                    first_ancestors, objectives));
+  const AlgorithmSettings& algorithm = file.settings.evolution.algorithm;
+  if (GenerationSummary& last = generations.back(); algorithm_named(algorithm.name).has_map)
+    last.coverage = static_cast<double>(last.scored) / static_cast<double>(map_cells(algorithm));
 }
 
 void RunHistory::Parts::note_deaths(const Generation& generation) {

@@ -24,19 +24,20 @@ class AgeLayers : public Algorithm {
   // below.
   std::vector<ChildPlan> plan(std::span<const Individual> living, std::size_t children, Random& random) const override {
     const Layers layers = layers_of(living);
-    const auto precedes = [&](std::size_t a, std::size_t b) { return better(living[a], living[b]); };
+    Layers candidates = layers;
+    for (std::size_t layer = 1; layer < layers.size(); ++layer)
+      candidates[layer].insert(candidates[layer].end(), layers[layer - 1].begin(), layers[layer - 1].end());
     std::vector<ChildPlan> plans;
     for (std::size_t i = 0; i < children; ++i) {
       const std::size_t layer = i % layers.size();
-      std::vector<std::size_t> parents = layers[layer];
-      if (layer > 0) parents.insert(parents.end(), layers[layer - 1].begin(), layers[layer - 1].end());
+      const std::vector<std::size_t>& parents = candidates[layer];
       if (parents.empty() || (layer == 0 && i / layers.size() < newcomers())) {
         plans.emplace_back();
         continue;
       }
       plans.push_back(plan_child(parents.size(), settings_.crossover, random, [&] {
         return tournament(parents.size(), settings_.tournament, random,
-                          [&](std::size_t a, std::size_t b) { return precedes(parents[a], parents[b]); });
+                          [&](std::size_t a, std::size_t b) { return better(living[parents[a]], living[parents[b]]); });
       }));
       for (std::size_t& parent : plans.back().parents) parent = parents[parent];
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "evolution/selection/behavior.h"
 
+#include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "evolution/selection/ranking.h"
 #include "mercury/parallel.h"
@@ -9,15 +11,23 @@
 #include "mercury/random.h"
 
 namespace mercury {
+namespace {
+
+// 0 at the lowest value of the axis, 1 at the highest.
+double place_on(const MapAxis& axis, std::span<const double> values) {
+  return (values[find_quantity(axis.quantity).value()] - axis.lowest) / (axis.highest - axis.lowest);
+}
+
+}  // namespace
 
 std::optional<Behavior> behavior_of(std::span<const MapAxis> axes, const Individual& individual) {
   const std::vector<double>& values = individual.assessment.values;
   if (comparable(individual.score()) == worst_score || values.empty()) return std::nullopt;
   Behavior behavior;
   for (const MapAxis& axis : axes) {
-    const double value = values[find_quantity(axis.quantity).value()];
-    if (!std::isfinite(value)) return std::nullopt;
-    behavior.push_back((value - axis.lowest) / (axis.highest - axis.lowest));
+    const double place = place_on(axis, values);
+    if (!std::isfinite(place)) return std::nullopt;
+    behavior.push_back(place);
   }
   return behavior;
 }
@@ -62,6 +72,49 @@ std::vector<Behavior> centroids(std::size_t dimensions, std::size_t cells) {
         centers[cell][k] = sums[cell][k] / static_cast<double>(counts[cell]);
   }
   return centers;
+}
+
+std::size_t map_cell(std::span<const MapAxis> axes, std::span<const double> values) {
+  std::size_t cell = 0, stride = 1;
+  for (const MapAxis& axis : axes) {
+    const double place = place_on(axis, values) * axis.cells;
+    if (place > 0) cell += stride * static_cast<std::size_t>(std::min<double>(place, axis.cells - 1));  // NaN is 0
+    stride *= static_cast<std::size_t>(axis.cells);
+  }
+  return cell;
+}
+
+std::size_t map_cells(const AlgorithmSettings& settings) {
+  std::size_t cells = 1;
+  for (const MapAxis& axis : settings.axes) cells *= static_cast<std::size_t>(axis.cells);
+  return settings.niches > 0 ? settings.niches : cells;
+}
+
+std::size_t CellMap::cell_of(const Individual& individual) const {
+  const std::vector<double>& values = individual.assessment.values;
+  if (settings_.niches == 0) return map_cell(settings_.axes, values);
+  std::call_once(centers_made_, [&] { centers_ = centroids(settings_.axes.size(), settings_.niches); });
+  Behavior behavior;
+  for (const MapAxis& axis : settings_.axes) {
+    const double place = place_on(axis, values);
+    behavior.push_back(place > 0 ? std::min(place, 1.0) : 0);  // NaN is 0
+  }
+  return nearest_of(centers_, behavior);
+}
+
+std::vector<std::size_t> CellMap::elites(std::span<const Individual> pool) const {
+  const std::vector<std::size_t> order = best_first(pool);
+  std::unordered_set<std::size_t> filled;
+  std::vector<std::size_t> elites;
+  const bool all_unsound = order.empty() || comparable(pool[order.front()].score()) == worst_score;
+  for (const std::size_t i : order) {
+    const Assessment& assessment = pool[i].assessment;
+    const bool has_measured = assessment.violation > 0 && std::isfinite(assessment.violation);
+    if (comparable(pool[i].score()) == worst_score && !(all_unsound && has_measured)) break;
+    if (filled.insert(cell_of(pool[i])).second) elites.push_back(i);
+  }
+  if (elites.empty() && !order.empty()) elites.push_back(order.front());
+  return elites;
 }
 
 }  // namespace mercury

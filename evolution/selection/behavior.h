@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What robots do, as points in the space of some quantities.
+// What robots do, as points in the space of some quantities, and the cells of a map in which these lie.
 #pragma once
 
 #include <cstddef>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,5 +27,23 @@ std::size_t nearest_of(std::span<const Behavior> points, std::span<const double>
 // of the unit cube by Lloyd's algorithm on random samples (Vassiliades, Chatzilygeroudis and Mouret 2018, algorithm 1).
 // Depends on the arguments alone.
 std::vector<Behavior> centroids(std::size_t dimensions, std::size_t cells);
+
+// The map of map-elites and CMA-ME: the best robot of each cell lives on.
+class CellMap {
+ public:
+  explicit CellMap(const AlgorithmSettings& settings) : settings_(settings) {}
+
+  // Of an individual that was measured.
+  std::size_t cell_of(const Individual& individual) const;
+  // Indices in the pool, the best first. Robots of the worst score get no cell, unless all have it: then those that are
+  // nearest to being sound do. What an exploded robot measured means nothing, so of those only the first one lives on,
+  // so that a run has always somebody.
+  std::vector<std::size_t> elites(std::span<const Individual> pool) const;
+
+ private:
+  const AlgorithmSettings settings_;
+  mutable std::once_flag centers_made_;
+  mutable std::vector<Behavior> centers_;
+};
 
 }  // namespace mercury

@@ -21,7 +21,7 @@
 #include <limits>
 #include <map>
 
-#include "evolution/selection/elite_map.h"
+#include "evolution/selection/behavior.h"
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
 #include "robots/portable_math.h"
@@ -429,7 +429,7 @@ class MapOfEmitters : public Algorithm {
 
   bool is_start(std::size_t child) const { return is_first_ && child == 0; }
 
-  const EliteMap map_;
+  const CellMap map_;
   std::vector<Distribution> emitters_;
   Vector start_;
   double step_ = 1;

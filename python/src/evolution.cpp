@@ -412,12 +412,9 @@ nb::dict generations_of(const RunHistory& self) {
   column("stopped", Integer{}, [](const GenerationSummary& one) { return one.stopped; });
   column("failed", Integer{}, [](const GenerationSummary& one) { return one.failed; });
   column("lines", Integer{}, [](const GenerationSummary& one) { return one.lines; });
-  if (const AlgorithmSettings& algorithm = self.settings().evolution.algorithm;
-      algorithm_named(algorithm.name).has_map) {
+  if (algorithm_named(self.settings().evolution.algorithm.name).has_map) {
     column("cells", Integer{}, [](const GenerationSummary& one) { return one.scored; });
-    column("coverage", double{}, [&](const GenerationSummary& one) {
-      return static_cast<double>(one.scored) / static_cast<double>(map_cells(algorithm));
-    });
+    column("coverage", double{}, [](const GenerationSummary& one) { return one.coverage; });
     column("qd_score", double{}, [](const GenerationSummary& one) { return one.score_sum; });
   }
   column("seconds", double{}, [](const GenerationSummary& one) { return one.times.seconds; });

@@ -78,6 +78,8 @@ CUDACC_HOME = "sim/include/mercury/host_device.h"
 
 SOURCES = {".h", ".hpp", ".cuh", ".inl", ".cpp", ".cc", ".cu"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+NAMESPACE = re.compile(r"(?:inline )?namespace ([\w:]*)\s*\{")
+TYPE = re.compile(r"(?:class|struct|union|enum class) (\w+)(?: final)?(?: : [^{;]*)?\s*\{")
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
@@ -174,6 +176,26 @@ class Tree:
                 reported.add(include.target)
                 yield include.target, 1, f"{include.path} gets {' > '.join(way)} through it: hide the library in a source"
 
+    def types_defined_twice(self):
+        """(path, line, what is wrong) of each type of a header that another header defines, too: where both are linked, one
+        takes the other's functions."""
+        first = {}
+        for path, text in self.texts.items():
+            if not path.endswith((".h", ".cuh")):
+                continue
+            spaces, depth = [], 0  # (name, depth of braces around it)
+            for number, line in enumerate(text.splitlines(), start=1):
+                if match := NAMESPACE.match(line):
+                    spaces.append((match.group(1), depth))
+                elif match := TYPE.match(line):
+                    name = "::".join([*(space for space, _ in spaces), match.group(1)])
+                    other = first.setdefault(name, path)
+                    if other != path:
+                        yield path, number, f"{other} defines {name}, too"
+                depth += line.count("{") - line.count("}")
+                while spaces and depth <= spaces[-1][1]:
+                    spaces.pop()
+
     def problems(self):
         """(path, line, what is wrong)."""
         for include in self.includes:
@@ -184,6 +206,7 @@ class Tree:
                 if "__CUDACC__" in line and path != CUDACC_HOME:
                     yield path, number, f"only {CUDACC_HOME} asks for __CUDACC__"
         yield from self.heavy_headers()
+        yield from self.types_defined_twice()
         graph = {}
         for include in self.includes:
             graph.setdefault(include.path, []).append(include.target)

@@ -48,6 +48,14 @@ class IncludeRules(unittest.TestCase):
             "examples/a/main.cpp": "#include <mercury/simulation.h>\n",
         }), [])
 
+    def test_two_headers_define_no_type_of_one_name(self):
+        map_of = "#pragma once\nnamespace mercury {\nstruct Map {\n  int cells;\n};\n}  // namespace mercury\n"
+        tree = {"robots/map.h": map_of, "app/scene/map.h": map_of.replace("mercury", "mercury::test"),
+                "app/live/map.cpp": map_of}
+        self.assertEqual(problems(tree), [])
+        tree["app/live/map.h"] = map_of
+        self.assertEqual(problems(tree), ["robots/map.h:3: app/live/map.h defines mercury::Map, too"])
+
     def test_a_header_of_another_folder_brings_no_heavy_library(self):
         tree = {"app/base/a.h": '#include "app/base/b.h"\n', "app/base/b.h": "#include <nlohmann/json.hpp>\n",
                 "app/base/own.cpp": '#include "app/base/a.h"\n'}

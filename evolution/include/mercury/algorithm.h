@@ -34,8 +34,8 @@ struct AlgorithmSettings {
   int tournament = 4;            // individuals among which the best becomes a parent
   double elites = 0.1;           // ga: share of the population that lives on unconditionally
   double crossover = 0.25;       // share of the children that have two parents
-  std::vector<MapAxis> axes;     // map-elites, novelty: one or more
-  std::size_t niches = 0;        // map-elites: cells of equal size in place of the axes' cells; 0 = those
+  std::vector<MapAxis> axes;     // map-elites, novelty, cma-me: one or more
+  std::size_t niches = 0;        // map-elites, cma-me: cells of equal size in place of the axes' cells; 0 = those
   int neighbors = 15;            // novelty: the nearest robots, whose mean distance is the novelty
   std::size_t archived = 6;      // novelty: robots of each generation that come into the archive
   int age_layers = 5;            // alps

@@ -57,6 +57,7 @@ struct GenerationSummary {
   double median_score = 0;          // of the living, first objective
   std::size_t scored = 0;           // of the living, those that have more than the worst score
   double score_sum = 0;             // of these, first objective
+  double coverage = 0;              // share of a map's cells that they fill; 0 without a map
   std::size_t lines = 0;            // first ancestors of the living, by first parents
   std::vector<ScoreSpread> scores;  // of the living, per objective
   GenerationTimes times;

@@ -1,69 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // mercury evolve: runs, and that they go on as if they had never stopped.
 #include <gmock/gmock.h>
-#include <signal.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
-#include "app/base/child_process.h"
-#include "evolution/distribution/ranks.h"
 #include "evolution/run_folder/champion_checks.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/quantity.h"
 #include "mercury/robot_file.h"
-#include "mercury/run_folder.h"
 #include "mercury/samples.h"
+#include "tests/app/commands/evolve_runs.h"
 #include "tests/app/program.h"
-#include "tests/nap.h"
 
 namespace mercury::test {
 namespace {
-
-using Arguments = std::vector<std::string>;
-
-Arguments joined(Arguments first, const Arguments& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
-class EvolveCommand : public FolderTest {
- protected:
-  // Small robots, short trials.
-  static Arguments small(const std::string& generations = "4") {
-    return {"--from", "voxel:3x2x2", "--population", "8",   "--generations", generations, "--seconds",
-            "0.3",    "--quiet",     "--device",     "cpu", "--seed",        "5"};
-  }
-  Outcome evolve(const std::string& name, const Arguments& options) const {
-    return mercury(joined({"evolve", path(name)}, options));
-  }
-  std::string lineage(const std::string& run) const { return read(run + "/lineage.csv"); }
-  // What an uninterrupted run gives.
-  std::string expected_lineage(const std::string& generations = "4") const {
-    const Outcome outcome = evolve("expected", joined(small(generations), {"--force"}));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
-    return lineage("expected");
-  }
-  std::size_t generations_in(const std::string& run) const {
-    try {
-      return RunHistory(path(run)).generations().size();
-    } catch (const std::exception&) {
-      return 0;  // not yet made
-    }
-  }
-  // Waits until that many generations are on the disk. Gives up after a minute.
-  void wait_for_generations(const std::string& run, std::size_t count) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    while (generations_in(run) < count && std::chrono::steady_clock::now() < deadline) nap();
-  }
-};
 
 // By column name, one map per line.
 std::vector<std::map<std::string, std::string>> rows_of(const std::string& csv) {
@@ -460,177 +416,12 @@ TEST_F(EvolveCommand, GenerationsCanBeRaised) {
   EXPECT_EQ(lineage("run"), expected_lineage());
 }
 
-// Killed as soon as some generations are there, wherever it is at that moment, and resumed.
-TEST_F(EvolveCommand, KilledRunsEndInTheSameLineage) {
-  const std::string generations = "30", wanted = expected_lineage(generations);
-  Arguments command = joined({"evolve", path("run")}, small(generations));
-  int kills = 0;
-  for (std::size_t target : {1, 3, 7, 12, 20}) {
-    ChildProcess child(MERCURY_PROGRAM, command);
-    wait_for_generations("run", target);
-    child.kill();
-    kills += outcome_of(child).status == 128 + SIGKILL;
-    command = {"evolve", path("run"), "--resume", "--quiet"};
-  }
-  EXPECT_GT(kills, 0);
-  ASSERT_EQ(mercury(command).status, 0);
-  EXPECT_EQ(lineage("run"), wanted);
-}
-
-TEST_F(EvolveCommand, InterruptedRunsStopCleanlyAndGoOn) {
-  const std::string generations = "40";
-  ChildProcess child(MERCURY_PROGRAM, joined({"evolve", path("run")}, small(generations)));
-  wait_for_generations("run", 2);
-  child.signal(SIGINT);
-  const Outcome outcome = outcome_of(child);
-  ASSERT_EQ(outcome.status, 128 + SIGINT) << outcome.messages;
-  EXPECT_THAT(outcome.messages, testing::EndsWith("mercury evolve " + path("run") + " --resume goes on\n"));
-  EXPECT_THAT(listing("run"), testing::Contains("lineage.csv"));
-  ASSERT_EQ(evolve("run", {"--resume", "--quiet"}).status, 0);
-  EXPECT_EQ(lineage("run"), expected_lineage(generations));
-}
-
-TEST_F(EvolveCommand, ShardsEndInTheSameLineage) {
-  ASSERT_EQ(evolve("run", joined(small("2"), {"--prepare"})).status, 0);
-  for (int generation = 0; generation <= 2; ++generation) {
-    for (const char* shard : {"3/3", "1/3", "2/3"}) ASSERT_EQ(evolve("run", {"--shard", shard, "--quiet"}).status, 0);
-    const Outcome merged = evolve("run", {"--merge"});
-    ASSERT_EQ(merged.status, 0) << merged.messages;
-  }
-  EXPECT_EQ(lineage("run"), expected_lineage("2"));
-  EXPECT_THAT(listing("run"), testing::Not(testing::Contains("shards")));
-  const Outcome over = evolve("run", {"--merge"});
-  EXPECT_EQ(over.status, 2);
-  EXPECT_EQ(over.messages, "mercury: " + path("run") + ": has all its 2 generations; mercury evolve " + path("run") +
-                               " --merge --generations N raises their number\n");
-  ASSERT_EQ(evolve("run", {"--merge", "--generations", "3"}).status, 0);
-  ASSERT_EQ(evolve("run", {"--shard", "1/1", "--quiet"}).status, 0);
-  ASSERT_EQ(evolve("run", {"--merge"}).status, 0);
-  EXPECT_EQ(lineage("run"), expected_lineage("3"));
-}
-
-TEST_F(EvolveCommand, RunsWhoseFolderWasRemovedEndWithALine) {
-  for (const bool moved : {false, true}) {
-    ChildProcess child(MERCURY_PROGRAM, joined({"evolve", path("run")}, small("100000")));
-    wait_for_generations("run", 2);
-    std::filesystem::rename(path("run"), path("moved"));
-    if (!moved) std::filesystem::remove_all(path("moved"));
-    const Outcome outcome = outcome_of(child);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
-    std::filesystem::remove_all(path("run"));
-  }
-  EXPECT_GE(generations_in("moved"), 2u);
-}
-
 TEST_F(EvolveCommand, MissingDevicesAreNoticedBeforeAFolderIsMade) {
   if (cuda_device_count() > 0) GTEST_SKIP() << "needs a machine without a GPU";
   const Outcome outcome = evolve("run", {"--device", "cuda"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
   EXPECT_EQ(listing(), std::vector<std::string>{});
-}
-
-TEST_F(EvolveCommand, MissingAndDamagedShardsAreNamed) {
-  ASSERT_EQ(evolve("run", joined(small("2"), {"--prepare"})).status, 0);
-  EXPECT_EQ(evolve("run", {"--merge"}).messages,
-            "mercury: " + path("run/shards") + ": has no shard of generation 0; make them by --shard I/N\n");
-  ASSERT_EQ(evolve("run", {"--shard", "1/2", "--quiet"}).status, 0);
-  EXPECT_EQ(evolve("run", {"--merge"}).messages,
-            "mercury: " + path("run/shards") + ": shard 2 of 2 of generation 0 is missing\n");
-  const std::string whole = read("run/shards/0-1-of-2");
-  for (std::size_t length : {std::size_t{0}, std::size_t{7}, whole.size() / 2, whole.size() - 1}) {
-    write("run/shards/0-2-of-2", whole.substr(0, length));
-    const Outcome outcome = evolve("run", {"--merge"});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + path("run/shards/0-2-of-2") + ": is "));
-    EXPECT_THAT(outcome.messages, testing::EndsWith("; remove it and run this shard again\n"));
-  }
-  EXPECT_EQ(generations_in("run"), 0u);
-}
-
-class EvolveByMpi : public EvolveCommand {
- protected:
-  void SetUp() override {
-    if (std::system("command -v mpirun > /dev/null") != 0) GTEST_SKIP() << "no mpirun on this machine";
-    if (!Ranks::available()) GTEST_SKIP() << "a build without MPI";
-    EvolveCommand::SetUp();
-    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
-    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
-  }
-  // Ranks that are asked to end have `patience` seconds.
-  static Arguments three_ranks(const Arguments& options, const std::string& patience = "1") {
-    return joined(
-        {"-n", "3", "--oversubscribe", "--mca", "odls_base_sigkill_timeout", patience, MERCURY_PROGRAM, "evolve"},
-        options);
-  }
-  static std::size_t lines_of_mercury(const Outcome& outcome) {
-    std::istringstream lines(outcome.messages);
-    std::size_t count = 0;
-    for (std::string line; std::getline(lines, line);) count += line.starts_with("mercury: ");
-    return count;
-  }
-  // The process that evolves in the folder as that rank.
-  static pid_t process_of(int rank, const std::string& folder) {
-    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-      const auto text = [&](const char* file) {
-        std::ifstream stream(entry.path() / file);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
-      };
-      const std::string end(1, '\0');
-      if ((end + text("environ")).find(end + "OMPI_COMM_WORLD_RANK=" + std::to_string(rank) + end) !=
-              std::string::npos &&
-          text("cmdline").find(end + folder + end) != std::string::npos)
-        return std::stoi(entry.path().filename());
-    }
-    return 0;
-  }
-};
-
-TEST_F(EvolveByMpi, RanksEndInTheSameLineage) {
-  const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, small())));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
-  EXPECT_EQ(lineage("run"), expected_lineage());
-}
-
-TEST_F(EvolveByMpi, MistakesAreReportedOnce) {
-  for (const Arguments& options : {Arguments{"--algorithm", "luck"},
-                                   {"--charm", "3"},
-                                   {"--resume"},
-                                   {"--merge"},
-                                   {"--prepare", "--trials", "0"}}) {
-    const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, options)));
-    EXPECT_EQ(outcome.status, 2) << outcome.messages;
-    EXPECT_EQ(lines_of_mercury(outcome), 1u) << outcome.messages;
-  }
-  EXPECT_EQ(listing(), std::vector<std::string>{});
-}
-
-TEST_F(EvolveByMpi, ALostRankEndsTheRunWithALine) {
-  const std::string generations = "40", wanted = expected_lineage(generations);
-  for (const int lost : {1, 0}) {
-    const std::string run = "without-" + std::to_string(lost);
-    ChildProcess child("mpirun", three_ranks(joined({path(run)}, small(generations)), "4"));
-    wait_for_generations(run, 2);
-    const pid_t process = process_of(lost, path(run));
-    ASSERT_GT(process, 0);
-    ::kill(process, SIGKILL);
-    const Outcome outcome = outcome_of(child);
-    EXPECT_NE(outcome.status, 0);
-    EXPECT_EQ(lines_of_mercury(outcome), 1u) << outcome.messages;
-    EXPECT_THAT(outcome.messages, testing::HasSubstr("mercury: rank " + std::to_string(lost) + " no longer answers; "));
-    for (const int rank : {0, 1, 2}) EXPECT_EQ(process_of(rank, path(run)), 0);
-    ASSERT_EQ(evolve(run, {"--resume", "--quiet"}).status, 0);
-    EXPECT_EQ(lineage(run), wanted);
-  }
-}
-
-TEST_F(EvolveByMpi, PreparingAndMergingAreDoneOnce) {
-  ASSERT_EQ(run_program("mpirun", three_ranks(joined({path("run"), "--prepare"}, small("0")))).status, 0);
-  ASSERT_EQ(evolve("run", {"--shard", "1/1", "--quiet"}).status, 0);
-  const Outcome outcome = run_program("mpirun", three_ranks({path("run"), "--merge"}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
-  EXPECT_EQ(lineage("run"), expected_lineage("0"));
 }
 
 TEST_F(EvolveCommand, RunsAreReplacedOnlyWithForce) {

@@ -124,7 +124,8 @@ TEST_F(RunPicture, WhatARunDoesNotHaveIsRefused) {
   EXPECT_EQ(refusal("swim", "a.mp4", {"--generation", "0,3"}),
             "mercury: --generation: the run has no generation 3; give numbers from 0 to 2, or last\n");
   EXPECT_EQ(refusal("swim", "a.png", {"--map"}),
-            "mercury: " + path("swim") + ": has no map, since its algorithm is afpo; --map takes runs of map-elites\n");
+            "mercury: " + path("swim") +
+                ": has no map, since its algorithm is afpo; --map takes runs of map-elites or cma-me\n");
 }
 
 TEST_F(RunPicture, OptionsThatDoNotGoTogetherAreRefused) {

@@ -101,6 +101,12 @@ TEST_F(RunViewTest, AFamilyFollowsFirstParentsAndNamesTheSecondOnes) {
   EXPECT_TRUE(crossed);
 }
 
+TEST_F(RunViewTest, NoveltyHasAxesAndNoMap) {
+  test::SmallRun run(path("run"), test::small_run("novelty"));
+  run.advance(2);
+  EXPECT_TRUE(RunReader(path("run")).read()->map.axes.empty());
+}
+
 TEST_F(RunViewTest, ACellOfTheMapHasTheBestOfItsRobots) {
   test::SmallRun run(path("run"), test::small_run("map-elites"));
   run.advance(5);
