@@ -7,6 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "evolution/selection/islands.h"
 #include "mercury/error.h"
 #include "mercury/parallel.h"
 #include "mercury/random.h"
@@ -41,7 +42,7 @@ std::size_t children_per_generation(const EvolutionSettings& settings) {
 bool operator==(const Generation& a, const Generation& b) {
   const auto same = [](const Individual& x, const Individual& y) {
     return x.id == y.id && x.parents == y.parents && x.generation == y.generation && x.line_began == y.line_began &&
-           x.seed == y.seed && x.assessment == y.assessment;
+           x.seed == y.seed && x.island == y.island && x.is_migrant == y.is_migrant && x.assessment == y.assessment;
   };
   return a.number == b.number && a.living == b.living && std::ranges::equal(a.born, b.born, same);
 }
@@ -82,15 +83,17 @@ std::size_t usual_population(std::string_view algorithm, const GenomeSpace& spac
 }
 
 Evolution::Evolution(const EvolutionSettings& settings, const GenomeSpace& space)
-    : settings_(settings), space_(space), algorithm_(make_algorithm(settings.algorithm)) {
+    : settings_(settings), space_(space), islands_(std::make_unique<Islands>(settings.algorithm)) {
   validate(settings);
   validate(settings, space);
   if (algorithm_named(settings.algorithm.name).of_numbers) start_ = start_of_search(space, settings.seed);
   begin_to_learn();
 }
 
+Evolution::~Evolution() = default;
+
 void Evolution::begin_to_learn() {
-  algorithm_->begin(start_ ? start_->numbers() : std::vector<double>(), settings_.mutation);
+  islands_->algorithm().begin(start_ ? start_->numbers() : std::vector<double>(), settings_.mutation);
 }
 
 void Evolution::restore(int generation, std::vector<Individual> living, std::span<const Individual> born,
@@ -109,7 +112,7 @@ void Evolution::restore(int generation, std::vector<Individual> living, std::spa
     const Random random(seed_of_plan(settings_.seed, number));
     if (start_ && number == generation) {
       Random again = random;
-      const std::vector<ChildPlan> plans = algorithm_->plan({}, settings_.algorithm.population, again);
+      const std::vector<ChildPlan> plans = islands_->algorithm().plan({}, settings_.algorithm.population, again);
       for (const Individual& individual : living_) {
         if (individual.generation != number) continue;
         const std::size_t child = static_cast<std::size_t>(individual.id) - first;
@@ -119,14 +122,14 @@ void Evolution::restore(int generation, std::vector<Individual> living, std::spa
                            "the kind of processor that made it");
       }
     }
-    algorithm_->learn(born.subspan(first, end - first), random);
+    islands_->algorithm().learn(born.subspan(first, end - first), random);
     first = end;
   }
 }
 
 namespace {
 
-// Makes the children of a generation on all cores, and makes those again that are not new.
+// Makes the children of a generation on all cores, and makes those again that are not new on their island.
 class Breeding {
  public:
   // `start` = of a search among numbers, or nullptr.
@@ -136,8 +139,8 @@ class Breeding {
         plans_(std::move(plans)), seeds_(plans_.size()), genomes_(plans_.size()), identities_(plans_.size()) {}
 
   std::vector<Individual> children(const Watch& watch) {
-    std::unordered_set<std::uint64_t> known;
-    for (const Individual& individual : living_) known.insert(individual.genome->identity());
+    std::vector<std::unordered_set<std::uint64_t>> known(settings_.algorithm.islands);
+    for (const Individual& individual : living_) known[individual.island].insert(individual.genome->identity());
     std::vector<std::size_t> missing(plans_.size());
     std::iota(missing.begin(), missing.end(), std::size_t{0});
     const int tries = start_ ? 1 : tries_for_a_new_genome;  // a plan of numbers gives one genome
@@ -147,7 +150,9 @@ class Breeding {
         parallel_for(first, std::min(first + portion, missing.size()),
                      [&](std::size_t k) { make(missing[k], attempt); });
       }
-      std::erase_if(missing, [&](std::size_t i) { return genomes_[i] && known.insert(identities_[i]).second; });
+      std::erase_if(missing, [&](std::size_t i) {
+        return genomes_[i] && (known[plans_[i].island].insert(identities_[i]).second || plans_[i].is_migrant);
+      });
     }
     return individuals();
   }
@@ -157,7 +162,7 @@ class Breeding {
 
   // A try that fails leaves the child of an earlier one, which is like another but can live.
   void make(std::size_t i, int attempt) {
-    const std::uint64_t seed = seed_of_child(settings_.seed, generation_, i, attempt);
+    const std::uint64_t seed = plans_[i].is_migrant ? 0 : seed_of_child(settings_.seed, generation_, i, attempt);
     try {
       GenomePointer genome = make_genome(i, attempt, seed);
       identities_[i] = genome->identity();
@@ -174,6 +179,7 @@ class Breeding {
       const bool may_be_founder = generation_ == 0 && attempt == 0;
       return space_.random(seed, may_be_founder ? i : space_.founders() + i);
     }
+    if (plans_[i].is_migrant) return living_[parents[0]].genome;
     const double strength = settings_.mutation * (1 + attempt / 4.0);  // each further try changes a little more
     GenomePointer genome = living_[parents[0]].genome;
     if (parents.size() > 1) genome = genome->cross(*living_[parents[1]].genome, seed_of(seed, 0));
@@ -187,6 +193,8 @@ class Breeding {
       Individual& child = children.emplace_back();
       child.generation = child.line_began = generation_;
       child.seed = seeds_[i];
+      child.island = static_cast<std::uint16_t>(plans_[i].island);
+      child.is_migrant = plans_[i].is_migrant;
       child.genome = std::move(genomes_[i]);
       for (const std::size_t parent : plans_[i].parents) {
         child.parents.push_back(living_[parent].id);
@@ -210,10 +218,12 @@ class Breeding {
 }  // namespace
 
 std::vector<ChildPlan> Evolution::plans(int generation, std::span<const Individual> parents) const {
-  if (generation == 0 && !start_)
-    return std::vector<ChildPlan>(std::max(settings_.algorithm.population, space_.founders()));
-  Random random(seed_of_plan(settings_.seed, generation));
-  return algorithm_->plan(parents, children_per_generation(settings_), random);
+  if (generation > 0 || start_)
+    return islands_->plan(generation, parents, children_per_generation(settings_),
+                          seed_of_plan(settings_.seed, generation));
+  std::vector<ChildPlan> plans(std::max(settings_.algorithm.population, space_.founders()));
+  for (std::size_t i = 0; i < plans.size(); ++i) plans[i].island = islands_->island_of(i);
+  return plans;
 }
 
 std::vector<Individual> Evolution::breed(int generation, const std::vector<Individual>& parents, std::uint64_t first_id,
@@ -259,9 +269,9 @@ Generation Evolution::select(std::vector<Individual> children) {
   next_id_ += children.size();
   std::ranges::move(children, std::back_inserter(pool));
   living_.clear();
-  for (const std::size_t i : algorithm_->survivors(pool, before)) living_.push_back(std::move(pool.at(i)));
+  for (const std::size_t i : islands_->survivors(pool, before)) living_.push_back(std::move(pool.at(i)));
   for (const Individual& individual : living_) generation.living.push_back(individual.id);
-  algorithm_->learn(generation.born, Random(seed_of_plan(settings_.seed, next_generation_)));
+  islands_->algorithm().learn(generation.born, Random(seed_of_plan(settings_.seed, next_generation_)));
   ++next_generation_;
   return generation;
 }

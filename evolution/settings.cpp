@@ -38,6 +38,20 @@ void validate_axes(std::span<const MapAxis> axes) {
   require(cells <= most_cells, "axes", "the map has more than " + std::to_string(most_cells) + " cells");
 }
 
+void validate_islands(const AlgorithmSettings& settings) {
+  if (settings.islands == 1) return;
+  const AlgorithmDescription& algorithm = algorithm_named(settings.name);
+  require(!algorithm.learns && !algorithm.has_map, "islands",
+          settings.name + (algorithm.has_map ? " keeps one map" : " learns from all robots") +
+              "; give 1, or --algorithm ga, afpo, alps, nsga2 or random");
+  require(settings.islands <= settings.population, "islands",
+          std::to_string(settings.islands) + " are more than the population of " + std::to_string(settings.population));
+  const std::size_t smallest = settings.population / settings.islands;
+  require(settings.migration_interval == 0 || settings.migrants < smallest, "migrants",
+          std::to_string(settings.migrants) + " leave no other robot on an island of " + std::to_string(smallest) +
+              "; give fewer, or a larger population");
+}
+
 }  // namespace
 
 void validate(const AlgorithmSettings& settings) {
@@ -45,6 +59,7 @@ void validate(const AlgorithmSettings& settings) {
   validate_axes(settings.axes);
   require(!algorithm_named(settings.name).of_behavior || !settings.axes.empty(), "axes",
           settings.name + " needs one or more quantities, such as size and muscle_share");
+  validate_islands(settings);
 }
 
 void validate(const TrialSettings& trials) {
@@ -68,6 +83,12 @@ void validate(const EvolutionSettings& settings) {
             "algorithm", std::string(algorithm.name) + " takes one objective; with several, give nsga2");
   require(settings.children == 0 || !algorithm_named(settings.algorithm.name).of_numbers, "children",
           settings.algorithm.name + " makes as many as its population; give that alone");
+  const AlgorithmSettings& algorithm = settings.algorithm;
+  require(settings.children == 0 || algorithm.islands == 1 ||
+              settings.children / algorithm.islands > (algorithm.migration_interval > 0 ? algorithm.migrants : 0),
+          "children",
+          std::to_string(settings.children) + " are too few for " + std::to_string(algorithm.islands) +
+              " islands and their migrants");
   require(!settings.pipelined || !algorithm_named(settings.algorithm.name).learns, "pipelined",
           settings.algorithm.name + " learns from each generation before it makes the next; leave it out");
   require(!trials.racing || (trials.trials == 1 && settings.objectives.size() == 1), "racing",

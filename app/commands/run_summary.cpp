@@ -79,6 +79,14 @@ std::string algorithm_text(const EvolutionSettings& settings) {
   if (!description.has_map) text += fmt::format(", population {}", algorithm.population);
   text += fmt::format(", {} children per generation, crossover {:g}, mutation {:g}, seed {}", children,
                       algorithm.crossover, settings.mutation, settings.seed);
+  if (algorithm.islands > 1) {
+    text += fmt::format("; {} islands", algorithm.islands);
+    text +=
+        algorithm.migration_interval == 0
+            ? ", no migration"
+            : fmt::format(", {} from each to the next every {}", counted(algorithm.migrants, "robot", "robots"),
+                          counted(static_cast<std::size_t>(algorithm.migration_interval), "generation", "generations"));
+  }
   if (!description.of_behavior) return text;
   const bool is_grid = description.has_map && algorithm.niches == 0;
   for (const MapAxis& axis : algorithm.axes) {
@@ -212,6 +220,11 @@ void describe(const RunHistory& run) {
     print_line("best",
                fmt::format("robot {} of generation {}: {}", best.id, best.generation, score_text(settings, best)));
     print_quantities(best);
+    if (const std::vector<double>& islands = run.generations().back().best_of_islands; !islands.empty()) {
+      std::vector<std::string> scores;
+      for (const double score : islands) scores.push_back(number_text(score));
+      print_line("islands", fmt::format("best scores {}", fmt::join(scores, ", ")));
+    }
     print_line_of(run, best.id);
   }
   print_line("files", files_text(run.folder()));

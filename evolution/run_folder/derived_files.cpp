@@ -41,7 +41,7 @@ Robot run_robot(const RunHistory& run, std::uint64_t id) {
   Ancestry ancestry{.generation = static_cast<std::uint64_t>(individual.generation)};
   for (const std::uint64_t parent : individual.parents)
     ancestry.parents.push_back(run_name(run) + "-" + std::to_string(parent));
-  if (!individual.parents.empty()) ancestry.mutation_seed = individual.seed;
+  if (!individual.parents.empty() && !individual.is_migrant) ancestry.mutation_seed = individual.seed;
   if (individual.parents.size() > 1) ancestry.crossover_seed = seed_of(individual.seed, 0);
   robot.origin = with_ancestry(robot.origin, ancestry);
   return robot;
@@ -65,6 +65,12 @@ std::optional<Robot> grown(const RunHistory& run, std::uint64_t id) {
 }
 
 bool has_map(const RunHistory& run) { return algorithm_named(run.settings().evolution.algorithm.name).has_map; }
+
+// 0 if its population is not split.
+std::size_t islands_of(const RunHistory& run) {
+  const std::size_t islands = run.settings().evolution.algorithm.islands;
+  return islands > 1 ? islands : 0;
+}
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -191,9 +197,11 @@ std::string lines_of(const RunHistory& run, const CsvLines& head,
 void write_lineage(const RunHistory& run) {
   const std::size_t objectives = run.settings().evolution.objectives.size();
   CsvLines head;
+  const bool has_islands = islands_of(run) > 0;
   for (const char* name :
        {"id", "ancestor_list", "origin_time", "destruction_time", "generation", "line_began", "seed", "fate"})
     head.cell(name);
+  if (has_islands) head.cell("island");
   for (std::size_t i = 0; i < objectives; ++i) head.cell(score_name(i, objectives));
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"lower_quartile_", "upper_quartile_"}) head.cell(name + score_name(i, objectives));
@@ -207,6 +215,7 @@ void write_lineage(const RunHistory& run) {
     csv.cell(individual.id).cell(ancestor_list(individual.parents)).cell(individual.generation);
     csv.cell(died ? std::to_string(*died) : "inf").cell(individual.generation).cell(individual.line_began);
     csv.cell(individual.seed).cell(name_of(assessment.fate));
+    if (has_islands) csv.cell(individual.island);
     add_cells(csv, assessment.scores, objectives);
     for (std::size_t i = 0; i < objectives; ++i)
       for (const std::vector<double>* quartiles : {&assessment.lower_quartiles, &assessment.upper_quartiles})
@@ -243,6 +252,7 @@ void write_generations(const RunHistory& run) {
   for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed", "lines",
                            "cells", "coverage", "qd_score", "physics", "seconds", "robots_per_second", "device"})
     csv.cell(name);
+  for (std::size_t i = 0; i < islands_of(run); ++i) csv.cell("best_of_island_" + std::to_string(i));
   csv.end_line();
   for (const GenerationSummary& generation : run.generations()) {
     csv.cell(generation.number).cell(generation.born).cell(generation.living).cell(generation.best);
@@ -266,6 +276,7 @@ void write_generations(const RunHistory& run) {
     csv.cell(fixed_text(seconds, 3))
         .cell(seconds > 0 ? fixed_text(static_cast<double>(generation.born) / seconds, 1) : std::string())
         .cell(generation.times.device);
+    for (const double best : generation.best_of_islands) csv.cell(best);
     csv.end_line();
   }
   write_whole_file(run.folder() / generations_name, csv.text());

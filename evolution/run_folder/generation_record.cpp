@@ -126,6 +126,10 @@ void encode(ByteWriter& writer, const Individual& individual, const StoredGenome
   writer.numbers(individual.parents);
   writer.add(static_cast<std::uint32_t>(individual.line_began));
   writer.add(individual.seed);
+  if (version >= 3) {
+    writer.add(individual.island);
+    writer.add(static_cast<std::uint8_t>(individual.is_migrant));
+  }
   encode(writer, individual.assessment, version);
   writer.add(static_cast<std::uint8_t>(genome.base == StoredGenome::none ? Form::whole : Form::difference));
   writer.add(genome.size);
@@ -142,6 +146,13 @@ Individual decode_individual(ByteReader& reader, int generation, std::uint64_t f
   if (line_began > static_cast<std::uint32_t>(generation)) throw DamagedBytes("a line begins after its individual");
   individual.line_began = static_cast<int>(line_began);
   individual.seed = reader.read<std::uint64_t>();
+  if (version >= 3) {
+    individual.island = reader.read<std::uint16_t>();
+    const auto migrant = reader.read<std::uint8_t>();
+    if (migrant > 1) throw DamagedBytes("an individual is neither a migrant nor none");
+    individual.is_migrant = migrant == 1;
+    if (individual.is_migrant && individual.parents.size() != 1) throw DamagedBytes("a migrant has not one parent");
+  }
   individual.assessment = decode_assessment(reader, version);
   return individual;
 }

@@ -24,8 +24,8 @@ std::string difference_of(std::string_view base, std::string_view target);
 std::string with_difference(std::string_view base, std::string_view difference);
 
 // Assessments as bytes: in the journal, in the files of shards, and between ranks. Version 1 has no quartiles and no
-// violation.
-inline constexpr std::uint32_t record_version = 2;
+// violation. Of individuals, versions 1 and 2 have no islands: all are on island 0.
+inline constexpr std::uint32_t record_version = 3;
 void encode(ByteWriter& writer, const Assessment& assessment, std::uint32_t version = record_version);
 // Throws DamagedBytes.
 Assessment decode_assessment(ByteReader& reader, std::uint32_t version = record_version);

@@ -185,6 +185,8 @@ void RunHistory::Parts::add(GenerationRecord record) {
     if (assessment.values.size() != file.quantities.size() && !assessment.values.empty())
       damaged("an individual has another number of values");
     use_known_quantities(assessment);
+    if (individual.island >= file.settings.evolution.algorithm.islands)
+      damaged("an individual is on an island that the run does not have");
   }
   genomes.add(record.genomes);
   for (const Individual& individual : generation.born)
@@ -201,6 +203,16 @@ void RunHistory::Parts::add(GenerationRecord record) {
   const AlgorithmSettings& algorithm = file.settings.evolution.algorithm;
   if (GenerationSummary& last = generations.back(); algorithm_named(algorithm.name).has_map)
     last.coverage = static_cast<double>(last.scored) / static_cast<double>(map_cells(algorithm));
+  if (algorithm.islands > 1) generations.back().best_of_islands = best_of_islands();
+}
+
+std::vector<double> RunHistory::Parts::best_of_islands() const {
+  std::vector<double> best(file.settings.evolution.algorithm.islands, worst_score);
+  for (const std::uint64_t id : living) {
+    double& score = best[individuals[id].island];
+    score = std::max(score, individuals[id].score());
+  }
+  return best;
 }
 
 void RunHistory::Parts::note_deaths(const Generation& generation) {

@@ -81,6 +81,7 @@ struct RunHistory::Parts {
   void add(GenerationRecord record);
   void use_known_quantities(Assessment& assessment) const;
   void note_deaths(const Generation& generation);
+  std::vector<double> best_of_islands() const;
 
   std::vector<std::size_t> stored_quantity_;  // per quantity of this program, where its value is in the journal
   bool same_quantities_ = true;               // the journal has those of this program, in the same order

@@ -54,6 +54,9 @@ class Settings(TypedDict, total=False):
     archived: int  # novelty: robots of each generation that come into the archive
     age_layers: int  # alps
     age_gap: int  # alps: generations below which robots are in the lowest layer
+    islands: int  # ga, afpo, alps, nsga2, random: into which the population is split
+    migration_interval: int  # generations from one migration between islands to the next; 0 = none
+    migrants: int  # best robots of each island whose copies replace the worst of the next one
     seed: int
     seconds: float  # of a trial, settling included [s]
     settle: float  # at its start; nothing is measured before [s]
@@ -238,7 +241,7 @@ class Run:
 
     def individuals(self) -> Table:
         """One element per robot, by id: id, parent, other_parent (-1 = none), generation, died (the last generation in
-        which it lived, -1 = it lives), line_began, fate, score (score2, ... of further objectives), and all quantities.
+        which it lived, -1 = it lives), line_began, island (if there are several), fate, score (score2, ... of further objectives), and all quantities.
         """
         table: Table = self._history.individuals()
         return table
@@ -247,7 +250,8 @@ class Run:
         """One element per generation: generation, born, living, best (an id), best_score, lower_quartile, median,
         upper_quartile and highest of the scores of the living (best_score2, ... of further objectives), how many of
         those born exploded, overstretched, too_small, undefined, stopped, failed; lines, the number of first ancestors of
-        the living; of a map cells (filled), coverage and qd_score (the sum of their scores); and seconds."""
+        the living; of a map cells (filled), coverage and qd_score (the sum of their scores); best_of_island_0 and so on, if
+        there are several; and seconds."""
         table: Table = self._history.generations()
         return table
 

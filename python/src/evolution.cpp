@@ -362,6 +362,8 @@ nb::dict individuals_of(const RunHistory& self) {
   column("generation", Integer{}, [](const Individual& one) { return one.generation; });
   column("died", Integer{}, [&](const Individual& one) { return self.died(one.id).value_or(-1); });
   column("line_began", Integer{}, [](const Individual& one) { return one.line_began; });
+  if (self.settings().evolution.algorithm.islands > 1)
+    column("island", Integer{}, [](const Individual& one) { return one.island; });
   nb::list fates;
   for (const Individual& individual : all) {
     const std::string_view fate = name_of(individual.assessment.fate);
@@ -417,6 +419,10 @@ nb::dict generations_of(const RunHistory& self) {
     column("coverage", double{}, [](const GenerationSummary& one) { return one.coverage; });
     column("qd_score", double{}, [](const GenerationSummary& one) { return one.score_sum; });
   }
+  if (const std::size_t islands = self.settings().evolution.algorithm.islands; islands > 1)
+    for (std::size_t i = 0; i < islands; ++i)
+      column(("best_of_island_" + std::to_string(i)).c_str(), double{},
+             [i](const GenerationSummary& one) { return one.best_of_islands[i]; });
   column("seconds", double{}, [](const GenerationSummary& one) { return one.times.seconds; });
   return columns;
 }

@@ -115,6 +115,21 @@ def test_elites_of_a_map_are_the_best_of_their_cells(tmp_path):
     assert last["qd_score"] == pytest.approx(sum(best.values()))
 
 
+def test_children_have_parents_of_their_own_island_but_for_migrants(tmp_path):
+    settings = {**SETTINGS, "population": 6, "generations": 4, "islands": 2, "migration_interval": 2, "migrants": 1}
+    run = evolution.start(tmp_path / "islands", "voxel", SIZE, **settings).go_on()
+    table = run.individuals()
+    has_parent = table["parent"] >= 0
+    came = has_parent & (table["island"] != table["island"][table["parent"]])
+    assert table["generation"][came].tolist() == [2, 2, 4, 4]
+    living = run.living()
+    for island in range(2):
+        best = max(table["score"][id] for id in living if table["island"][id] == island)
+        assert run.generations()[f"best_of_island_{island}"][-1] == best
+    with pytest.raises(mercurysim.InputError, match="islands: cma-es learns from all robots"):
+        evolution.start(tmp_path / "refused", "voxel", SIZE, algorithm="cma-es", islands=2)
+
+
 def test_robots_that_are_given_are_the_first(tmp_path):
     founders = mercurysim.random_voxel(2, seed=5, voxels=(4, 3, 2))
     run = evolution.start(tmp_path / "swim", founders, genes="muscles", **{**SETTINGS, "generations": 0}).go_on()

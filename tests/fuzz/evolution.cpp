@@ -51,7 +51,12 @@ RunSettings settings(const std::string& algorithm) {
 const std::filesystem::path& run_folder() {
   static const std::filesystem::path folder = [] {
     const std::filesystem::path made = scratch_folder() + "/run";
-    RunFolder run = RunFolder::create(made, settings("afpo"));
+    RunSettings islands = settings("afpo");
+    islands.evolution.algorithm.population = 6;
+    islands.evolution.algorithm.islands = 2;
+    islands.evolution.algorithm.migration_interval = 1;
+    islands.evolution.algorithm.migrants = 1;
+    RunFolder run = RunFolder::create(made, islands);
     Evolution evolution(run.history().settings().evolution, run.space());
     DrawnScores scores;
     while (const std::optional<Generation> generation = evolution.advance(scores))

@@ -40,6 +40,9 @@ struct AlgorithmSettings {
   std::size_t archived = 6;      // novelty: robots of each generation that come into the archive
   int age_layers = 5;            // alps
   int age_gap = 5;               // alps: generations
+  std::size_t islands = 1;       // into which the population is split; 1 = it is not (selection/islands.h)
+  int migration_interval = 10;   // islands: generations; 0 = nobody migrates
+  std::size_t migrants = 2;      // islands: robots of each island
 
   static constexpr std::tuple parameters{
       Parameter("population", &AlgorithmSettings::population, "", Accepts::between(1, 1e6), {1, 4096, true},
@@ -63,7 +66,14 @@ struct AlgorithmSettings {
                 "alps: layers of ages"),
       Parameter(
           "age_gap", &AlgorithmSettings::age_gap, "", Accepts::between(1, 10000), {1, 20},
-          "alps: generations below which robots are in the lowest layer; above it, 2, 4, 9, 16, ... times as many")};
+          "alps: generations below which robots are in the lowest layer; above it, 2, 4, 9, 16, ... times as many"),
+      Parameter("islands", &AlgorithmSettings::islands, "", Accepts::between(1, 1000), {1, 16},
+                "ga, afpo, alps, nsga2, random: islands into which the population is split, each with parents of its "
+                "own"),
+      Parameter("migration_interval", &AlgorithmSettings::migration_interval, "", Accepts::between(0, 1e6), {0, 50},
+                "islands: generations from one migration to the next; 0 = none"),
+      Parameter("migrants", &AlgorithmSettings::migrants, "", Accepts::between(1, 1e6), {1, 16},
+                "islands: best robots of each island whose copies replace the worst of the next one")};
 };
 
 // What a child is made from: indices of its parents among the living. None = a new random genome. Algorithms that
@@ -72,6 +82,8 @@ struct AlgorithmSettings {
 struct ChildPlan {
   std::vector<std::size_t> parents;
   std::vector<double> numbers;
+  std::size_t island = 0;   // on which it is born
+  bool is_migrant = false;  // a copy of its one parent, which is of another island
 };
 
 class Algorithm {

@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -81,10 +82,13 @@ struct Generation {
   friend bool operator==(const Generation&, const Generation&);  // genomes are not compared
 };
 
+class Islands;
+
 class Evolution {
  public:
   // The space must outlive it. Throws as validate().
   Evolution(const EvolutionSettings& settings, const GenomeSpace& space);
+  ~Evolution();
 
   // Continues after a generation: `living` as it left them; `born` = all individuals so far, by id, whose genomes are
   // not needed; `before` = those who lived when the generation began, needed if it is pipelined. Throws InputError if
@@ -125,7 +129,7 @@ class Evolution {
   EvolutionSettings settings_;
   const GenomeSpace& space_;
   GenomePointer start_;  // where a search among numbers begins; else nullptr
-  std::unique_ptr<Algorithm> algorithm_;
+  std::unique_ptr<const Islands> islands_;
   int next_generation_ = 0;
   std::uint64_t next_id_ = 0;
   std::vector<Individual> living_, before_;    // now, and if it is pipelined, when the last generation began

@@ -43,7 +43,9 @@ struct Individual {
   std::vector<std::uint64_t> parents;  // ids; none = drawn at random, or given by the user; two after a crossover
   int generation = 0;                  // in which it was born
   int line_began = 0;                  // generation in which its oldest ancestor was drawn (the age of AFPO)
-  std::uint64_t seed = 0;              // of its mutation and crossover, or of the random genome
+  std::uint64_t seed = 0;              // of its mutation and crossover, or of the random genome; 0 = of a migrant
+  std::uint16_t island = 0;            // on which it was born
+  bool is_migrant = false;             // a copy of its one parent, which is of another island
   GenomePointer genome;
   Assessment assessment;
 

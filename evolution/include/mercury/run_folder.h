@@ -60,6 +60,8 @@ struct GenerationSummary {
   double coverage = 0;              // share of a map's cells that they fill; 0 without a map
   std::size_t lines = 0;            // first ancestors of the living, by first parents
   std::vector<ScoreSpread> scores;  // of the living, per objective
+  std::vector<double>
+      best_of_islands;  // score of the best living individual of each, first objective; without islands empty
   GenerationTimes times;
 };
 

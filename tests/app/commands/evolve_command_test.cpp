@@ -248,10 +248,11 @@ TEST_F(EvolveCommand, GenerationsSayHowFullTheMapIsAndHowManyLinesLive) {
   EXPECT_EQ(rows_of(read("no-map/generations.csv")).back().at("coverage"), "");
 }
 
-TEST_F(EvolveCommand, NoveltyAgesAndEmittersGoOnBitForBit) {
+TEST_F(EvolveCommand, NoveltyAgesIslandsAndEmittersGoOnBitForBit) {
   const Arguments axes{"--axis", "speed_x:-0.1:0.1", "--axis", "speed_y:-0.1:0.1"};
   for (const Arguments& algorithm : {joined({"--algorithm", "novelty"}, axes),
                                      Arguments{"--algorithm", "alps", "--age-layers", "3", "--age-gap", "2"},
+                                     Arguments{"--algorithm", "ga", "--islands", "2", "--migration-interval", "2"},
                                      joined({"--algorithm", "cma-me"}, axes)}) {
     const std::string name = algorithm.at(1);
     const auto options = [&](const std::string& generations) {

@@ -66,6 +66,17 @@ TEST_F(EvolveCommand, ShardsEndInTheSameLineage) {
   EXPECT_EQ(lineage("run"), expected_lineage("3"));
 }
 
+TEST_F(EvolveCommand, IslandsAreTheSameInShards) {
+  const Arguments islands = joined(small("3"), {"--islands", "2", "--migration-interval", "2", "--migrants", "1"});
+  ASSERT_EQ(evolve("whole", islands).status, 0);
+  ASSERT_EQ(evolve("run", joined(islands, {"--prepare"})).status, 0);
+  for (int generation = 0; generation <= 3; ++generation) {
+    for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(evolve("run", {"--shard", shard, "--quiet"}).status, 0);
+    ASSERT_EQ(evolve("run", {"--merge"}).status, 0);
+  }
+  EXPECT_EQ(lineage("run"), lineage("whole"));
+}
+
 TEST_F(EvolveCommand, RunsWhoseFolderWasRemovedEndWithALine) {
   for (const bool moved : {false, true}) {
     ChildProcess child(MERCURY_PROGRAM, joined({"evolve", path("run")}, small("100000")));
@@ -140,6 +151,14 @@ TEST_F(EvolveByMpi, RanksEndInTheSameLineage) {
   const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, small())));
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(lineage("run"), expected_lineage());
+}
+
+TEST_F(EvolveByMpi, IslandsAreTheSameOnAllRanks) {
+  const Arguments islands = joined(small("3"), {"--islands", "2", "--migration-interval", "2", "--migrants", "1"});
+  ASSERT_EQ(evolve("whole", islands).status, 0);
+  const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, islands)));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(lineage("run"), lineage("whole"));
 }
 
 TEST_F(EvolveByMpi, MistakesAreReportedOnce) {

@@ -187,10 +187,10 @@ TEST_F(Journal, CountsThatTheBytesDoNotBackAreRefused) {
 TEST_F(Journal, ANewerVersionIsRefused) {
   make_run("run", test_settings(1));
   std::string journal = read("run/genomes");
-  journal[16] = 3;
+  journal[16] = 4;
   write("run/genomes", journal);
   EXPECT_EQ(error_of([&] { history("run"); }),
-            path("run/genomes").string() + ": version 3 is newer than this program, which reads up to version 2");
+            path("run/genomes").string() + ": version 4 is newer than this program, which reads up to version 3");
   EXPECT_EQ(read("run/genomes"), journal);
 }
 

@@ -56,9 +56,50 @@ TEST_F(RunFolders, AllAlgorithmsResume) {
   }
 }
 
+TEST_F(RunFolders, IslandsResume) {
+  for (const bool pipelined : {false, true}) {
+    const std::string name = pipelined ? "pipelined" : "run";
+    RunSettings settings = island_settings(8);
+    settings.evolution.pipelined = pipelined;
+    make_run(name, settings);
+    create(name + "-parts", settings);
+    for (int i = 0; i <= 8; ++i) {
+      RunFolder run = open(name + "-parts");
+      evolve(run, 1);
+    }
+    expect_same_run(history(name), history(name + "-parts"));
+    EXPECT_EQ(std::ranges::count_if(history(name).individuals(), &Individual::is_migrant), 4 * 3);
+  }
+}
+
+TEST_F(RunFolders, TablesHaveTheIslands) {
+  RunFolder run = create("run", island_settings(4));
+  evolve(run);
+  run.write_all();
+  const std::string lineage = read("run/lineage.csv"), generations = read("run/generations.csv");
+  EXPECT_THAT(lineage, HasSubstr(",seed,fate,island,score,"));
+  EXPECT_THAT(generations.substr(0, generations.find('\n')),
+              EndsWith(",device,best_of_island_0,best_of_island_1,best_of_island_2"));
+  std::vector<double> best(3, worst_score);
+  for (const std::uint64_t id : run.history().living()) {
+    const Individual& individual = run.history().individuals()[id];
+    best[individual.island] = std::max(best[individual.island], individual.score());
+  }
+  EXPECT_EQ(run.history().generations().back().best_of_islands, best);
+  // A copy has not been mutated.
+  const auto all = run.history().individuals();
+  const auto migrant = std::ranges::find_if(all, &Individual::is_migrant);
+  EXPECT_THAT(run.history().grow(migrant->id).origin, testing::Not(HasSubstr("mutation_seed")));
+  make_run("one", test_settings(2));
+  RunFolder one = open("one");
+  one.write_all();
+  EXPECT_THAT(read("one/lineage.csv"), testing::Not(HasSubstr("island")));
+  EXPECT_THAT(read("one/generations.csv"), testing::Not(HasSubstr("island")));
+}
+
 // A process is killed while it writes, at moments that differ.
 TEST_F(RunFolders, AKilledRunEndsAsOneThatWasNotInterrupted) {
-  const RunSettings settings = test_settings(40);
+  const RunSettings settings = island_settings(40);
   make_run("whole", settings);
   create("killed", settings);
   const std::size_t whole = history("whole").generations().size();

@@ -121,6 +121,15 @@ inline RunSettings test_settings(int generations = 5) {
   return settings;
 }
 
+// Of 4, 4 and 4 robots; one migrates every other generation.
+inline RunSettings island_settings(int generations) {
+  RunSettings settings = test_settings(generations);
+  settings.evolution.algorithm.islands = 3;
+  settings.evolution.algorithm.migration_interval = 2;
+  settings.evolution.algorithm.migrants = 1;
+  return settings;
+}
+
 // Takes generations until it is over, or as many as given.
 inline void evolve(RunFolder& run, int most = 1'000'000) {
   Evolution evolution(run.history().settings().evolution, run.space());
@@ -158,6 +167,8 @@ inline void expect_same_run(const RunHistory& a, const RunHistory& b) {
     EXPECT_EQ(x.parents, y.parents);
     EXPECT_EQ(x.seed, y.seed);
     EXPECT_EQ(x.line_began, y.line_began);
+    EXPECT_EQ(x.island, y.island);
+    EXPECT_EQ(x.is_migrant, y.is_migrant);
     EXPECT_EQ(x.assessment, y.assessment);
     EXPECT_EQ(a.died(id), b.died(id));
     EXPECT_EQ(a.genome(id)->encode(), b.genome(id)->encode());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Run folders of every version are read for ever: version_1/ was written by Mercury 0.3.0.
+// Run folders of every version are read for ever: version_1/ was written by Mercury 0.3.0, version_2/ by the last
+// version before islands.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,6 +63,36 @@ TEST_F(RunFolderOfVersion1, GoesOn) {
   }
   EXPECT_EQ(history("run").generations().size(), 5u);
   expect_version_1(history("run"));
+}
+
+// Makes all generations once more from the settings alone, with the scores that the journal has: the lineage is what it
+// was, so that what evolution draws is what it drew then. That goes for both genes, body and muscles.
+TEST(RunFolderVersion2, HasTheLineageThatThisVersionMakes) {
+  const RunHistory run(MERCURY_RUN_VERSION_2);
+  ASSERT_EQ(run.individuals().size(), 20u);
+  Evolution evolution(run.settings().evolution, run.space());
+  std::size_t id = 0, mutants = 0;
+  while (!evolution.is_over()) {
+    std::vector<Individual> children = evolution.children();
+    for (Individual& child : children) {
+      ASSERT_LT(id, run.individuals().size());
+      const Individual& stored = run.individuals()[id];
+      EXPECT_EQ(child.parents, stored.parents);
+      EXPECT_EQ(child.seed, stored.seed);
+      EXPECT_EQ(child.line_began, stored.line_began);
+      EXPECT_EQ(stored.island, 0);
+      EXPECT_EQ(child.genome->encode(), run.genome(id)->encode());
+      mutants += !child.parents.empty();
+      child.assessment = stored.assessment;
+      ++id;
+    }
+    evolution.select(std::move(children));
+  }
+  EXPECT_EQ(id, run.individuals().size());
+  EXPECT_GT(mutants, 10u);
+  std::vector<std::uint64_t> living;
+  for (const Individual& individual : evolution.living()) living.push_back(individual.id);
+  EXPECT_TRUE(std::ranges::equal(living, run.living()));
 }
 
 }  // namespace
