@@ -5,17 +5,28 @@
 //
 //     bench_evolution [--seeds 10] [--evaluations 1280] [--kinds voxel,cppn,nn] [--environments ocean,land] ...
 //
+//     bench_evolution --throughput 1 --device cuda
+//
+// measures what a user waits for instead: robots per minute of a whole pipelined run with its folder, from the start of
+// a process to its end, with the start of CUDA, and the share of that time during which the device stepped.
+//
 // All algorithms start from the same random robots, those of the seed. Runs are spread over the cores, whole runs at a
 // time. nsga2 has two objectives, distance and distance per work; the table shows its best distance. map-elites has a
 // map of size and share of muscles; novelty is of where they end.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <variant>
@@ -23,6 +34,7 @@
 
 #include "mercury/error.h"
 #include "mercury/evolution.h"
+#include "mercury/run_folder.h"
 #include "mercury/stopwatch.h"
 
 namespace mercury {
@@ -42,7 +54,8 @@ struct Options {
   Genes genes = Genes::both;
   EvolutionSettings settings;  // their defaults, and what the options say
   std::string device = "cpu", csv;
-  int jobs = 0;  // runs at a time; 0 = one per core
+  double throughput = 0;  // instead of the table: the share of the usual number of generations
+  int jobs = 0;           // runs at a time; 0 = one per core
 };
 
 std::vector<std::string> words_of(const std::string& list) {
@@ -89,6 +102,7 @@ Options options_from(int argc, char** argv) {
       {"--elites", number(algorithm.elites)},
       {"--device", text(options.device)},
       {"--jobs", number(options.jobs)},
+      {"--throughput", number(options.throughput)},
       {"--csv", text(options.csv)}};
   for (int i = 1; i < argc; i += 2) {
     const auto setter = setters.find(argv[i]);
@@ -212,7 +226,71 @@ void write_csv(const std::vector<Task>& tasks, const std::string& path) {
   std::fclose(file);
 }
 
+// --- Throughput
+
+struct Search {
+  const char* title;
+  GenomeSpaceRequest space;
+  std::size_t population;
+  int generations;
+};
+
+const std::vector<Search>& searches() {
+  static const std::vector<Search> all{
+      {"voxel robots", {.kind = "voxel"}, 4096, 100},
+      {"network robots", {.kind = "nn", .values = {{"points", std::int64_t{64}}}}, 1024, 150}};
+  return all;
+}
+
+// What `mercury evolve RUN --pipelined --trials 1 --jitter 0 --no-confirm` does.
+void search(const Search& one, const Options& options, const std::filesystem::path& folder) {
+  const std::chrono::duration<double> before = std::chrono::steady_clock::now().time_since_epoch();
+  EvolutionSettings settings = options.settings;
+  settings.algorithm.population = one.population;
+  settings.generations = std::max(1, static_cast<int>(options.throughput * one.generations));
+  settings.configuration.device = device_named(options.device);
+  settings.trials.trials = 1;
+  settings.trials.jitter = 0;
+  settings.pipelined = true;
+  double busy = 0;
+  std::size_t robots = 0;
+  {
+    RunFolder run = RunFolder::create(folder, {.evolution = settings, .space = one.space});
+    const std::unique_ptr<Assessor> assessor = make_assessor(settings);
+    Evolution evolution(settings, run.space());
+    while (std::optional<Generation> generation = evolution.advance(*assessor)) {
+      robots += generation->born.size();
+      run.append_later(*std::move(generation), {.seconds = 0, .device = assessor->device_name()});
+    }
+    run.write_all();
+    busy = assessor->busy_seconds();
+  }
+  const std::chrono::duration<double> after = std::chrono::steady_clock::now().time_since_epoch();
+  const double seconds = (after - before).count();
+  std::printf("%zu %s in %.1f s: %.3g per minute, device busy %.0f %%\n", robots, one.title, seconds,
+              60 * static_cast<double>(robots) / seconds, 100 * busy / seconds);
+}
+
+// Each in a process of its own, so that each starts CUDA.
+void measure_throughput(const Options& options) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("bench_evolution-" + std::to_string(getpid()));
+  for (const Search& one : searches()) {
+    const pid_t child = fork();
+    if (child == 0) {
+      search(one, options, folder);
+      std::fflush(stdout);
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    std::filesystem::remove_all(folder);
+    if (status != 0) throw std::runtime_error(std::string(one.title) + " failed");
+  }
+}
+
 void bench(const Options& options) {
+  if (options.throughput > 0) return measure_throughput(options);
   std::vector<Task> tasks;
   for (std::uint64_t s = 0; s < options.seeds; ++s)
     for (const std::string& kind : options.kinds)

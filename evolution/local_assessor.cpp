@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -183,13 +184,21 @@ class LocalAssessor : public Assessor {
 
   std::string device_name() const override { return device_name_; }
 
+  double busy_seconds() const override {
+    if (!evaluator_) return 0;
+    const std::vector<EvaluationProgress::Device> devices = evaluator_->progress().devices;
+    return std::transform_reduce(devices.begin(), devices.end(), 0.0, std::plus(),
+                                 [](const auto& device) { return device.busy_seconds; }) /
+           static_cast<double>(devices.size());
+  }
+
  private:
   std::size_t trials() const { return static_cast<std::size_t>(settings_.trials); }
 
   RobotSource source() const {
     return [this](std::size_t i) {
       const std::shared_ptr<Batch> batch = batches_.of(i * trials());
-      return std::make_shared<const Robot>(batch->candidates[i - batch->first / trials()]->grow("candidate"));
+      return std::make_shared<const Robot>(batch->candidates[i - batch->first / trials()]->grow_for_trial("candidate"));
     };
   }
 

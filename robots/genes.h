@@ -5,6 +5,7 @@
 //   of(robot)               the genes of a robot, from its origin; throws InputError if it has none
 //   mutated, crossed        children; `genes` says what may change
 //   grown                   the robot
+//   grown_for_trial         the same, whose origin need not hold the genes; only kinds that gain by it
 //   write, read             the encoding without its head; read() throws InputError
 //   add_identity            what makes the robot what it is; without it, all that write() writes
 //   numbers, with_numbers   as of Genome (mercury/genome.h), for these genes; only kinds that are a list of numbers
@@ -41,6 +42,7 @@ class BodyGenes {
   // With genes of the same kind.
   virtual std::shared_ptr<const BodyGenes> crossed(const BodyGenes& other, Genes genes, std::uint64_t seed) const = 0;
   virtual Robot grown(const std::string& name, const std::string& environment) const = 0;
+  virtual Robot grown_for_trial(const std::string& name) const = 0;
   virtual void write(ByteWriter& writer) const = 0;
   virtual void add_identity(IdentityHash& hash) const = 0;
   virtual std::vector<double> numbers(Genes) const { return {}; }
@@ -65,6 +67,12 @@ class GenesOf : public BodyGenes {
   }
   Robot grown(const std::string& name, const std::string& environment) const override {
     return values_.grown(name, environment);
+  }
+  Robot grown_for_trial(const std::string& name) const override {
+    if constexpr (requires { values_.grown_for_trial(name); })
+      return values_.grown_for_trial(name);
+    else
+      return values_.grown(name, {});
   }
   void write(ByteWriter& writer) const override { values_.write(writer); }
   void add_identity(IdentityHash& hash) const override {

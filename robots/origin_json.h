@@ -37,4 +37,10 @@ inline const OriginJson& origin_member(const OriginJson& origin, const char* key
   return *found;
 }
 
+// Empty if it is missing or no text.
+inline std::string text_in(const OriginJson& origin, const char* key) {
+  const auto found = origin.find(key);
+  return found != origin.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
 }  // namespace mercury

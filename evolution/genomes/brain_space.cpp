@@ -46,14 +46,8 @@ class BrainGenome : public Genome {
   BrainGenome(GenomePointer body, std::size_t donor, BrainGenes brain, std::shared_ptr<const BrainContext> context)
       : body_(std::move(body)), donor_(donor), brain_(std::move(brain)), context_(std::move(context)) {}
 
-  Robot grow(const std::string& name) const override {
-    Robot robot = body_->grow(name);
-    robot.sensors.clear();
-    robot.brain.reset();
-    carry_control(donor().robot, robot);
-    if (robot.brain) set_weights(*robot.brain, brain_.weights);
-    return robot;
-  }
+  Robot grow(const std::string& name) const override { return with_brain(body_->grow(name)); }
+  Robot grow_for_trial(const std::string& name) const override { return with_brain(body_->grow_for_trial(name)); }
 
   // Where bodies change too: one of them or both, a third each. A brain needs time to get used to a new body.
   GenomePointer mutate(double strength, std::uint64_t seed) const override {
@@ -112,6 +106,14 @@ class BrainGenome : public Genome {
   }
 
  private:
+  Robot with_brain(Robot robot) const {
+    robot.sensors.clear();
+    robot.brain.reset();
+    carry_control(donor().robot, robot);
+    if (robot.brain) set_weights(*robot.brain, brain_.weights);
+    return robot;
+  }
+
   const Donor& donor() const { return context_->donors[donor_]; }
   GenomePointer make(GenomePointer body, BrainGenes brain) const {
     return std::make_shared<BrainGenome>(std::move(body), donor_, std::move(brain), context_);

@@ -33,10 +33,8 @@ class BodyGenome : public Genome {
   BodyGenome(GenesPointer genes, std::shared_ptr<const GenomeContext> context)
       : genes_(std::move(genes)), context_(std::move(context)) {}
 
-  Robot grow(const std::string& name) const override {
-    Robot robot = genes_->grown(name, context_->environment);
-    return context_->material ? with_real_body(robot, *context_->material) : robot;
-  }
+  Robot grow(const std::string& name) const override { return real(genes_->grown(name, context_->environment)); }
+  Robot grow_for_trial(const std::string& name) const override { return real(genes_->grown_for_trial(name)); }
   GenomePointer mutate(double strength, std::uint64_t seed) const override {
     if (strength == 0) return std::make_shared<BodyGenome>(genes_, context_);
     return std::make_shared<BodyGenome>(genes_->mutated(context_->genes, strength, seed), context_);
@@ -67,6 +65,10 @@ class BodyGenome : public Genome {
   }
 
  private:
+  Robot real(Robot robot) const {
+    return context_->material ? with_real_body(robot, *context_->material) : std::move(robot);
+  }
+
   GenesPointer genes_;
   std::shared_ptr<const GenomeContext> context_;
   mutable std::atomic<std::uint64_t> identity_{0};  // 0 = not computed yet

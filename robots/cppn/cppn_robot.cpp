@@ -10,7 +10,6 @@
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/names.h"
-#include "mercury/origin.h"
 #include "robots/cppn/cppn_graph.h"
 #include "robots/file/document.h"
 #include "robots/origin_json.h"
@@ -252,9 +251,9 @@ std::optional<CppnGenome> cppn_genome_of(const Robot& robot) {
   if (robot.origin.empty()) return std::nullopt;
   const OriginJson origin = OriginJson::parse(robot.origin, nullptr, false);
   if (!origin.is_object()) refuse_origin("", "a JSON object is expected");
-  if (kind_of(robot) != "cppn") return std::nullopt;
+  if (text_in(origin, "kind") != "cppn") return std::nullopt;
   CppnGenome genome = read_genome(origin);
-  genome.environment = environment_of(robot);
+  genome.environment = text_in(origin, "environment");
   try {
     validate(genome);
   } catch (const InputError& error) {

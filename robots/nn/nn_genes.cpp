@@ -46,6 +46,12 @@ struct NnGenes {
     return robot;
   }
 
+  Robot grown_for_trial(const std::string& name) const {
+    Robot robot = grow_without_genome(genome, name);
+    robot.materials = table_of(materials);
+    return robot;
+  }
+
   void write(ByteWriter& writer) const {
     writer.add(genome.cloud_seed);
     writer.add(static_cast<std::uint32_t>(genome.points));

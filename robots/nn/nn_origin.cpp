@@ -3,7 +3,6 @@
 
 #include "mercury/error.h"
 #include "mercury/nn_robot.h"
-#include "mercury/origin.h"
 #include "robots/file/document.h"
 #include "robots/origin_json.h"
 
@@ -112,7 +111,7 @@ std::optional<NnGenome> nn_genome_of(const Robot& robot) {
   if (robot.origin.empty()) return std::nullopt;
   const OriginJson origin = OriginJson::parse(robot.origin, nullptr, false);
   if (!origin.is_object()) refuse_origin("", "a JSON object is expected");
-  if (kind_of(robot) != "nn") return std::nullopt;
+  if (text_in(origin, "kind") != "nn") return std::nullopt;
   NnGenome genome;
   genome.network = read_network(origin);
   genome.cloud_seed = natural(origin, "cloud_seed");
@@ -127,7 +126,7 @@ std::optional<NnGenome> nn_genome_of(const Robot& robot) {
     if (!spacing->is_number()) refuse_origin("/spacing", "a share of the mean spacing is expected");
     genome.spacing = spacing->get<float>();
   }
-  genome.environment = environment_of(robot);
+  genome.environment = text_in(origin, "environment");
   try {
     validate(genome);
   } catch (const InputError& error) {

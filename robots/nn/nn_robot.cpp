@@ -167,7 +167,7 @@ void validate(const NnGenome& genome) {
   require(genome.spacing >= 0 && genome.spacing <= 1, "spacing", "give a share of the mean spacing, 0 to 1");
 }
 
-Robot grow(const NnGenome& genome, const std::string& name) {
+Robot grow_without_genome(const NnGenome& genome, const std::string& name) {
   validate(genome);
   const std::vector<CloudPoint> cloud = cloud_of(genome);
   require(cloud.size() >= 4, "cloud", "the network puts all its points on fewer than four places");
@@ -195,6 +195,12 @@ Robot grow(const NnGenome& genome, const std::string& name) {
         {mass_a, mass_b, combine(cloud[a].material, cloud[b].material), rest_distance(robot, mass_a, mass_b)});
   }
   for (const auto& [a, b, c] : skin) robot.faces.push_back({mass_of[a], mass_of[b], mass_of[c]});
+  robot.origin = R"({"kind":"nn"})";
+  return robot;
+}
+
+Robot grow(const NnGenome& genome, const std::string& name) {
+  Robot robot = grow_without_genome(genome, name);
   robot.origin = to_origin(genome);
   return robot;
 }

@@ -37,6 +37,8 @@ class Assessor {
   virtual void prepare(std::span<const GenomePointer> /*candidates*/, std::span<const double> /*interim_limits*/) {}
   // For people; empty before the first call of assess().
   virtual std::string device_name() const = 0;
+  // For how long its devices have stepped robots, mean over them [s]; 0 if that is not known.
+  virtual double busy_seconds() const { return 0; }
 };
 
 // On the devices of this process (configuration.device).

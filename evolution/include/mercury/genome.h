@@ -30,6 +30,8 @@ class Genome {
 
   // The robot. Its origin holds what generators know of it. Throws InputError if this genome has no robot.
   virtual Robot grow(const std::string& name) const = 0;
+  // The same body and control, to be tried and thrown away: its origin need not say more than the kind.
+  virtual Robot grow_for_trial(const std::string& name) const { return grow(name); }
   // A changed copy; `strength` 1 changes a little, as in a search.
   virtual GenomePointer mutate(double strength, std::uint64_t seed) const = 0;
   // A child of this genome and another one of its space.

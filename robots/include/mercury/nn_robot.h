@@ -37,6 +37,8 @@ struct NnGenome {
 // Faces are the skin of the body. Throws InputError if the genome is not valid, or if its places are not finite, all
 // the same, in one plane, or hold no body of the given alpha.
 Robot grow(const NnGenome& genome, const std::string& name = {});
+// The same robot, whose origin names its kind alone: writing a network as text takes longer than growing the body.
+Robot grow_without_genome(const NnGenome& genome, const std::string& name = {});
 
 // Throws InputError unless the network is valid and all its numbers are finite, there are 64 to 65,535 points, alpha is
 // finite and >= 0, and the spacing is 0 to 1.

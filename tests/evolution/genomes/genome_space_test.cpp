@@ -94,6 +94,17 @@ TEST_P(EveryGenome, GrowsRobotsThatTheirGeneratorKnows) {
   }
 }
 
+TEST_P(EveryGenome, IsTriedAsTheRobotThatItGrows) {
+  for (std::uint64_t index = 0; index < 5; ++index) {
+    const GenomePointer genome = space_->random(2, index)->mutate(1, index);
+    const Robot robot = genome->grow("robot");
+    Robot tried = genome->grow_for_trial("robot");
+    EXPECT_EQ(kind_of(tried), kind_of(robot));
+    tried.origin = robot.origin;
+    EXPECT_EQ(tried, robot);
+  }
+}
+
 TEST_P(EveryGenome, DependsOnItsSeedsAlone) {
   EXPECT_EQ(space_->random(5, 3)->encode(), make_genome_space(request_for(GetParam()))->random(5, 3)->encode());
   EXPECT_NE(space_->random(5, 3)->encode(), space_->random(5, 4)->encode());
