@@ -5,12 +5,18 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
+#include <stdexcept>
 
 #include "mercury/state.h"
 #include "sim/physics/brain_plan.h"
 #include "sim/physics/points.h"
 
 namespace mercury {
+
+void Backend::set_environments(std::span<const std::size_t> robots, std::span<const Environment>) {
+  if (!robots.empty()) throw std::logic_error("this backend has one environment for all robots");
+}
+
 namespace {
 
 // The states of several robots, to restore them after the backend has loaded other robots.

@@ -85,6 +85,7 @@ void Simulation::Parts::append(std::span<const std::shared_ptr<const Robot>> add
     offsets.push_back(offsets.back() + robot->masses.size());
   }
   changed_tables.resize(size());
+  environments.resize(size());
   explosions.resize(size());
   cells.resize(size());
   brains.append(added);
@@ -95,6 +96,7 @@ void Simulation::Parts::truncate(std::size_t size) {
   pointers.resize(size);
   offsets.resize(size + 1);
   changed_tables.resize(size);
+  environments.resize(size);
   explosions.resize(size);
   cells.resize(size);
   lifts.resize(std::min(lifts.size(), size));
@@ -117,6 +119,7 @@ void Simulation::Parts::put_at_rest(std::size_t first) {
 
 void Simulation::Parts::after_exchange(std::span<const std::size_t> kept) {
   shared_state.forget();
+  write_environments();
   shared_actuation.rearrange(*backend, robots, changed_tables, kept);
 }
 
@@ -183,7 +186,9 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   std::vector<const Robot*> pointers;
   std::vector<KnownExplosion> explosions;
   std::vector<std::optional<std::shared_ptr<const BodyCells>>> cells;
+  std::vector<std::optional<Environment>> environments;
   for (const std::size_t i : robots) {
+    environments.push_back(parts_->environments[i]);
     remaining.push_back(parts_->robots[i]);
     pointers.push_back(parts_->pointers[i]);
     explosions.push_back(parts_->explosions[i]);
@@ -198,6 +203,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
   }
   parts_->robots = std::move(remaining);
   parts_->pointers = std::move(pointers);
+  parts_->environments = std::move(environments);
   parts_->explosions = std::move(explosions);
   parts_->cells = std::move(cells);
   parts_->offsets = std::move(offsets);
@@ -467,6 +473,7 @@ void Simulation::configure(const Configuration& configuration) {
   const bool comes_to_ground = has_ground(configuration.environment) && !has_ground(parts_->configuration.environment);
   parts_->configuration = configuration;
   parts_->lifts.clear();
+  std::ranges::fill(parts_->environments, std::nullopt);
   parts_->backend->configure(configuration);
   if (!comes_to_ground) return;
   for (std::size_t i = 0; i < size(); ++i) {

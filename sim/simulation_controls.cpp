@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a program may change between steps of a Simulation: materials, brains and perturbations.
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "mercury/error.h"
 #include "mercury/simulation.h"
 #include "sim/simulation_parts.h"
 
@@ -54,6 +56,58 @@ void Simulation::set_materials(std::span<const Material> tables) {
   }
   parts_->backend->write_materials(tables);
   parts_->shared_actuation.materials_changed();
+}
+
+const Environment& Simulation::environment(std::size_t robot) const {
+  parts_->require(robot);
+  const std::optional<Environment>& own = parts_->environments[robot];
+  return own ? *own : parts_->configuration.environment;
+}
+
+namespace {
+
+// What may not differ between an environment of a robot and that of the batch.
+void require_shared_parts(const Environment& own, const Environment& shared, const Robot& robot) {
+  if (!same_parts(own, shared))
+    throw InputError("environment", "a robot's own environment needs the parts of " + std::string(name_of(shared)) +
+                                        ", not those of " + std::string(name_of(own)));
+  Environment rest = own;
+  rest.water = shared.water;
+  rest.ground = shared.ground;
+  rest.gravity = shared.gravity;
+  for_each_parameter_pair(rest, shared, [](const auto& parameter, const auto& part, const auto& shared_part) {
+    if (part.*parameter.member != shared_part.*parameter.member)
+      throw InputError(std::string(parameter.name), "is the same for all robots; gravity, water and ground may differ");
+  });
+  if (flow_of(own) != flow_of(shared) &&
+      std::ranges::any_of(robot.sensors, [](const Sensor& sensor) { return sensor.kind == SensorKind::flow; }))
+    throw InputError("flow", "robot " + robot.name + " senses the flow, which is then the same for all robots");
+}
+
+}  // namespace
+
+void Simulation::set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments) {
+  if (robots.size() != environments.size()) throw std::invalid_argument("an environment per robot is needed");
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    parts_->require(robots[i]);
+    Configuration own = parts_->configuration;
+    own.environment = environments[i];
+    validate(own);
+    require_shared_parts(environments[i], parts_->configuration.environment, robot(robots[i]));
+  }
+  for (std::size_t i = 0; i < robots.size(); ++i) parts_->environments[robots[i]] = environments[i];
+  parts_->backend->set_environments(robots, environments);
+}
+
+void Simulation::Parts::write_environments() {
+  std::vector<std::size_t> own;
+  std::vector<Environment> values;
+  for (std::size_t i = 0; i < size(); ++i)
+    if (environments[i]) {
+      own.push_back(i);
+      values.push_back(*environments[i]);
+    }
+  if (!own.empty()) backend->set_environments(own, values);
 }
 
 std::vector<Material> Simulation::materials() const {

@@ -33,6 +33,7 @@ struct Simulation::Parts {
   std::vector<const Robot*> pointers;                          // the same, for the backend
   std::vector<std::size_t> offsets{0};                         // mass_offsets()
   std::vector<std::unique_ptr<MaterialTable>> changed_tables;  // as they are now; null = the robot's own
+  std::vector<std::optional<Environment>> environments;        // one per robot; nothing = the configuration's
   mutable std::vector<KnownExplosion> explosions;              // one per robot
   mutable std::vector<RobotStatus> reported;                   // one per robot, used by telemetry()
   std::function<MeasuredFolding(const Robot&)> folding_of;     // none = of no robot
@@ -100,6 +101,8 @@ struct Simulation::Parts {
   std::string softening_note() const;
   std::string stability_note() const;
   void after_change() const { shared_state.publish(*backend, pointers); }
+  // Gives the backend the environments of robots that have their own.
+  void write_environments();
   // To be called when robots have come or gone. `kept` = the old indices of the first ones.
   void after_exchange(std::span<const std::size_t> kept);
 };

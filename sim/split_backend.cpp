@@ -167,6 +167,16 @@ class SplitBackend final : public Backend {
   void configure(const Configuration& configuration) override {
     for_each_part([&](std::size_t p) { parts_[p]->configure(configuration); });
   }
+  void set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments) override {
+    std::vector<std::vector<std::size_t>> robots_of(parts_.size());
+    std::vector<std::vector<Environment>> environments_of(parts_.size());
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const auto [part, index] = shares_.place(robots[i]);
+      robots_of[part].push_back(index);
+      environments_of[part].push_back(environments[i]);
+    }
+    for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p]->set_environments(robots_of[p], environments_of[p]);
+  }
   void step(const Clock& clock, std::int64_t steps) override {
     for_each_part([&](std::size_t p) { parts_[p]->step(clock, steps); });
   }

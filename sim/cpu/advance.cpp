@@ -136,7 +136,8 @@ std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& s
       return_to_checkpoint(group);
       break_up_counted(group);
     }
-    for (Body* body : batch.bodies) advance_alone(kernel, *body, setting, factors, range);
+    for (Body* body : batch.bodies)
+      advance_alone(kernel, *body, body->own ? body->own->setting : setting, factors, range);
   }
   return broken_up;
 }

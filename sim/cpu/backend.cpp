@@ -88,9 +88,23 @@ class CpuBackend final : public Backend {
 
   void configure(const Configuration& configuration) override {
     configuration_ = configuration;
+    for (const auto& body : bodies_) body->own.reset();
     choose_model();
     ungroup();
     for_each_body([&](std::size_t i) { update_spring_parameters(*bodies_[i], configuration_); });
+  }
+
+  // Bodies with an environment of their own step alone.
+  void set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments) override {
+    bool regroups = false;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      Body& body = *bodies_[robots[i]];
+      regroups = regroups || !body.own;
+      body.own = OwnEnvironment{.environment = environments[i], .setting = {}};
+      update_spring_parameters(body, configuration_);
+    }
+    if (regroups) ungroup();
+    choose_model();
   }
 
   void step(const Clock& clock, std::int64_t steps) override {
@@ -250,6 +264,8 @@ class CpuBackend final : public Backend {
     const bool real_bodies =
         std::ranges::any_of(bodies_, [](const auto& body) { return body->viscous || has_own_points(*body->robot); });
     setting_ = setting_of(configuration_, real_bodies);
+    for (const auto& body : bodies_)
+      if (body->own) body->own->setting = setting_of(configuration_of(*body, configuration_), real_bodies);
   }
 
   void materials_changed() {

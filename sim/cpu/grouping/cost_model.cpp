@@ -70,7 +70,7 @@ bool fits_in_cache(const Topology& topology, std::size_t lanes) {
 }
 
 bool fits_in_group(const Body& body) {
-  return body.status.exploded_step < 0 &&
+  return body.status.exploded_step < 0 && !body.own &&
          footprint(body.robot->springs.size(), body.robot->masses.size(), body.slots.lanes) <= max_group_bytes;
 }
 

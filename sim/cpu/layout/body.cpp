@@ -87,8 +87,14 @@ void clear(Sums& sums) {
   std::ranges::fill(sums.scattered, 0);
 }
 
-void update_spring_parameters(Body& body, const Configuration& configuration) {
+Configuration configuration_of(const Body& body, Configuration of_batch) {
+  if (body.own) of_batch.environment = body.own->environment;
+  return of_batch;
+}
+
+void update_spring_parameters(Body& body, const Configuration& of_batch) {
   const Robot& robot = *body.robot;
+  const Configuration configuration = configuration_of(body, of_batch);
   const Environment& environment = configuration.environment;
   const bool real = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(environment.water);
   body.points = real ? point_properties(robot, environment) : std::vector<PointProperties>();

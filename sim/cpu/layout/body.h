@@ -25,6 +25,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,7 @@
 #include "sim/cpu/layout/near_pairs.h"
 #include "sim/cpu/layout/slots.h"
 #include "sim/cpu/layout/spring_schedule.h"
+#include "sim/cpu/layout/step_setting.h"
 #include "sim/physics/measures.h"
 
 namespace mercury::cpu {
@@ -75,8 +77,15 @@ struct StateLocation {
   }
 };
 
+// Where a body lives that is not in the environment of the batch, and what its steps are given.
+struct OwnEnvironment {
+  Environment environment;
+  StepSetting setting;
+};
+
 struct Body {
   const Robot* robot = nullptr;
+  std::optional<OwnEnvironment> own;
   RobotMeasures measures;
   std::uint64_t topology_key = 0;  // mercury/robot.h
   std::vector<FacePair> face_pairs;
@@ -134,7 +143,10 @@ void prepare_contacts(Body& body);
 // next step. To be followed by update_spring_parameters().
 void set_materials(Body& body, std::span<const Material> table);
 
-// Computes what depends on materials and configuration.
+// The batch's configuration with the body's environment.
+Configuration configuration_of(const Body& body, Configuration of_batch);
+
+// Computes what depends on materials and configuration. `configuration` is that of the batch.
 void update_spring_parameters(Body& body, const Configuration& configuration);
 
 // Sets which factor each spring reads, by material, for a body that steps alone.

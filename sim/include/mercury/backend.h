@@ -109,8 +109,13 @@ class Backend {
   virtual void keep(std::span<const Robot* const> robots, std::span<const std::size_t> indices);
   // As they are now. Only the defaults of add() and keep() call this; a backend that uses neither need not override it.
   virtual BatchSettings settings() const;
-  // Applies to all later steps. The device does not change.
+  // Applies to all later steps, in which every robot lives in the configuration's environment. The device does not
+  // change.
   virtual void configure(const Configuration& configuration) = 0;
+  // From the next step on robots[i] lives in environments[i]. It has the parts, contacts, stiffness scale and all else
+  // but gravity, water and ground of the configuration's environment. It lasts until the next call for this robot,
+  // configure(), load(), add() or keep(). The default throws std::logic_error.
+  virtual void set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments);
   // Advances every robot that has not exploded by `steps` > 0 steps; the first begins at `clock`. A robot that explodes
   // is frozen in the step that failed, and the others go on. Returns when all are done.
   virtual void step(const Clock& clock, std::int64_t steps) = 0;

@@ -118,6 +118,13 @@ class Simulation {
   // are set down on the floor. Throws InputError for a bad value, std::invalid_argument if the device differs.
   void configure(const Configuration& configuration);
 
+  // From now on robots[i] lives in environments[i], of the same parts as the configuration's; gravity and the values of
+  // water and ground may differ. It lasts until the next call for the robot or configure(). Robots in environments of
+  // their own step somewhat slower, on a CPU one by one. Throws InputError for what else differs, and for another flow
+  // of a robot that senses the flow; std::out_of_range for a robot that does not exist.
+  void set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments);
+  const Environment& environment(std::size_t robot) const;
+
   State state(std::size_t robot) const;
   std::vector<Vec3> positions(std::size_t robot) const;  // one per mass [m]
 
@@ -178,9 +185,9 @@ class Simulation {
   void set_state(std::size_t robot, const State& state);
 
   // The state of all robots, and a return to it: what follows is bit for bit what followed before. Robots,
-  // configuration, materials, perturbations and actuation are not part of it. restore() throws std::invalid_argument,
-  // and changes nothing, if the state has another number of masses, an explosion of no robot, brains of another size,
-  // or a clock that set_clock() refuses.
+  // configuration, environments of robots, materials, perturbations and actuation are not part of it. restore() throws
+  // std::invalid_argument, and changes nothing, if the state has another number of masses, an explosion of no robot,
+  // brains of another size, or a clock that set_clock() refuses.
   BatchState save() const;
   void restore(const BatchState& state);
 
