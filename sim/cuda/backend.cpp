@@ -44,7 +44,7 @@ std::size_t CudaBackend::robots_at_once() const {
   for (const auto& robots : classes())
     if (robots->size() > 0)
       rounds += static_cast<double>(robots->size()) /
-                robots_in_flight(configuration_.solver, model_for(robots->launch()), robots->launch());
+                robots_in_flight(configuration_.solver, model_for(*robots), robots->launch());
   return rounds > 0 ? static_cast<std::size_t>(std::llround(static_cast<double>(places_.size()) / rounds)) : 0;
 }
 
@@ -93,7 +93,18 @@ void CudaBackend::configure(const Configuration& configuration) {
   rest_valid_ = false;
   configuration_ = configuration;
   constants_ = step_constants(configuration);
-  for (const auto& robots : classes()) robots->configure(configuration);
+  for (const auto& robots : classes()) {
+    robots->share_environment();
+    robots->configure(configuration);
+  }
+  choose_launches();
+}
+
+void CudaBackend::set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments) {
+  begin_change();
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    class_of(robots[i]).set_environment(places_[robots[i]].number, environments[i], configuration_);
+  for (const auto& each : classes()) each->publish_headers();
   choose_launches();
 }
 
@@ -214,7 +225,7 @@ void CudaBackend::choose_launches() {
   for (const auto& robots : classes()) {
     if (robots->size() == 0) continue;
     robots->choose_launch(configuration_, places_.size());
-    prepare_steps(configuration_.solver, model_for(robots->launch()), robots->launch());
+    prepare_steps(configuration_.solver, model_for(*robots), robots->launch());
   }
   // Reports of the classes follow one another.
   first_report_.assign(1, 0);

@@ -47,6 +47,7 @@ class CudaBackend final : public Backend {
   void add(std::span<const Robot* const> robots, std::size_t first_new) override;
   void keep(std::span<const Robot* const> robots, std::span<const std::size_t> indices) override;
   void configure(const Configuration& configuration) override;
+  void set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments) override;
   void write_materials(std::span<const Material> tables) override;
   void write_materials(std::size_t robot, std::span<const Material> table) override;
   void set_perturbations(std::span<const Perturbation> perturbations) override;
@@ -112,8 +113,8 @@ class CudaBackend final : public Backend {
 
   // Chooses how each class is launched.
   void choose_launches();
-  AnyEnvironmentModel model_for(const LaunchConfiguration& launch) const {
-    return step_model_of(configuration_, real_bodies_, launch);
+  StepModel model_for(const SizeClass& robots) const {
+    return step_model_of(configuration_, real_bodies_, robots.launch(), robots.own_models());
   }
   void number_masses(std::span<const Robot* const> robots);
   const RobotView* views() const;

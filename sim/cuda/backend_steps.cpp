@@ -152,7 +152,7 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
                             .stiffness_scale = stiffness_scale_of(configuration_.environment),
                             .launch = robots.launch(),
                             .thoughts = owned_->brains.thoughts(c, configuration_.environment, owned_->actuators)};
-    const AnyEnvironmentModel model = model_for(robots.launch());
+    const StepModel model = model_for(robots);
     std::int64_t done = 0;
     do {
       arguments.clock.step = clock.step + done;

@@ -23,7 +23,7 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   batch.record_words = record_words_for(robot);
   const bool viscous = has_viscous_springs(measure(robot), materials_of(robot));
   const LaunchConfiguration launch = choose_launch_configuration(configuration, batch, true, viscous, many_robots);
-  const AnyEnvironmentModel model = step_model_of(configuration, viscous || has_own_points(robot), launch);
+  const StepModel model = step_model_of(configuration, viscous || has_own_points(robot), launch);
   return {device_limits().shared_per_block, launch.on_chip, launch.on_chip && launch.contacts_on_chip,
           robots_in_flight(configuration.solver, model, launch)};
 }

@@ -52,6 +52,7 @@ std::uint32_t SizeClass::append(std::size_t count) {
   headers_.resize(first + count);
   robots_.resize(first + count);
   measures_.resize(first + count);
+  environments_.resize(first + count);
   point_properties_.resize(first + count);
   slot_tables_.resize(first + count);
   materials_.resize((first + count) * max_materials);
@@ -147,6 +148,7 @@ void SizeClass::truncate(std::uint32_t first_place) {
   headers_.resize(first_place);
   robots_.resize(first_place);
   measures_.resize(first_place);
+  environments_.resize(first_place);
   point_properties_.resize(first_place);
   points_stale_ = true;
   slot_tables_.resize(first_place);
@@ -162,6 +164,7 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
     headers_[move.y] = headers_[move.x];
     robots_[move.y] = robots_[move.x];
     measures_[move.y] = measures_[move.x];
+    environments_[move.y] = environments_[move.x];
     point_properties_[move.y] = std::move(point_properties_[move.x]);
     slot_tables_[move.y] = slot_tables_[move.x];
     std::ranges::copy(table(move.x), table(move.y).begin());
@@ -181,7 +184,33 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
 void SizeClass::configure(const Configuration& configuration) {
   parallel_for(0, size(), [&](std::size_t place) { describe(static_cast<std::uint32_t>(place), configuration); });
   points_stale_ = true;
-  device_headers_.write(0, headers_, urgent_->get());
+  publish_headers();
+}
+
+void SizeClass::publish_headers() { device_headers_.write(0, headers_, urgent_->get()); }
+
+void SizeClass::set_environment(std::uint32_t place, const Environment& environment,
+                                const Configuration& configuration) {
+  environments_[place] = environment;
+  describe(place, configuration);
+  points_stale_ = points_stale_ || !point_properties_[place].empty();
+}
+
+Configuration SizeClass::configuration_of(std::uint32_t place, Configuration configuration) const {
+  if (environments_[place]) configuration.environment = *environments_[place];
+  return configuration;
+}
+
+void SizeClass::publish_own_models(const Configuration& configuration) {
+  const bool needed = needs_own_models(launch_) || std::ranges::any_of(environments_, [](const auto& environment) {
+                        return environment.has_value();
+                      });
+  const std::size_t count = needed ? size() : 0;
+  if (own_models_.size() != count) own_models_ = DeviceArray<OwnModel>(count);
+  std::vector<OwnModel> models(count, OwnModel(configuration));
+  for (std::uint32_t place = 0; place < count; ++place)
+    if (environments_[place]) models[place] = OwnModel(configuration_of(place, configuration));
+  own_models_.write(0, models, urgent_->get());
 }
 
 void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size) {
@@ -198,6 +227,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
   reserve_workspace(workspace);
+  publish_own_models(configuration);
 }
 
 void SizeClass::address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {

@@ -18,6 +18,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -28,7 +29,7 @@
 #include "sim/cuda/chunks.h"
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
-#include "sim/physics/environments.h"
+#include "sim/cuda/step.h"
 #include "sim/physics/measures.h"
 
 namespace mercury::cuda {
@@ -63,6 +64,12 @@ class SizeClass {
 
   // Updates the scales of the fixed-point sums.
   void configure(const Configuration& configuration);
+  // Where one robot lives, in place of the configuration's environment; publish_headers() and choose_launch() follow.
+  void set_environment(std::uint32_t place, const Environment& environment, const Configuration& configuration);
+  void share_environment() { environments_.assign(size(), std::nullopt); }
+  void publish_headers();
+  // One per place; null if the kernel of this class needs none.
+  const OwnModel* own_models() const { return own_models_.data(); }
   // Chooses how to launch it beside the other classes; `batch_size` = robots of all classes.
   void choose_launch(const Configuration& configuration, std::size_t batch_size);
   const LaunchConfiguration& launch() const { return launch_; }
@@ -109,8 +116,10 @@ class SizeClass {
   Event& done() const { return *done_; }
 
  private:
-  // Computes what depends on the configuration and the materials of a robot.
-  void describe(std::uint32_t place, const Configuration& configuration);
+  // Computes what depends on the batch's configuration, the environment and the materials of a robot.
+  void describe(std::uint32_t place, const Configuration& of_batch);
+  Configuration configuration_of(std::uint32_t place, Configuration configuration) const;
+  void publish_own_models(const Configuration& configuration);
   // Uploads the properties of all masses if one of them is not a free mass of 1 kg, and XPBD's valences with them.
   void publish_points();
   // To be called when tables from a place on have changed.
@@ -132,6 +141,7 @@ class SizeClass {
   std::vector<RobotHeader> headers_;
   std::vector<const Robot*> robots_;
   std::vector<RobotMeasures> measures_;
+  std::vector<std::optional<Environment>> environments_;        // nothing = the configuration's
   std::vector<std::vector<PointProperties>> point_properties_;  // by mass; empty = free masses of 1 kg
   std::vector<std::shared_ptr<const SlotOrder>> slot_tables_;
   std::vector<std::uint64_t> first_mass_;  // as in set_first_masses()
@@ -154,6 +164,7 @@ class SizeClass {
   ChunkedArray<Material> device_materials_;
   ChunkedArray<MusclePhase> phases_;
   ChunkedArray<MuscleSwing> swings_;
+  DeviceArray<OwnModel> own_models_;        // [place], or empty
   DeviceArray<PointProperties> points_;     // [place][slot], or empty
   DeviceArray<float> point_masses_;         // [place][slot] [kg], or empty
   DeviceArray<Material> driven_materials_;  // [place][max_materials] while actuators drive them, else empty

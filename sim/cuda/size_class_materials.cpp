@@ -12,7 +12,8 @@
 
 namespace mercury::cuda {
 
-void SizeClass::describe(std::uint32_t place, const Configuration& configuration) {
+void SizeClass::describe(std::uint32_t place, const Configuration& of_batch) {
+  const Configuration configuration = configuration_of(place, of_batch);
   const Robot& robot = *robots_[place];
   const RobotMeasures& measures = measures_[place];
   const Environment& environment = configuration.environment;

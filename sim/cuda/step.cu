@@ -11,10 +11,23 @@
 namespace mercury::cuda {
 namespace {
 
+// The model of one robot, from what a kernel is given.
+template <class Given>
+struct ModelOfRobot {
+  using Model = Given;
+  __device__ static const Model& of(const Given& given, std::uint32_t) { return given; }
+};
+template <>
+struct ModelOfRobot<OwnModels> {
+  using Model = OwnModel;
+  __device__ static const Model& of(const OwnModels& given, std::uint32_t robot) { return given.models[robot]; }
+};
+
 // A thread's part in its block.
-template <Solver solver, class EnvironmentModel, class Memory_, int record_words>
+template <Solver solver, class Given, class Memory_, int record_words>
 struct BlockPart {
   using Memory = Memory_;
+  using EnvironmentModel = typename ModelOfRobot<Given>::Model;
   using Stepper = RobotStepper<solver, EnvironmentModel, Memory, record_words>;
   using Robot = typename Stepper::Robot;
 
@@ -22,9 +35,9 @@ struct BlockPart {
   MaterialTable<solver> materials;
   Stepper stepper;
 
-  __device__ BlockPart(const StepArguments& arguments, const EnvironmentModel& model)
+  __device__ BlockPart(const StepArguments& arguments, const Given& model)
       : context(arguments, Robot::fields, thread_index()), materials(table_of(arguments, context)),
-        stepper(arguments, model, context) {}
+        stepper(arguments, ModelOfRobot<Given>::of(model, context.thread.robot), context) {}
 
   // Threads without a robot, or with one that exploded earlier, skip the work but take part in all barriers.
   __device__ bool active() const { return context.has_robot && stepper.alive(); }
@@ -50,9 +63,8 @@ struct BlockPart {
 
 // Lets those robots of the block think that do so before this step. Returns the step before which one of them thinks
 // next, or the end of the launch.
-template <class Part, class EnvironmentModel>
-__device__ std::uint32_t think_if_due(const StepArguments& arguments, const EnvironmentModel& model,
-                                      std::uint32_t step) {
+template <class Part, class Given>
+__device__ std::uint32_t think_if_due(const StepArguments& arguments, const Given& model, std::uint32_t step) {
   Part part(arguments, model);
   const auto& thread = part.context.thread;
   std::uint32_t& own = part.context.next_thought[part.context.number];
@@ -69,10 +81,11 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Envi
 }
 
 // Registers are limited so that a multiprocessor holds 28 warps (launch_configuration.cpp).
-template <Solver solver, class EnvironmentModel, class Memory, int record_words>
+template <Solver solver, class Given, class Memory, int record_words>
 __global__ void __maxnreg__(72)
-    step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ EnvironmentModel model) {
-  using Part = BlockPart<solver, EnvironmentModel, Memory, record_words>;
+    step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ Given model) {
+  using Part = BlockPart<solver, Given, Memory, record_words>;
+  using EnvironmentModel = typename Part::EnvironmentModel;
   const LaunchConfiguration& launch = arguments.launch;
   {
     Part part(arguments, model);
@@ -142,7 +155,7 @@ __global__ void __maxnreg__(72)
 // step_model_of() gives all others what is on the chip whole.
 template <Solver solver, class EnvironmentModel, int record_words>
 auto kernel_for(const LaunchConfiguration& launch) {
-  if constexpr (std::is_same_v<EnvironmentModel, GeneralModel>) {
+  if constexpr (std::is_same_v<EnvironmentModel, OwnModels>) {
     if (!launch.on_chip) return step_kernel<solver, EnvironmentModel, OffChip, record_words>;
     if constexpr (solver == Solver::xpbd)
       if (!launch.valence_on_chip) return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
@@ -177,7 +190,7 @@ void start(const EnvironmentModel& model, const StepArguments& arguments, cudaSt
 }
 
 template <class Use>
-auto with_kernel(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch, const Use& use) {
+auto with_kernel(Solver solver, const StepModel& model, const LaunchConfiguration& launch, const Use& use) {
   return std::visit(
       [&](const auto& kind) {
         using EnvironmentModel = std::decay_t<decltype(kind)>;
@@ -189,7 +202,7 @@ auto with_kernel(Solver solver, const AnyEnvironmentModel& model, const LaunchCo
 
 }  // namespace
 
-std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch) {
+std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const LaunchConfiguration& launch) {
   return with_kernel(solver, model, launch, [&](auto kernel) {
     prepare(kernel);
     int blocks = 0;
@@ -200,12 +213,11 @@ std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, 
   });
 }
 
-void prepare_steps(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch) {
+void prepare_steps(Solver solver, const StepModel& model, const LaunchConfiguration& launch) {
   with_kernel(solver, model, launch, [](auto kernel) { prepare(kernel); });
 }
 
-void launch_steps(Solver solver, const AnyEnvironmentModel& model, const StepArguments& arguments,
-                  cudaStream_t stream) {
+void launch_steps(Solver solver, const StepModel& model, const StepArguments& arguments, cudaStream_t stream) {
   std::visit(
       [&](const auto& kind) {
         using EnvironmentModel = std::decay_t<decltype(kind)>;

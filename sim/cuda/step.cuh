@@ -152,9 +152,9 @@ class RobotStepper {
         mass.set_sum(0);
       }
       if constexpr (EnvironmentModel::real_bodies)
-        end_step(x, v, point.inverse_inertia, model_, constants());
+        end_step(x, v, point.inverse_inertia, model_, end_constants());
       else
-        end_step(x, v, model_, constants());
+        end_step(x, v, model_, end_constants());
       if constexpr (EnvironmentModel::has_contacts) farthest.add(mass, x);
       store(step, phase_end, tile, x, v);
     }
@@ -188,6 +188,11 @@ class RobotStepper {
 
   __device__ const BatchView& batch() const { return robot_.arguments().batch; }
   __device__ const StepConstants& constants() const { return robot_.arguments().constants; }
+  __device__ StepConstants end_constants() const {
+    StepConstants own = constants();
+    if constexpr (requires { model_.drift; }) own.drift = model_.drift;
+    return own;
+  }
 
   __device__ void add_perturbations() {
     for (std::uint32_t p = 0; p < batch().perturbation_count; ++p) {

@@ -4,6 +4,8 @@
 
 #include <cuda_runtime_api.h>
 
+#include <variant>
+
 #include "sim/cuda/brain_tables.h"
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
@@ -24,22 +26,41 @@ struct StepArguments {
   Thoughts thoughts;
 };
 
-// The model whose kernel a launch uses. Robots in device memory wait for it most of the time, and few are too large by
-// their valences alone, so both have one kernel for all environments.
-inline AnyEnvironmentModel step_model_of(const Configuration& configuration, bool real_bodies,
-                                         const LaunchConfiguration& launch) {
-  const Environment& environment = configuration.environment;
-  if (launch.on_chip && launch.valence_on_chip) return solver_model_of(environment, real_bodies);
-  return GeneralModel(environment);
+// The environment of one robot, with the drift of step_constants().
+struct OwnModel : GeneralModel {
+  Vec3 drift;
+
+  explicit OwnModel(const Configuration& configuration)
+      : GeneralModel(configuration.environment), drift(step_constants(configuration).drift) {}
+};
+// Each robot has its own.
+struct OwnModels {
+  const OwnModel* models = nullptr;  // [robot], in device memory
+};
+// Robots in device memory wait for it most of the time, and few are too large by their valences alone, so both have
+// one kernel for all environments, which is this one.
+constexpr bool needs_own_models(const LaunchConfiguration& launch) {
+  return !launch.on_chip || !launch.valence_on_chip;
+}
+using StepModel = std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel, ResistiveModel,
+                               GeneralModel, OwnModels>;
+
+// The model whose kernel a launch uses. `own` = one per robot, or null where all live in the configuration's
+// environment.
+inline StepModel step_model_of(const Configuration& configuration, bool real_bodies, const LaunchConfiguration& launch,
+                               const OwnModel* own = nullptr) {
+  if (needs_own_models(launch) || own) return OwnModels{own};
+  return std::visit([](const auto& model) -> StepModel { return model; },
+                    solver_model_of(configuration.environment, real_bodies));
 }
 
 // Robots that the current device steps at the same time.
-std::uint32_t robots_in_flight(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch);
+std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const LaunchConfiguration& launch);
 
 // Makes the kernel for this launch ready, once per device.
-void prepare_steps(Solver solver, const AnyEnvironmentModel& model, const LaunchConfiguration& launch);
+void prepare_steps(Solver solver, const StepModel& model, const LaunchConfiguration& launch);
 
 // Asynchronous. prepare_steps() comes first.
-void launch_steps(Solver solver, const AnyEnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream);
+void launch_steps(Solver solver, const StepModel& model, const StepArguments& arguments, cudaStream_t stream);
 
 }  // namespace mercury::cuda
