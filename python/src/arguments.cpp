@@ -3,7 +3,9 @@
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -54,6 +56,49 @@ std::vector<std::int64_t> indices_from(nb::handle indices) {
   if (nb::cast<int>(array.attr("ndim")) != 1 || (kind != "i" && kind != "u" && !is_empty))
     throw nb::type_error((std::string("indices: ") + accepted).c_str());
   return copied<std::int64_t>(array, "int64");
+}
+
+namespace {
+
+struct Shaped {
+  std::vector<float> numbers;
+  std::vector<std::size_t> shape;
+};
+
+// Of one of the accepted shapes.
+Shaped numbers_of_shape(nb::handle values, const std::string& name,
+                        const std::vector<std::vector<std::size_t>>& shapes) {
+  std::string accepted = "give numbers of shape ";
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    accepted += (i == 0                  ? ""
+                 : i + 1 < shapes.size() ? ", "
+                                         : " or ") +
+                text_of(nb::steal(PySequence_Tuple(nb::cast(shapes[i]).ptr())));
+  const nb::object array = as_array(values, name.c_str(), accepted.c_str());
+  const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
+  if (kind != "f" && kind != "i" && kind != "u") throw nb::type_error((name + ": " + accepted).c_str());
+  const auto shape = nb::cast<std::vector<std::size_t>>(array.attr("shape"));
+  if (std::ranges::find(shapes, shape) == shapes.end())
+    throw InputError(name, "the shape " + shape_of(array) + " is not accepted; " + accepted);
+  return {copied<float>(array, "float32"), shape};
+}
+
+}  // namespace
+
+std::vector<float> numbers_from(nb::handle values, std::size_t rows, const std::string& name) {
+  return numbers_of_shape(values, name, {{}, {rows}}).numbers;
+}
+
+std::vector<Vec3> vectors_from(nb::handle values, std::size_t rows, const std::string& name, bool magnitudes) {
+  std::vector<std::vector<std::size_t>> shapes{{3}, {rows, 3}};
+  if (magnitudes) shapes.insert(shapes.end(), {{}, {rows, 1}});
+  const auto [numbers, shape] = numbers_of_shape(values, name, shapes);
+  std::vector<Vec3> vectors;
+  if (shape.empty() || shape.back() == 1)
+    for (const float magnitude : numbers) vectors.push_back({0, 0, -magnitude});
+  else
+    for (std::size_t i = 0; i < numbers.size(); i += 3) vectors.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+  return vectors;
 }
 
 std::vector<Vec3> vectors_from(nb::handle values, std::size_t rows, const char* name) {

@@ -23,6 +23,12 @@ std::vector<std::int64_t> indices_from(nb::handle indices);
 // `rows` vectors: anything that NumPy makes a (rows, 3) array of. `name` = of the argument, for messages.
 std::vector<Vec3> vectors_from(nb::handle values, std::size_t rows, const char* name);
 
+// One number, or one per row: anything that NumPy makes a () or (rows) array of. Returns 1 or `rows` numbers.
+std::vector<float> numbers_from(nb::handle values, std::size_t rows, const std::string& name);
+// One vector (3), or one per row (rows, 3). With `magnitudes`, a number m or a column (rows, 1) of them stands for
+// (0, 0, -m). Returns 1 or `rows` vectors.
+std::vector<Vec3> vectors_from(nb::handle values, std::size_t rows, const std::string& name, bool magnitudes);
+
 // The reverse: a NumPy array with memory of its own.
 nb::object vector_array(std::span<const Vec3> vectors);
 

@@ -62,6 +62,23 @@ as step() is, and the memory is read in the order of that stream.
 
 Raises InputError unless the mask has one element per robot.)";
 
+constexpr const char* set_environments_description =
+    R"(Lets robots live in water and on ground of their own, from the next step on.
+
+    batch.set_environments(friction=rng.uniform(0.4, 1.2, len(batch)))            # one number per robot
+    batch.set_environments([3, 7], gravity=(0, 0, -3.7), friction=[0.2, 0.3])     # of robots 3 and 7
+
+robots: their indices; None = all.
+parameters: gravity and those of the environment's water and ground, one value for all of these robots or one per
+robot. A number has shape () or (n,), a vector (3,) or (n, 3); gravity also takes magnitudes, () or (n, 1). What is not
+named stays.
+
+It lasts until configure(). Robots with environments of their own step somewhat slower, on a CPU one by one. The call
+waits for the device. save() does not keep environments.
+
+Raises TypeError for a parameter that the environment does not have, InputError for a value or shape that is not
+accepted, and for parameters that all robots share; IndexError for a robot that is not there.)";
+
 constexpr const char* telemetry_description =
     R"(A structured NumPy array, one element per robot, computed on the device. Fields:
 
@@ -117,6 +134,26 @@ void configure(Batch& self, nb::handle environment, const std::optional<std::str
     if (damping) configuration.damping = *damping;
     simulation.configure(configuration);
   });
+}
+
+void set_environments(Batch& self, nb::handle robots, const nb::kwargs& values) {
+  std::vector<std::size_t> which;
+  const std::size_t size = self.use([](const Simulation& simulation) { return simulation.size(); });
+  if (robots.is_none())
+    for (std::size_t i = 0; i < size; ++i) which.push_back(i);
+  else
+    for (const std::int64_t i : indices_from(robots)) which.push_back(checked_index(i, size));
+  std::vector<Environment> environments;
+  self.use([&](const Simulation& simulation) {
+    for (const std::size_t i : which) environments.push_back(simulation.environment(i));
+  });
+  set_parameters(environments, values);
+  self.change([&](Simulation& simulation) { simulation.set_environments(which, environments); });
+}
+
+nb::object environment_of_robot(const Batch& self, std::int64_t robot) {
+  return object_of(self.use(
+      [&](const Simulation& simulation) { return simulation.environment(checked_index(robot, simulation.size())); }));
 }
 
 void set_state(Batch& self, std::int64_t robot, nb::handle positions, nb::handle velocities) {
@@ -388,6 +425,12 @@ void bind_batch(nb::module_& module) {
                    "dt: float | None = None, damping: float | None = None) -> None"),
            "Changes what is given, from now on. States and time stay, except that robots that come to land are set\n"
            "down on the floor. Raises InputError for a value that is not accepted.")
+      .def("set_environments", &set_environments, nb::arg("robots") = nb::none(), nb::arg("parameters"),
+           nb::sig("def set_environments(self, robots: numpy.typing.ArrayLike | None = None, "
+                   "**parameters: numpy.typing.ArrayLike) -> None"),
+           set_environments_description)
+      .def("environment_of", &environment_of_robot, nb::arg("robot"),
+           nb::sig("def environment_of(self, robot: int) -> Environment"), "Where a robot lives: a copy.")
       .def("synchronize", &Batch::synchronize, "Waits until the device has done all steps.");
   bind_properties(batch);
   bind_arrays(batch);

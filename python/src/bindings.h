@@ -31,6 +31,10 @@ Environment environment_of(nb::handle environment);
 // The reverse: of the class of the preset, or an Environment.
 nb::object object_of(const Environment& environment);
 
+// Sets parameters of environments of the same parts: one value for all, or one per environment. Throws TypeError,
+// InputError.
+void set_parameters(std::vector<Environment>& environments, const nb::kwargs& values);
+
 // What Batch and evaluate() are given. `device` = a name, or anything whose str() is one. Throws TypeError, InputError.
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
                                nb::handle device, int threads);

@@ -10,6 +10,7 @@
 #include "mercury/configuration.h"
 #include "mercury/environment.h"
 #include "mercury/error.h"
+#include "python/src/arguments.h"
 #include "python/src/bindings.h"
 #include "python/src/values.h"
 
@@ -272,6 +273,37 @@ Environment environment_of(nb::handle environment) {
   if (nb::isinstance<nb::str>(environment)) return environment_named(text_from("environment", environment));
   if (nb::isinstance<Combination>(environment)) return nb::cast<const Combination&>(environment).environment;
   refuse_type("environment", "an Environment such as Ocean or Land, or the name of one", environment);
+}
+
+void set_parameters(std::vector<Environment>& environments, const nb::kwargs& values) {
+  if (environments.empty()) return;
+  const std::size_t count = environments.size();
+  const std::string kind = class_of(environments.front());
+  for (const auto [key, value] : values) {
+    const std::string name = text_from(kind, key);
+    bool known = false;
+    // The values are read once, with the first environment.
+    std::vector<float> numbers;
+    std::vector<Vec3> vectors;
+    const auto of = [](const auto& all, std::size_t i) { return all.size() == 1 ? all.front() : all[i]; };
+    for (std::size_t i = 0; i < count; ++i)
+      for_each_parameter(environments[i], [&]<class Value>(const auto& parameter, Value& member) {
+        if (name != parameter.name) return;
+        known = true;
+        if constexpr (std::is_same_v<Value, Vec3>) {
+          if (i == 0) vectors = vectors_from(value, count, name, parameter.takes_downward_magnitude);
+          member = of(vectors, i);
+        } else if constexpr (std::is_same_v<Value, float>) {
+          if (i == 0) numbers = numbers_from(value, count, name);
+          member = of(numbers, i);
+        } else {
+          throw InputError(name, "is the same for all robots; use configure()");
+        }
+      });
+    if (!known)
+      throw nb::type_error(
+          (kind + " has no parameter " + name + suggestion(name, parameter_names(environments.front()))).c_str());
+  }
 }
 
 nb::object object_of(const Environment& environment) {

@@ -140,3 +140,46 @@ def test_an_environment_has_any_parts(mercury):
     report = json.loads(mercury("run", "--random", "voxel:2", "--seed", 8, "--seconds", "0.25", "--environment", pool.name,
                                 "--gravity", 2, "--friction", 0.5, "--device", "cpu", "--json", "--quiet"))
     assert [int(robot["hash"], 16) for robot in report["robots"]] == [batch.hash(i) for i in range(2)]
+
+
+def test_robots_fall_by_gravities_of_their_own(robots, device):
+    batch = mercurysim.Batch(robots, environment=mercurysim.OceanSimple(point_drag=0), damping=0, device=device)
+    start = batch.telemetry()["center_of_mass"]
+    batch.set_environments(gravity=[[1], [2], [3], [4]])
+    batch.step(200)
+    fallen = batch.telemetry()["center_of_mass"] - start
+    t, dt = 0.2, 1e-3
+    np.testing.assert_allclose(fallen[:, 2], -np.arange(1, 5) * t * (t + dt) / 2, rtol=2e-4)
+    assert [batch.environment_of(i).gravity for i in range(4)] == [(0, 0, -g) for g in (1, 2, 3, 4)]
+
+
+def test_an_environment_of_its_own_lasts_until_configure(robots, device):
+    batch = mercurysim.Batch(robots, environment=mercurysim.Land(), device=device)
+    batch.set_environments([1, 3], friction=[0.1, 0.2])
+    batch.set_environments([3], gravity=(0, 0, -3))
+    assert batch.environment_of(3) == mercurysim.Land(friction=0.2, gravity=3)
+    batch.keep([3, 0])
+    assert [batch.environment_of(i).friction for i in (0, 1)] == pytest.approx([0.2, 0.8])
+    batch.configure(environment=mercurysim.Land(friction=0.5))
+    assert [batch.environment_of(i) for i in (0, 1)] == [mercurysim.Land(friction=0.5)] * 2
+
+
+@pytest.mark.parametrize(
+    "values, error, message",
+    [
+        ({"density": 3}, TypeError, "Land has no parameter density"),
+        ({"friction": [1, 2]}, mercurysim.InputError, r"friction: the shape \(2,\)"),
+        ({"friction": -1}, mercurysim.InputError, "friction: -1"),
+        ({"friction": "slippery"}, TypeError, "friction: give numbers"),
+        ({"self_collision": False}, mercurysim.InputError, "self_collision: is the same for all"),
+        ({"stiffness_scale": 3}, mercurysim.InputError, "stiffness_scale: is the same for all"),
+        ({"gravity": [1, 2]}, mercurysim.InputError, r"gravity: the shape \(2,\)"),
+    ],
+)
+def test_what_robots_cannot_have_of_their_own_is_refused(robots, values, error, message):
+    batch = mercurysim.Batch(robots, environment=mercurysim.Land(), device="cpu")
+    with pytest.raises(error, match=message):
+        batch.set_environments(**values)
+    assert batch.environment_of(0) == mercurysim.Land()
+    with pytest.raises(IndexError):
+        batch.set_environments([4], friction=1)

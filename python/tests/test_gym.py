@@ -492,3 +492,58 @@ def test_record_video_of_gymnasium_films_all_environments(tmp_path):
     env.close()
     (film,) = tmp_path.glob("*.mp4")
     assert film.stat().st_size > 1000
+
+
+@pytest.mark.parametrize("torch", [False, True])
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
+def test_each_episode_has_an_environment_of_its_own(torch, mode):
+    if torch:
+        torch_or_skip()
+
+    def upwards(random, n):
+        return np.stack([np.zeros(n), np.zeros(n), random.uniform(-9, -8, n)], 1)
+
+    env = WalkEnv(quadruped(), 3, episode_seconds=0.08, torch=torch, autoreset_mode=mode, device="cpu",
+                  randomize={"friction": (0.2, 1.2), "gravity": upwards})
+    assert env.episode_steps == 4
+
+    def now():
+        return [env.batch.environment_of(i) for i in range(3)]
+
+    def told(infos):
+        friction, gravity = on_host(infos["friction"]), on_host(infos["gravity"])
+        return [mercurysim.Land(friction=float(f), gravity=tuple(map(float, g))) for f, g in zip(friction, gravity)]
+
+    seen = []
+    for seed in (7, 7, 8):
+        infos = env.reset(seed=seed)[1]
+        assert now() == told(infos)
+        for _ in range(40):
+            before = now()
+            _, _, terminated, truncated, infos = env.step(np.zeros(env.action_space.shape, np.float32))
+            over = on_host(terminated | truncated)
+            if mode is AutoresetMode.SAME_STEP and over.any():
+                assert told(infos["final_info"]) == before
+            assert now() == told(infos)
+            seen.append(now())
+    assert seen[:40] == seen[40:80] and seen[:40] != seen[80:]
+    frictions = {environment.friction for step in seen for environment in step}
+    assert len(frictions) > 30 and 0.2 <= min(frictions) < 0.4 and 1.0 < max(frictions) <= 1.2
+    assert all(-9 <= environment.gravity[2] <= -8 for step in seen for environment in step)
+
+
+def test_a_robot_that_begins_alone_gets_an_environment_alone():
+    env = WalkEnv(quadruped(), 3, autoreset_mode=AutoresetMode.DISABLED, randomize={"friction": (0.2, 1.2)})
+    before = [env.reset(seed=1)[1]["friction"][i] for i in range(3)]
+    after = env.reset(options={"reset_mask": [False, True, False]})[1]["friction"]
+    assert [after[i] == before[i] for i in range(3)] == [True, False, True]
+
+
+@pytest.mark.parametrize(
+    "ranges, message",
+    [({"friction": (1, 0)}, "friction: give a range"), ({"density": (0, 1)}, "no parameter density"),
+     ({"friction": lambda random, n: [1, 2]}, "friction: shape")],
+)
+def test_ranges_that_cannot_be_used_are_refused(ranges, message):
+    with pytest.raises((InputError, TypeError), match=message):
+        WalkEnv(quadruped(), 2, randomize=ranges)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ import mercurysim
 from .. import Batch, InputError, Robot
 from ._arrays import Arrays
 from ._bodies import Bodies, Motion
+from ._randomized import Randomized, Range
 from ._single import SingleEnv
 from ._targets import Targets
 
@@ -64,13 +65,21 @@ class RobotEnv(gymnasium.vector.VectorEnv):
     autoreset_mode   an AutoresetMode of gymnasium.vector, or its value
     torch            True: observations, rewards and flags are tensors on the device, and actions may be. No call waits
                      for the device, but for the first step(), which records CUDA graphs.
-    seed             of the targets, as if given to the first reset()
+    randomize        what differs between episodes, see below
+    seed             of the targets and of `randomize`, as if given to the first reset()
     render_mode      None or "rgb_array": render() returns a frame per robot
     render_size      of a frame, (width, height) [pixels]
     batch            further arguments of Batch, such as environment, solver, damping, threads
 
     The body length of a robot is its longest side at rest. Its body frame is forward, left and up (x, y, z of the robot
     as it was made), fitted to its markers, which are spread over the body in the same way for every robot.
+
+    `randomize` names parameters of the environment that each episode has for its robot alone: gravity, and those of
+    water and ground. A value is a range (least, most), from which numbers are drawn evenly, or a function of a
+    numpy.random.Generator and n that returns n numbers, or (n, 3) for a vector. Infos hold what was drawn. On a GPU
+    every step then waits for the device.
+
+        WalkEnv(robot, 64, randomize={"friction": (0.4, 1.2), "gravity": lambda random, n: [[0, 0, -9.81]] * n})
 
     An action a has one number in [-1, 1] per actuator; those that a robot does not have are ignored. The drive signal u
     follows it as u += (a - u) (1 - exp(-frame_skip dt / smoothing)), because a muscle whose length jumps throws masses
@@ -113,6 +122,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         max_actuators: int | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         torch: bool = False,
+        randomize: Mapping[str, Range] | None = None,
         seed: int | None = None,
         render_mode: str | None = None,
         render_size: tuple[int, int] = (320, 240),
@@ -149,6 +159,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         self._exploded = self._arrays.view(self.batch.exploded)
         self._follow = 1 - math.exp(-self.action_seconds / smoothing) if smoothing > 0 else 1.0
         self._targets = Targets(self._arrays, self._bodies, targets, target_distance, target_angle)
+        self._randomized = Randomized(self._arrays, self.batch, randomize or {})
         self._reach = reach * self._bodies.lengths
         self._find_actuators(given, max_actuators)
         self._make_spaces(markers)
@@ -229,8 +240,10 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         if not self._started or seed is not None:
             super().reset(seed=seed)
             self._targets.draw(self.np_random)
+            self._randomized.draw(self.np_random)
             self._episode = 0 * self._episode - 1
         self._started = True
+        self._randomized.assign(self._elapsed >= 0, self._episode + 1)
         self.batch.reset()
         self._begin(self._elapsed >= 0)
         return self._now()
@@ -241,7 +254,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         (self._u,) = self._drive_actuators(self._u, self._usable(actions))
         self.batch.step(self.frame_skip, stream=self._arrays.stream())
         if self.autoreset_mode is AutoresetMode.NEXT_STEP:
-            self.batch.reset(self._done, stream=self._arrays.stream())
+            self._reset_robots(self._done)
         size = len(self._state())
         results = self._find_outcome(*self._state())
         self._set_state(results[:size])
@@ -251,7 +264,7 @@ class RobotEnv(gymnasium.vector.VectorEnv):
             over = terminated | truncated
             final = {name: over if name.startswith("_") else value for name, value in infos.items()}
             final_obs = observations
-            self.batch.reset(self._done, stream=self._arrays.stream())
+            self._reset_robots(self._done)
             results = self._begin_over(*self._state())
             self._set_state(results[:size])
             observations = results[size]
@@ -312,8 +325,12 @@ class RobotEnv(gymnasium.vector.VectorEnv):
 
     def _restart(self, mask: Any) -> None:
         """Ends the episodes of some robots and begins their next ones."""
-        self.batch.reset(mask, stream=self._arrays.stream())
+        self._reset_robots(mask)
         self._begin(mask)
+
+    def _reset_robots(self, mask: Any) -> None:
+        self._randomized.assign(mask, self._episode + 1)
+        self.batch.reset(mask, stream=self._arrays.stream())
 
     def _begin(self, mask: Any) -> None:
         where = self._xp.where
@@ -368,6 +385,6 @@ class RobotEnv(gymnasium.vector.VectorEnv):
         return xp.clip(self._arrays.joined(parts), -LIMIT, LIMIT)
 
     def _infos(self, remaining: Any, reached: Any, exploded: Any) -> dict[str, Any]:
-        infos = {"distance": remaining, "reached": reached, "exploded": exploded}
+        infos = {"distance": remaining, "reached": reached, "exploded": exploded} | self._randomized.infos()
         everyone = self._elapsed >= 0
         return infos | {f"_{name}": everyone for name in infos}  # who has this info, as Gymnasium wants it
