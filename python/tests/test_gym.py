@@ -510,21 +510,21 @@ def test_each_episode_has_an_environment_of_its_own(torch, mode):
     def now():
         return [env.batch.environment_of(i) for i in range(3)]
 
-    def told(infos):
+    def said(infos):
         friction, gravity = on_host(infos["friction"]), on_host(infos["gravity"])
         return [mercurysim.Land(friction=float(f), gravity=tuple(map(float, g))) for f, g in zip(friction, gravity)]
 
     seen = []
     for seed in (7, 7, 8):
         infos = env.reset(seed=seed)[1]
-        assert now() == told(infos)
+        assert now() == said(infos)
         for _ in range(40):
             before = now()
             _, _, terminated, truncated, infos = env.step(np.zeros(env.action_space.shape, np.float32))
             over = on_host(terminated | truncated)
             if mode is AutoresetMode.SAME_STEP and over.any():
-                assert told(infos["final_info"]) == before
-            assert now() == told(infos)
+                assert said(infos["final_info"]) == before
+            assert now() == said(infos)
             seen.append(now())
     assert seen[:40] == seen[40:80] and seen[:40] != seen[80:]
     frictions = {environment.friction for step in seen for environment in step}
