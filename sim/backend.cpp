@@ -63,6 +63,7 @@ BatchSettings Backend::settings() const {
 }
 
 PackedBrains Backend::read_brains(bool) const { throw std::logic_error("no brains think in this backend"); }
+BrainArrays Backend::share_brains() { throw std::logic_error("no brains think in this backend"); }
 
 void Backend::add(std::span<const Robot* const> robots, std::size_t first_new) {
   BatchSettings now = settings();

@@ -2,12 +2,14 @@
 #include "sim/brains.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "mercury/error.h"
 #include "mercury/parallel.h"
 #include "sim/physics/activation.h"
 
@@ -55,7 +57,10 @@ void update_neurons(const BrainPlan& plan, std::vector<float>& z, std::span<floa
 }  // namespace
 
 void Brains::leave_backend() {
-  fetch();
+  begin_access();
+  fetch(true);
+  for (std::size_t i = 0; i < of_.size(); ++i) take(i);
+  shared_.reset();
   backend_ = nullptr;
   by_backend_.reset();
 }
@@ -96,10 +101,63 @@ void Brains::keep(std::span<const std::size_t> robots) {
   changed_ = true;
 }
 
-void Brains::fetch() const {
-  if (!std::exchange(backend_is_newer_, false)) return;
-  const bool weights =
-      std::ranges::any_of(of_, [](const auto& brain) { return brain && !brain->plan->learnings.empty(); });
+const BrainArrays& Brains::share(const Backend& backend) {
+  if (shared_) return *shared_;
+  const auto sizes = [](const BrainPlan& plan) {
+    return std::array{plan.weights.size(), plan.neurons.size(), plan.samples * plan.senses.size()};
+  };
+  if (count_ == 0 || count_ < of_.size() ||
+      !std::ranges::all_of(of_, [&](const auto& brain) { return sizes(*brain->plan) == sizes(*of_[0]->plan); }))
+    throw InputError("brains",
+                     "as arrays they need robots that all have one, with as many weights, neurons and senses");
+  if (backend_) return shared_.emplace(backend_->share_brains());
+  const auto allocate = [&](std::size_t columns) {
+    SharedArray<float> array{.rows = of_.size(), .columns = columns};
+    array.data = std::static_pointer_cast<float>(backend.allocate_shared(of_.size() * columns * sizeof(float)));
+    return array;
+  };
+  const auto [weights, neurons, senses] = sizes(*of_[0]->plan);
+  shared_ = {.weights = allocate(weights), .neurons = allocate(neurons), .senses = allocate(senses)};
+  for (std::size_t i = 0; i < of_.size(); ++i) give(i);
+  return *shared_;
+}
+
+void Brains::begin_access() const {
+  if (shared_ && backend_) backend_is_newer_ = weights_are_newer_ = true;
+}
+
+void Brains::end_access() {
+  if (shared_ && backend_) think_in_backend(*backend_);
+}
+
+void Brains::take(std::size_t robot) const {
+  if (!shared_ || backend_) return;
+  const auto copy = [&](const SharedArray<float>& from, std::vector<float>& to) {
+    std::copy_n(from.data.get() + robot * from.columns, from.columns, to.begin());
+  };
+  BrainState& state = of_[robot]->state;
+  copy(shared_->weights, state.weights);
+  copy(shared_->neurons, state.neurons);
+  copy(shared_->senses, state.senses);
+}
+
+void Brains::give(std::size_t robot) const {
+  if (!shared_ || backend_) return;
+  const auto copy = [&](const std::vector<float>& from, const SharedArray<float>& to) {
+    std::ranges::copy(from, to.data.get() + robot * to.columns);
+  };
+  const BrainState& state = of_[robot]->state;
+  copy(state.weights, shared_->weights);
+  copy(state.neurons, shared_->neurons);
+  copy(state.senses, shared_->senses);
+}
+
+void Brains::fetch(bool weights) const {
+  weights =
+      weights && weights_are_newer_ &&
+      (shared_ || std::ranges::any_of(of_, [](const auto& brain) { return brain && !brain->plan->learnings.empty(); }));
+  if (!std::exchange(backend_is_newer_, false) && !weights) return;
+  if (weights) weights_are_newer_ = false;
   const PackedBrains now = backend_->read_brains(weights);
   std::size_t neuron = 0, sense = 0, weight = 0, index = 0;
   const auto take = [](std::vector<float>& to, const std::vector<float>& from, std::size_t& at) {
@@ -115,8 +173,9 @@ void Brains::fetch() const {
   }
 }
 
-Brains::OfRobot* Brains::to_change(std::size_t robot) {
-  fetch();
+Brains::OfRobot* Brains::to_change(std::size_t robot, bool weights) {
+  fetch(weights);
+  if (of_[robot]) take(robot);
   changed_for_backend_ = true;
   return of_[robot].get();
 }
@@ -161,6 +220,7 @@ void Brains::reset(std::size_t robot) {
   brain.state = state_at_start(*brain.plan);
   brain.state.weights = std::move(weights);
   set_clamped(brain.state.neurons, brain.clamps);
+  give(robot);
   changed_ = true;
 }
 
@@ -209,6 +269,7 @@ void Brains::think(const Clock& clock, std::span<const std::shared_ptr<const Rob
   const SensedWorld world = SensedWorld::of(environment);
   parallel_for(0, of_.size(), [&](std::size_t i) {
     if (!of_[i] || steps_since_thought(of_[i]->plan->period, clock) != 0) return;
+    take(i);
     OfRobot& brain = *of_[i];
     const BrainPlan& plan = *brain.plan;
     const auto own = [&](std::span<const Vec3> all) {
@@ -223,6 +284,7 @@ void Brains::think(const Clock& clock, std::span<const std::shared_ptr<const Rob
     update_neurons(plan, z, brain.state.weights, brain.clamps);
     std::copy(z.begin() + static_cast<std::ptrdiff_t>(plan.senses.size()), z.end(), brain.state.neurons.begin());
     ++brain.state.thoughts;
+    give(i);
   });
   changed_ = true;
 }
@@ -230,7 +292,7 @@ void Brains::think(const Clock& clock, std::span<const std::shared_ptr<const Rob
 std::vector<DriveSetting> Brains::take_drives() {
   std::vector<DriveSetting> all;
   if (!std::exchange(changed_, false)) return all;
-  fetch();
+  fetch(false);
   for (std::size_t i = 0; i < of_.size(); ++i) {
     if (!of_[i]) continue;
     for (const BrainPlan::Output& output : of_[i]->plan->outputs)
@@ -240,8 +302,10 @@ std::vector<DriveSetting> Brains::take_drives() {
 }
 
 BrainState Brains::state(std::size_t robot) const {
-  fetch();
-  return of_[robot] ? of_[robot]->state : BrainState{};
+  if (!of_[robot]) return {};
+  fetch(true);
+  take(robot);
+  return of_[robot]->state;
 }
 
 void Brains::require_state(std::size_t robot, const BrainState& state) const {
@@ -254,14 +318,16 @@ void Brains::require_state(std::size_t robot, const BrainState& state) const {
 void Brains::set_state(std::size_t robot, const BrainState& state) {
   require_state(robot, state);
   if (!of_[robot]) return;
-  to_change(robot)->state = state;
+  to_change(robot, true)->state = state;
+  give(robot);
   weights_for_backend_ = changed_ = true;
 }
 
 void Brains::set_weights(std::size_t robot, std::span<const float> weights) {
   require(weights.size(), of_[robot] ? of_[robot]->state.weights.size() : 0, "weights");
   if (!of_[robot]) return;
-  std::ranges::copy(weights, to_change(robot)->state.weights.begin());
+  std::ranges::copy(weights, to_change(robot, true)->state.weights.begin());
+  give(robot);
   weights_for_backend_ = true;
 }
 
@@ -274,6 +340,7 @@ void Brains::clamp(std::size_t robot, std::size_t neuron, std::optional<float> v
   if (!value) return;
   brain.clamps.emplace_back(static_cast<std::uint32_t>(neuron), *value);
   brain.state.neurons[neuron] = *value;
+  give(robot);
   changed_ = true;
 }
 

@@ -23,6 +23,7 @@
 #include "mercury/brain.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
+#include "mercury/shared_array.h"
 #include "sim/physics/brain_plan.h"
 #include "sim/senses.h"
 #include "sim/shared_arrays.h"
@@ -44,6 +45,13 @@ class Brains {
   void append(std::span<const std::shared_ptr<const Robot>> added);
   void truncate(std::size_t size);
   void keep(std::span<const std::size_t> robots);
+  // Shared arrays with the numbers of all brains. Throws InputError unless all robots have brains of one size.
+  // think_in_backend() comes first.
+  const BrainArrays& share(const Backend& backend);
+  // Begin and end what reads or changes brains from outside of steps: programs may have written into shared arrays, and
+  // see what has changed.
+  void begin_access() const;
+  void end_access();
   // As at the start; weights, clamps and targets stay.
   void reset(std::size_t robot);
 
@@ -51,7 +59,7 @@ class Brains {
   // other case.
   bool think_in_backend(Backend& backend);
   // The backend is about to step.
-  void expect_thoughts() { backend_is_newer_ = backend_ != nullptr; }
+  void expect_thoughts() { backend_is_newer_ = weights_are_newer_ = backend_ != nullptr; }
 
   // The steps until a brain thinks next; 0 = one thinks now.
   std::int64_t steps_until_thought(const Clock& clock) const;
@@ -82,9 +90,12 @@ class Brains {
   };
   void sample(OfRobot& brain, const Clock& clock, const SensedBody& body, const SensedWorld& world, Vec3 target) const;
   // Reads what the backend has, if it is newer.
-  void fetch() const;
+  void fetch(bool weights) const;
   // fetch() before a change, which the backend then learns of.
-  OfRobot* to_change(std::size_t robot);
+  OfRobot* to_change(std::size_t robot, bool weights = false);
+  // From and to the row of a robot in shared arrays that the host has.
+  void take(std::size_t robot) const;
+  void give(std::size_t robot) const;
   PackedBrains packed() const;
 
   std::vector<std::unique_ptr<OfRobot>> of_;  // one per robot; null = no brain
@@ -93,8 +104,9 @@ class Brains {
   bool changed_ = false;                      // neurons, since take_drives()
   std::optional<bool> by_backend_;            // nothing = it has not been asked
   Backend* backend_ = nullptr;                // that lets them think
-  mutable bool backend_is_newer_ = false;
+  mutable bool backend_is_newer_ = false, weights_are_newer_ = false;
   bool changed_for_backend_ = false, weights_for_backend_ = false;
+  std::optional<BrainArrays> shared_;
 };
 
 }  // namespace mercury

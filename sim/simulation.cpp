@@ -403,7 +403,9 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
 void Simulation::reset() {
   parts_->clock = Clock{.dt = parts_->configuration.dt};
   parts_->explosions.assign(size(), {});
-  for (std::size_t i = 0; i < size(); ++i) parts_->brains.reset(i);
+  parts_->change_brains([&](Brains& brains) {
+    for (std::size_t i = 0; i < size(); ++i) brains.reset(i);
+  });
   parts_->put_at_rest(0);
   parts_->after_change();
 }
@@ -412,7 +414,9 @@ void Simulation::reset_to(std::span<const Vec3> positions) {
   if (positions.size() != mass_count()) throw std::invalid_argument("one position per mass is needed");
   parts_->clock = Clock{.dt = parts_->configuration.dt};
   parts_->explosions.assign(size(), {});
-  for (std::size_t i = 0; i < size(); ++i) parts_->brains.reset(i);
+  parts_->change_brains([&](Brains& brains) {
+    for (std::size_t i = 0; i < size(); ++i) brains.reset(i);
+  });
   // Robots of which backends use nothing but the start.
   std::vector<Robot> starts(size());
   std::vector<const Robot*> pointers(size());
@@ -433,12 +437,13 @@ void Simulation::reset_to(std::span<const Vec3> positions) {
 void Simulation::reset(std::span<const std::uint8_t> mask) {
   if (mask.size() != size()) throw std::invalid_argument("one element per robot is needed");
   const std::span<const float> lifts = parts_->rest_lifts();
+  parts_->change_brains([&](Brains& brains) {
+    for (std::size_t i = 0; i < size(); ++i)
+      if (mask[i]) brains.reset(i);
+  });
   for (std::size_t begin = 0, end = 0; begin < size(); begin = end + 1) {
     while (begin < size() && !mask[begin]) ++begin;
-    for (end = begin; end < size() && mask[end]; ++end) {
-      parts_->explosions[end] = {};
-      parts_->brains.reset(end);
-    }
+    for (end = begin; end < size() && mask[end]; ++end) parts_->explosions[end] = {};
     if (begin < end)
       parts_->backend->put_at_rest(std::span(parts_->pointers).subspan(begin, end - begin), begin,
                                    lifts.subspan(begin, end - begin));

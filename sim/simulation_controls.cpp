@@ -121,32 +121,45 @@ bool Simulation::has_brains() const { return !parts_->brains.empty(); }
 
 BrainState Simulation::brain_state(std::size_t robot) const {
   parts_->require(robot);
+  parts_->brains.begin_access();
   return parts_->brains.state(robot);
+}
+
+std::vector<BrainState> Simulation::brain_states() const {
+  parts_->brains.begin_access();
+  std::vector<BrainState> states;
+  for (std::size_t i = 0; i < size(); ++i) states.push_back(parts_->brains.state(i));
+  return states;
+}
+
+const BrainArrays& Simulation::shared_brains() {
+  parts_->host_thinks();  // asks the backend first
+  return parts_->brains.share(*parts_->backend);
 }
 
 void Simulation::set_brain_state(std::size_t robot, const BrainState& state) {
   parts_->require(robot);
-  parts_->brains.set_state(robot, state);
+  parts_->change_brains([&](Brains& brains) { brains.set_state(robot, state); });
 }
 
 void Simulation::set_brain_weights(std::size_t robot, std::span<const float> weights) {
   parts_->require(robot);
-  parts_->brains.set_weights(robot, weights);
+  parts_->change_brains([&](Brains& brains) { brains.set_weights(robot, weights); });
 }
 
 void Simulation::clamp_neuron(std::size_t robot, std::size_t neuron, std::optional<float> value) {
   parts_->require(robot);
-  parts_->brains.clamp(robot, neuron, value);
+  parts_->change_brains([&](Brains& brains) { brains.clamp(robot, neuron, value); });
 }
 
 void Simulation::set_target(std::size_t robot, std::optional<Vec3> target) {
   parts_->require(robot);
-  parts_->brains.set_target(robot, target);
+  parts_->change_brains([&](Brains& brains) { brains.set_target(robot, target); });
 }
 
 void Simulation::set_noise_seed(std::size_t robot, std::uint64_t seed) {
   parts_->require(robot);
-  parts_->brains.set_noise_seed(robot, seed);
+  parts_->change_brains([&](Brains& brains) { brains.set_noise_seed(robot, seed); });
 }
 
 void Simulation::set_perturbations(std::span<const Perturbation> perturbations) {

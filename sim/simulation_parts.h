@@ -91,6 +91,12 @@ struct Simulation::Parts {
   std::optional<std::int64_t> push_step() const;
   bool pushes_within(std::int64_t steps) const;
 
+  // change(brains), between begin_access() and end_access().
+  void change_brains(auto&& change) {
+    brains.begin_access();
+    change(brains);
+    brains.end_access();
+  }
   // Whether there are brains that think here, between calls of the backend.
   bool host_thinks();
   // Steps the backend, and lets the brains think meanwhile.

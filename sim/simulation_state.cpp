@@ -50,7 +50,7 @@ State Simulation::state(std::size_t robot) const {
   parts_->require(robot);
   State state = parts_->state(robot);
   parts_->add_explosion(state, robot, parts_->backend->status(robot));
-  if (has_brains()) state.brain = parts_->brains.state(robot);
+  if (has_brains()) state.brain = brain_state(robot);
   return state;
 }
 
@@ -89,7 +89,7 @@ void Simulation::set_state(std::size_t robot, const State& state) {
   const bool thinks = !(state.brain == BrainState{});
   if (thinks) parts_->brains.require_state(robot, state.brain);
   set_state(robot, state.positions, state.velocities);
-  if (thinks) parts_->brains.set_state(robot, state.brain);
+  if (thinks) set_brain_state(robot, state.brain);
   if (!state.exploded) return;
   parts_->explosions[robot] = {parts_->clock.step, state.exploded_at, state.culprit_spring};
   parts_->backend->set_status(robot, {.exploded_step = parts_->clock.step});
@@ -110,8 +110,7 @@ BatchState Simulation::save() const {
     const KnownExplosion& known = parts_->explosion(i, statuses[i]);
     state.explosions.push_back({i, known.step, known.at, known.culprit_spring});
   }
-  if (has_brains())
-    for (std::size_t i = 0; i < size(); ++i) state.brains.push_back(parts_->brains.state(i));
+  if (has_brains()) state.brains = brain_states();
   return state;
 }
 
@@ -132,8 +131,10 @@ void Simulation::restore(const BatchState& state) {
   require_clock(state.clock, parts_->configuration);
   parts_->clock = state.clock;
   parts_->explosions = std::move(known);
-  for (std::size_t i = 0; i < size(); ++i)
-    state.brains.empty() ? parts_->brains.reset(i) : parts_->brains.set_state(i, state.brains[i]);
+  parts_->change_brains([&](Brains& brains) {
+    for (std::size_t i = 0; i < size(); ++i)
+      state.brains.empty() ? brains.reset(i) : brains.set_state(i, state.brains[i]);
+  });
   const std::vector<RobotStatus> present = parts_->backend->statuses();
   for (std::size_t i = 0; i < size(); ++i) {
     const std::size_t first = parts_->offsets[i], masses = parts_->masses(i);

@@ -286,6 +286,23 @@ nb::object Batch::actuation() {
   return object;
 }
 
+nb::object Batch::brain_arrays() {
+  if (arrays_[brains_place].is_valid()) return arrays_[brains_place];
+  std::uint64_t version = 0;
+  const BrainArrays shared = use([&](Simulation& simulation) {
+    version = version_;
+    return simulation.shared_brains();
+  });
+  const auto array = [&](const SharedArray<float>& from) {
+    return nb::cast(array_of<float>(from, last_stream_, true));
+  };
+  nb::object object = nb::cast(BrainArraysInPython{
+      .weights = array(shared.weights), .neurons = array(shared.neurons), .senses = array(shared.senses)});
+  if (arrays_[brains_place].is_valid() && version == version_) return arrays_[brains_place];
+  if (version == version_) arrays_[brains_place] = object;
+  return object;
+}
+
 void Batch::synchronize() const {
   use([](const Simulation& simulation) {
     if (const int device = simulation.cuda_device(); device >= 0) synchronize_cuda_device(device);

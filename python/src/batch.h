@@ -55,13 +55,14 @@ class Batch {
   nb::object state_array(StateArray which);
   nb::object exploded();
   nb::object actuation();
+  nb::object brain_arrays();
 
   SharedRobots robots() const;
   std::size_t robot_index(std::int64_t index) const;  // throws IndexError
   std::string device() const;                         // "cpu", "cuda:0", "cuda:all"
 
  private:
-  static constexpr std::size_t exploded_place = 4, actuation_place = 5;
+  static constexpr std::size_t exploded_place = 4, actuation_place = 5, brains_place = 6;
 
   std::unique_lock<std::mutex> lock() const;  // to be called without the GIL
   template <class Make>
@@ -79,13 +80,18 @@ class Batch {
   std::int64_t steps_at_once_ = 1;          // in a portion, adapted to the speed on the CPU
   std::atomic<std::uint64_t> version_ = 0;  // how often robots have come or gone
   LastStream last_stream_ = std::make_shared<std::atomic<void*>>(nullptr);
-  std::array<nb::object, 6> arrays_;
+  std::array<nb::object, 7> arrays_;
 };
 
 // What drives the actuators of a batch, as Python has it.
 struct ActuationArrays {
   nb::object amplitude, frequency, phase, drive, driven;  // Array
   SharedRobots robots;
+};
+
+// Weights and states of the brains of a batch, as Python has them.
+struct BrainArraysInPython {
+  nb::object weights, neurons, senses;  // Array
 };
 
 // Lets os.fork() wait until no thread is within a batch, so that the child finds all of them as they are between two

@@ -66,11 +66,12 @@ struct Brains {
 nb::object rows_of(const Brains& self, std::vector<float> BrainState::*numbers, bool one_sample) {
   const auto [values, rows] = self.batch->use([&](const Simulation& simulation) {
     std::vector<std::vector<float>> all;
+    std::vector<BrainState> states = simulation.brain_states();
     const Robot* last = nullptr;
     std::size_t senses = 0;  // of `last`
     for (std::size_t i = 0; i < simulation.size(); ++i) {
       const Robot& robot = simulation.robot(i);
-      all.push_back(simulation.brain_state(i).*numbers);
+      all.push_back(std::move(states[i].*numbers));
       if (one_sample && &robot != last) senses = brain_layout(robot).senses.size();
       if (one_sample) all.back().resize(senses);
       last = &robot;
@@ -157,6 +158,27 @@ void bind_brains(nb::module_& module) {
           "The numbering of Batch.brain: names of the senses and of the neurons, and how many weights there "
           "are. Weights are those of layer after layer: biases, then the inputs in their order, row after row.");
 
+  nb::class_<BrainArraysInPython>(
+      module, "BrainArrays",
+      R"(Weights and states of all brains of a batch: writable Arrays of float32 on its device.
+
+    arrays = batch.brain.arrays
+    torch.from_dlpack(arrays.weights)[:] = population         # counts from the next thought on
+    batch.reset()                                             # keeps weights
+    batch.step(10000)
+
+All robots have brains with as many weights, neurons and senses. On CUDA, a program that writes in a stream of its own
+gives this stream to step(); functions of the batch without a stream follow what is queued in the legacy default stream.
+add() and keep() make other arrays.)")
+      .def_ro("weights", &BrainArraysInPython::weights, nb::sig("def weights(self) -> Array"),
+              "(robots, weights), in the order of Robot.brain_layout.")
+      .def_ro("neurons", &BrainArraysInPython::neurons, nb::sig("def neurons(self) -> Array"),
+              "Activations, (robots, neurons). What is written there is where the next thought begins.")
+      .def_ro(
+          "senses", &BrainArraysInPython::senses, nb::sig("def senses(self) -> Array"),
+          "Senses as sampled last, with gain and noise and without delay, (robots, senses); then the samples before,\n"
+          "if senses have delays.");
+
   nb::class_<Brains>(module, "Brains",
                      "The brains of a batch. Arrays have a row per robot, padded with NaN, and are copies.")
       .def_prop_ro(
@@ -171,6 +193,11 @@ void bind_brains(nb::module_& module) {
           nb::for_getter(nb::sig("def weights(self) -> numpy.typing.NDArray[numpy.float32]")),
           nb::for_setter(nb::sig("def weights(self, value: numpy.typing.ArrayLike, /) -> None")),
           "Weights, (robots, weights), in the order of Robot.brain_layout; may be set. Batch.reset() keeps them.")
+      .def_prop_ro(
+          "arrays", [](const Brains& self) { return self.batch->brain_arrays(); },
+          nb::sig("def arrays(self) -> BrainArrays"),
+          "The same on the device, without a copy, for robots with equal brains: a BrainArrays. Raises InputError for\n"
+          "others.")
       .def("set_targets", &set_targets, nb::arg("places").none(),
            nb::sig("def set_targets(self, places: numpy.typing.ArrayLike | None) -> None"),
            "The target of each robot, (robots, 3) [m]; None = that of the environment.")

@@ -92,3 +92,30 @@ def test_what_does_not_fit_a_batch_is_refused():
     with pytest.raises(IndexError):
         batch.brain.clamp(3, 0, 1)
     batch.brain.set_targets(None)
+
+
+def test_arrays_are_the_brains_themselves(device):
+    robots = [swimmer(i) for i in range(3)]
+    batch, same = (mercurysim.Batch([robots[0]] * 3, device=device) for _ in range(2))
+    arrays = batch.brain.arrays
+    assert arrays is batch.brain.arrays
+    assert arrays.weights.shape == (3, robots[0].brain_layout["weights"])
+    weights = np.stack([mercurysim.Batch(robot, device="cpu").brain.weights[0] for robot in robots])
+    if device == "cpu":
+        np.asarray(arrays.weights)[:] = weights
+    else:
+        torch = pytest.importorskip("torch")
+        torch.from_dlpack(arrays.weights)[:] = torch.from_numpy(weights).cuda()
+        torch.cuda.synchronize()
+    same.brain.weights = weights
+    for each in (batch, same):
+        each.step(100)
+    np.testing.assert_array_equal(batch.hashes(), same.hashes())
+    np.testing.assert_array_equal(batch.brain.weights, weights)
+    if device == "cpu":
+        np.testing.assert_array_equal(np.asarray(arrays.neurons), batch.brain.neurons)
+        batch.reset()
+        assert (np.asarray(arrays.neurons) == 0).all()
+    batch.add(mercurysim.random_voxel(1, seed=2))
+    with pytest.raises(mercurysim.InputError, match="brains"):
+        batch.brain.arrays

@@ -189,13 +189,23 @@ bool CudaBackend::set_brains(std::span<const BrainPlan* const> plans) {
   return true;
 }
 
-void CudaBackend::write_brains(const PackedBrains& brains) {
+void CudaBackend::settle_brains() const {
   settle();
+  if (owned_->brains.is_shared()) check(cudaStreamSynchronize(cudaStreamLegacy), "waiting for a program's work");
+}
+
+BrainArrays CudaBackend::share_brains() {
+  settle();
+  return owned_->brains.share(device_);
+}
+
+void CudaBackend::write_brains(const PackedBrains& brains) {
+  settle_brains();
   owned_->brains.write(brains, main().get());
 }
 
 PackedBrains CudaBackend::read_brains(bool weights) const {
-  settle();
+  settle_brains();
   return owned_->brains.read(weights, main().get());
 }
 

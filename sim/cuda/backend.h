@@ -55,6 +55,7 @@ class CudaBackend final : public Backend {
   bool set_brains(std::span<const BrainPlan* const> plans) override;
   void write_brains(const PackedBrains& brains) override;
   PackedBrains read_brains(bool weights) const override;
+  BrainArrays share_brains() override;
 
   // Time (backend_steps.cpp).
   void step(const Clock& clock, std::int64_t steps) override;
@@ -106,6 +107,8 @@ class CudaBackend final : public Backend {
   // Waits for what is queued in a caller's stream. To be called before everything that does not begin with enter() or
   // begin_launches().
   void settle() const;
+  // The same for what programs have queued that write into shared arrays of brains.
+  void settle_brains() const;
   // settle() before a change by the caller: it invalidates the last report and the copy of the positions.
   void begin_change();
   // To be called before robots come or go: what names places or masses of the batch is no longer valid.

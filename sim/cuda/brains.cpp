@@ -187,9 +187,9 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
   slots_ = uploaded(made.slots, stream);
   springs_ = uploaded(made.springs, stream);
   rest_ = uploaded(made.rest, stream);
-  activations_ = DeviceArray<float>(made.activations);
-  samples_ = DeviceArray<float>(made.samples);
-  weights_ = DeviceArray<float>(made.weights);
+  activations_ = std::make_shared<DeviceArray<float>>(made.activations);
+  samples_ = std::make_shared<DeviceArray<float>>(made.samples);
+  weights_ = std::make_shared<DeviceArray<float>>(made.weights);
   clamps_ = DeviceArray<float>(made.activations);
   targets_ = DeviceArray<Vec3>(made.robots.size());
   thoughts_ = DeviceArray<std::uint64_t>(made.robots.size());
@@ -210,9 +210,9 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
              .slots = slots_.data(),
              .springs = springs_.data(),
              .rest = rest_.data(),
-             .activations = activations_.data(),
-             .samples = samples_.data(),
-             .weights = weights_.data(),
+             .activations = activations_->data(),
+             .samples = samples_->data(),
+             .weights = weights_->data(),
              .clamps = clamps_.data(),
              .targets = targets_.data(),
              .thoughts = thoughts_.data(),
@@ -224,9 +224,9 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
 }
 
 void DeviceBrains::write(const PackedBrains& brains, cudaStream_t stream) {
-  activations_.write(0, brains.neurons, stream);
-  samples_.write(0, brains.senses, stream);
-  weights_.write(0, brains.weights, stream);
+  activations_->write(0, brains.neurons, stream);
+  samples_->write(0, brains.senses, stream);
+  weights_->write(0, brains.weights, stream);
   thoughts_.write(0, brains.thoughts, stream);
   clamps_.write(0, brains.clamps, stream);
   targets_.write(0, brains.targets, stream);
@@ -239,11 +239,23 @@ PackedBrains DeviceBrains::read(bool weights, cudaStream_t stream) const {
     to.resize(from.size());
     from.read(0, to, stream);
   };
-  read(brains.neurons, activations_);
-  read(brains.senses, samples_);
-  if (weights) read(brains.weights, weights_);
+  read(brains.neurons, *activations_);
+  read(brains.senses, *samples_);
+  if (weights) read(brains.weights, *weights_);
   read(brains.thoughts, thoughts_);
   return brains;
+}
+
+BrainArrays DeviceBrains::share(int device) {
+  shared_ = true;
+  const std::size_t robots = thinkers_.size();
+  const auto array = [&](const SharedNumbers& numbers) {
+    return SharedArray<float>{.data = std::shared_ptr<float>(numbers, numbers->data()),
+                              .rows = robots,
+                              .columns = numbers->size() / robots,
+                              .cuda_device = device};
+  };
+  return {.weights = array(weights_), .neurons = array(activations_), .senses = array(samples_)};
 }
 
 Thoughts DeviceBrains::thoughts(std::uint32_t size_class, const Environment& environment,

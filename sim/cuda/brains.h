@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mercury/robot.h"
+#include "mercury/shared_array.h"
 #include "sim/cuda/actuation.h"
 #include "sim/cuda/brain_tables.h"
 #include "sim/cuda/slot_order.h"
@@ -35,6 +36,9 @@ class DeviceBrains {
   void clear() { *this = {}; }
   void write(const PackedBrains& brains, cudaStream_t stream);
   PackedBrains read(bool weights, cudaStream_t stream) const;
+  // Backend::share_brains(). The arrays keep the memory.
+  BrainArrays share(int device);
+  bool is_shared() const { return shared_; }
 
   // For the launches of a class.
   Thoughts thoughts(std::uint32_t size_class, const Environment& environment, const Actuators& actuators) const;
@@ -55,7 +59,10 @@ class DeviceBrains {
   DeviceArray<std::uint16_t> slots_;
   DeviceArray<SensedSpring> springs_;
   DeviceArray<Vec3> rest_;
-  DeviceArray<float> activations_, samples_, weights_, clamps_, scratch_;
+  using SharedNumbers = std::shared_ptr<DeviceArray<float>>;
+  SharedNumbers activations_, samples_, weights_;
+  bool shared_ = false;
+  DeviceArray<float> clamps_, scratch_;
   DeviceArray<Vec3> targets_;
   DeviceArray<std::uint64_t> thoughts_, noise_seeds_;
   DeviceArray<double> sums_;

@@ -26,6 +26,7 @@
 #include "mercury/material.h"
 #include "mercury/perturbation.h"
 #include "mercury/robot.h"
+#include "mercury/shared_array.h"
 #include "mercury/telemetry.h"
 #include "mercury/vec3.h"
 #include "mercury/work_watch.h"
@@ -160,6 +161,9 @@ class Backend {
   }
   // Neurons, senses, thoughts, and weights on request.
   virtual PackedBrains read_brains(bool weights) const;
+  // The memory of those brains, which all have as many numbers: arrays with a row per robot. read_brains() and
+  // write_brains() then follow what programs have queued in the legacy default stream.
+  virtual BrainArrays share_brains();
   // step() and publish(), or put_at_rest() of the robots whose element of `mask` (shared memory, one per robot) is not
   // 0 and publish(), in a stream as Simulation::step_in_stream() says. Called only if cuda_device() is not -1.
   virtual void step_in_stream(const Clock& /*clock*/, std::int64_t /*steps*/, const PublishedArrays& /*arrays*/,

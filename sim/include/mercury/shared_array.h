@@ -43,6 +43,14 @@ struct Actuation {
   SharedArray<std::uint8_t> driven;  // 0, 1, or held_drive
 };
 
+// Brains of robots that all have one, with as many weights, neurons and senses. What a program writes counts from the
+// next thought on.
+struct BrainArrays {
+  SharedArray<float> weights;  // [robot][weight], in the order of BrainLayout
+  SharedArray<float> neurons;  // [robot][neuron], activations y
+  SharedArray<float> senses;   // [robot][sense], as sampled last; then the samples before, if senses have delays
+};
+
 // In Actuation::driven: a brain leaves the drive alone.
 inline constexpr std::uint8_t held_drive = 2;
 

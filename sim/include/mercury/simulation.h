@@ -168,6 +168,11 @@ class Simulation {
   // the brain thinks again.
   bool has_brains() const;
   BrainState brain_state(std::size_t robot) const;  // empty without a brain
+  std::vector<BrainState> brain_states() const;     // of all robots
+  // Weights and states of all brains as shared arrays, which a program may also write: the weights of a population are
+  // replaced, and its senses read, without leaving the device. Throws InputError unless all robots have brains with as
+  // many weights, neurons and senses.
+  const BrainArrays& shared_brains();
   // Throws std::invalid_argument if the numbers are not as many as the robot's brain has.
   void set_brain_state(std::size_t robot, const BrainState& state);
   // In the order of BrainLayout. A copy of the robot's own; reset() keeps them. Throws as set_brain_state().
