@@ -2,7 +2,7 @@
 // Measures what brains of 64 neurons and 32 senses that think every 20 steps add to stepping: robots without a brain,
 // with actuators that a program drives, with a brain that senses its body as a whole, and with one that also senses the
 // strain of each muscle group. They take turns, so that a change of the clock rate affects all: bench_brains [device]
-// [voxels per edge] [robots] [turns]
+// [voxels per edge] [robots] [turns] [population of an evolution strategy, which is measured if it is given]
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -79,6 +79,32 @@ void measure(const Configuration& configuration, const std::vector<Robot>& robot
     std::printf("  %-24s +%.2f %%\n", names[variant], 100 * (median(seconds[variant]) / alone - 1));
 }
 
+// An evolution strategy of one robot: each generation has new weights in the shared arrays, a reset, and episodes of
+// ten seconds.
+void measure_episodes(const Configuration& configuration, const Robot& robot, std::size_t population) {
+  std::unique_ptr<Backend> made = make_backend(configuration.device);
+  const Backend& backend = *made;
+  Simulation simulation(configuration, std::vector<Robot>(population, with_brain(robot, false)), std::move(made));
+  const SharedArray<float> weights = simulation.shared_brains().weights;
+  std::vector<float> values(weights.rows * weights.columns);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.3f * std::sin(static_cast<float>(i));
+  const auto next = std::static_pointer_cast<float>(backend.allocate_shared(values.size() * sizeof(float)));
+  backend.copy_shared(next.get(), values.data(), values.size() * sizeof(float));
+  const auto steps = static_cast<std::int64_t>(10 / configuration.dt);
+  const auto generation = [&] {
+    backend.copy_shared(weights.data.get(), next.get(), values.size() * sizeof(float));
+    simulation.reset();
+    simulation.step(steps);
+    (void)simulation.telemetry();
+  };
+  generation();
+  std::vector<double> seconds;
+  for (int i = 0; i < 3; ++i) seconds.push_back(seconds_of(generation));
+  std::printf("%zu robots of %zu masses, %zu weights: %.2f s per generation of 10 s, %.3g episodes per minute\n",
+              population, robot.masses.size(), weights.columns, median(seconds),
+              60 * static_cast<double>(population) / median(seconds));
+}
+
 }  // namespace
 }  // namespace mercury
 
@@ -96,4 +122,7 @@ int main(int argc, char** argv) {
   full.mirror = Mirror::none;
   full.frequencies = 5;
   measure(configuration, random_voxel_robots(full, 1, count), turns);
+  if (argc <= 5) return 0;
+  full.smallest = full.largest = {4, 3, 3};
+  measure_episodes(configuration, random_voxel_robot(full, 1), std::stoul(argv[5]));
 }

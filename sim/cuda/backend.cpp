@@ -102,10 +102,18 @@ void CudaBackend::configure(const Configuration& configuration) {
 
 void CudaBackend::set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments) {
   begin_change();
-  for (std::size_t i = 0; i < robots.size(); ++i)
-    class_of(robots[i]).set_environment(places_[robots[i]].number, environments[i], configuration_);
-  for (const auto& each : classes()) each->publish_headers();
-  choose_launches();
+  std::vector<std::vector<std::uint32_t>> places_of(owned_->classes.size());
+  std::vector<std::vector<Environment>> environments_of(owned_->classes.size());
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const Place place = places_[robots[i]];
+    places_of[place.size_class].push_back(place.number);
+    environments_of[place.size_class].push_back(environments[i]);
+  }
+  bool launches_change = false;
+  for (std::size_t c = 0; c < places_of.size(); ++c)
+    if (!places_of[c].empty() && owned_->classes[c].set_environments(places_of[c], environments_of[c], configuration_))
+      launches_change = true;
+  if (launches_change) choose_launches();
 }
 
 void CudaBackend::write_materials(std::span<const Material> tables) {

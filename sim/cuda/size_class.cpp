@@ -189,11 +189,26 @@ void SizeClass::configure(const Configuration& configuration) {
 
 void SizeClass::publish_headers() { device_headers_.write(0, headers_, urgent_->get()); }
 
-void SizeClass::set_environment(std::uint32_t place, const Environment& environment,
-                                const Configuration& configuration) {
-  environments_[place] = environment;
-  describe(place, configuration);
-  points_stale_ = points_stale_ || !point_properties_[place].empty();
+bool SizeClass::set_environments(std::span<const std::uint32_t> places, std::span<const Environment> environments,
+                                 const Configuration& configuration) {
+  parallel_for(0, places.size(), [&](std::size_t i) {
+    environments_[places[i]] = environments[i];
+    describe(places[i], configuration);
+  });
+  for (const std::uint32_t place : places) points_stale_ = points_stale_ || !point_properties_[place].empty();
+  const bool launches_change = own_models_.size() == 0 || points_stale_;
+  constexpr std::size_t few = 16;
+  if (places.size() > few || launches_change) {
+    publish_headers();
+    if (!launches_change) publish_own_models(configuration);
+    return launches_change;
+  }
+  for (const std::uint32_t place : places) {
+    const OwnModel model(configuration_of(place, configuration));
+    device_headers_.write(place, std::span(headers_).subspan(place, 1), urgent_->get());
+    own_models_.write(place, std::span(&model, 1), urgent_->get());
+  }
+  return false;
 }
 
 Configuration SizeClass::configuration_of(std::uint32_t place, Configuration configuration) const {

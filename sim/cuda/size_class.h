@@ -64,8 +64,9 @@ class SizeClass {
 
   // Updates the scales of the fixed-point sums.
   void configure(const Configuration& configuration);
-  // Where one robot lives, in place of the configuration's environment; publish_headers() and choose_launch() follow.
-  void set_environment(std::uint32_t place, const Environment& environment, const Configuration& configuration);
+  // Where robots live, in place of the configuration's environment. Returns whether choose_launch() has to follow.
+  bool set_environments(std::span<const std::uint32_t> places, std::span<const Environment> environments,
+                        const Configuration& configuration);
   void share_environment() { environments_.assign(size(), std::nullopt); }
   void publish_headers();
   // One per place; null if the kernel of this class needs none.
