@@ -15,7 +15,7 @@ packages_to_build=(
 )
 packages_to_run=(ffmpeg libegl1 libegl-mesa0 libgl1-mesa-dri)
 packages_welcome=(libosmesa6 libopenmpi-dev openmpi-bin)  # drawing where EGL is missing (newer distributions no longer have OSMesa); evolution on several hosts
-packages_to_test=(clang-format-14 libgtest-dev libgmock-dev libbenchmark-dev xvfb xdotool python3-h5py python3-numpy python3-matplotlib)
+packages_to_test=(clang-format-14 libgtest-dev libgmock-dev libbenchmark-dev xvfb xdotool python3-h5py python3-numpy python3-pil python3-matplotlib)
 packages_for_python=(python3-venv python3-dev)   # what they need besides is in python/tests/requirements.txt
 packages_welcome_to_test=(python3-torch)         # tests that need PyTorch skip without it
 

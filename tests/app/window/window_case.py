@@ -12,7 +12,7 @@ from pathlib import Path
 
 SKIPPED = 77  # the exit status that ctest counts as "not run"
 MISSING = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
-MISSING += [f"python3-{name}" for name in ("numpy", "matplotlib") if importlib.util.find_spec(name) is None]
+MISSING += [f"python3-{name.lower()}" for name in ("numpy", "PIL") if importlib.util.find_spec(name) is None]
 if MISSING:
     print("skipped: this machine has no", ", ".join(MISSING))
     sys.exit(SKIPPED)

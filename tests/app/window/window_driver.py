@@ -217,10 +217,12 @@ class Window:
 
     def screenshot(self):
         """An array of the window's pixels: height x width x 3, values 0 to 1."""
-        import matplotlib.image
+        import numpy
+        import PIL.Image
         since = self.mark()
         self.key("F2")
-        return matplotlib.image.imread(self.wait("screenshot", since)["file"])[:, :, :3]
+        picture = PIL.Image.open(self.wait("screenshot", since)["file"]).convert("RGB")
+        return numpy.asarray(picture, numpy.float32) / 255
 
     def gl_messages(self):
         """Messages of OpenGL, of which there should be none."""
