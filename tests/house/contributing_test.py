@@ -4,7 +4,9 @@
 what they add is run.
 
     contributing_test.py BUILD        a build with Ninja, without sanitizers
-    contributing_test.py BUILD KEEP   leaves the copy in the folder KEEP
+    contributing_test.py BUILD COPY   makes the copy in the folder COPY and leaves it there
+
+The copy is always in the same folder, so that a compiler cache that the build uses knows what did not change.
 
 Generators, importers, quantities, panels and commands are linked with the libraries of the build into a program. Parameters
 and environments change headers that everything includes: the simulation is compiled from scratch without optimization, for
@@ -19,7 +21,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -129,6 +130,8 @@ class Copy:
             shutil.copytree(ROOT / part, folder / part, ignore=only_sources)
         self.objects.mkdir()
         self.commands = json.loads((build / "compile_commands.json").read_text())
+        launcher = re.search(r"^CMAKE_CXX_COMPILER_LAUNCHER:\w+=(.+)", (build / "CMakeCache.txt").read_text(), re.M)
+        self.launcher = launcher[1].split(";") if launcher else []
 
     def change(self, blocks):
         """Makes the changes of an example; its sources."""
@@ -140,20 +143,20 @@ class Copy:
         return [path for path, _, _ in blocks if path.endswith(".cpp")]
 
     def flags(self, target):
-        """How sources of a target are compiled, with the headers of the copy."""
+        """How sources of a target are compiled, with the headers of the copy. -O1 is what precompiled headers allow at least."""
         of_target = [command for command in self.commands if f"/mercury_{target}.dir/" in command["command"]]
         assert of_target, f"{self.build}: no target mercury_{target}"
         words = shlex.split(of_target[0]["command"])
         words = words[:words.index("-o")]
         own = lambda word: word.startswith(f"-I{ROOT}") and not word.startswith(f"-I{self.build}")
-        return [word.replace(str(ROOT), str(self.folder)) if own(word) else word for word in words]
+        return [word.replace(str(ROOT), str(self.folder)) if own(word) else word for word in words] + ["-O1"]
 
     def compile(self, sources, flags):
         """Objects of sources of the copy."""
         made = []
         for source in sources:
             made.append(self.objects / (source.replace("/", "_") + ".o"))
-            run([*flags, "-o", made[-1], "-c", self.folder / source], self.build)
+            run([*self.launcher, *flags, "-o", made[-1], "-c", self.folder / source], self.build)
         return made
 
     def program(self, objects, source):
@@ -233,11 +236,11 @@ def test_what_changes_headers(copy, found):
     run([*compiler, *objects, "-o", copy.folder / "simulation", "-ltbb", "-lhwy"], copy.folder)
     print(run([copy.folder / "simulation"], copy.folder), end="")
     (copy.folder / "table.cpp").write_text(TABLE)
-    run([*compiler, copy.folder / "table.cpp", "-o", copy.folder / "table"], copy.folder)
+    run([*compiler, *copy.compile(["table.cpp"], compiler), "-o", copy.folder / "table"], copy.folder)
     expect(run([copy.folder / "table"], copy.folder), "crossover immigrants ")
     for source, target in (("app/options/simulation_options.cpp", "app_options"),
                            ("evolution/run_folder/run_file_writing.cpp", "evolution")):
-        run([*copy.flags(target), "-fsyntax-only", copy.folder / source], copy.build)
+        copy.compile([source], copy.flags(target))
 
 
 def main():
@@ -247,12 +250,16 @@ def main():
     if re.search(r"^MERCURY_SANITIZE:\w+=.", (build / "CMakeCache.txt").read_text(), re.M):
         return print("skipped: sanitizers would make it slow, and find nothing in what it compiles without them")
     found = examples((ROOT / "CONTRIBUTING.md").read_text())
-    with tempfile.TemporaryDirectory(prefix="mercury-contributing-") as scratch:
-        folder = Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else Path(scratch)
-        folder.mkdir(parents=True, exist_ok=True)
-        copy = Copy(build, folder)
-        test_what_is_added(copy, found)
-        test_what_changes_headers(copy, found)
+    kept = len(sys.argv) > 2
+    folder = Path(sys.argv[2]).resolve() if kept else build / "tests/house/contributing"
+    if not kept:
+        shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    copy = Copy(build, folder)
+    test_what_is_added(copy, found)
+    test_what_changes_headers(copy, found)
+    if not kept:
+        shutil.rmtree(folder)
     print(f"{sum(map(len, found.values()))} blocks of {len(found)} examples work")
 
 
