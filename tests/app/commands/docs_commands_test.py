@@ -4,7 +4,7 @@
     docs_commands_test.py MERCURY PAGE.md
 
 The folder holds what a reader would have: the sample robots, the folders my-robots, starts and hunters, scene.toml. Commands are shortened so that
-they take moments: fewer robots, shorter trials, smaller pictures. Commands that need a scheduler or several hosts are left out.
+they take moments: fewer robots, shorter trials, smaller pictures of low quality. Commands that need a scheduler or several hosts are left out.
 """
 
 import os
@@ -22,7 +22,7 @@ SHORT = {  # appended; the last value of an option counts
     "evolve": ["--population", "4", "--generations", "10", "--seconds", "0.05", "--settle", "0", "--no-confirm"],
     "run": ["--seconds", "0.1"],
     "check": ["--seconds", "0.1"],
-    "render": ["--seconds", "0.1", "--size", "160x120"],
+    "render": ["--seconds", "0.1", "--size", "160x120", "--quality", "low"],
     "new": ["--seconds", "0.1"],
     "bench": ["--seconds", "0.05"],
 }
