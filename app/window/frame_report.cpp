@@ -118,6 +118,7 @@ void FrameReport::write(PanelContext& context, const ShownView& shown, const Fra
                       {"on_device", scene.drawn().positions_on_device()},
                       {"speed", scene.snapshot().achieved_speed},
                       {"drawn", shown.drawn},
+                      {"presented", shown.presented},
                       {"clock", seconds()},
                       {"seconds", dt},
                       {"cost",

@@ -14,8 +14,8 @@ namespace mercury::window {
 struct ShownView {
   ViewportArea area;
   render::Camera camera;
-  double time;         // simulated [s]
-  std::int64_t drawn;  // number of frames of the robots so far
+  double time;                    // simulated [s]
+  std::int64_t drawn, presented;  // numbers of frames of the robots and of the window so far
 };
 
 class FrameReport {

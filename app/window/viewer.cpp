@@ -73,7 +73,7 @@ class Viewer {
   void begin_close();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
   bool draw_picture(double dt);
-  void present();
+  void present(bool draws);
   void update_screenshot();
   bool anything_moves() const;
   bool leaves_gpu_to_steps() const;
@@ -123,7 +123,8 @@ class Viewer {
   std::int64_t shown_steps_ = -1;
   double shown_time_ = -1;  // simulated time [s]
   render::Camera shown_camera_;
-  std::int64_t drawn_ = 0;  // of the robots, drawn so far
+  std::int64_t drawn_ = 0;      // of the robots, drawn so far
+  std::int64_t presented_ = 0;  // frames brought to the display so far
 
   Pacing pacing_;
   FrameTimes times_;  // of this frame
@@ -244,7 +245,7 @@ void Viewer::frame(double dt) {
   times_.whole = dt;
   frame_history_.add(times_);
   frames_due_ = std::max(0, frames_due_ - 1);
-  report_.write(context_, {area_, shown_camera_, shown_time_, drawn_}, times_, dt);
+  report_.write(context_, {area_, shown_camera_, shown_time_, drawn_, presented_}, times_, dt);
 }
 
 void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
@@ -278,7 +279,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   if (draws) times_.drawn += since(waiting);
   place_views();  // the panels may have moved
   const auto presenting = Clock::now();
-  present();
+  present(draws);
   times_.present = since(presenting) - times_.waiting;
   pacing_.showed_frame((draws ? times_.drawn : 0) + since(presenting), draws);
 }
@@ -436,7 +437,13 @@ bool Viewer::draw_picture(double dt) {
   return true;
 }
 
-void Viewer::present() {
+// Does nothing if the window shows this frame already. `draws`: the frame has new robots.
+void Viewer::present(bool draws) {
+  const bool exposed = window_.take_exposure(), looks_new = imgui_.end_frame();
+  times_.waiting = 0;
+  if (!draws && !exposed && !looks_new && redraws_ == 0 && !recorder_.busy() && !screenshot_.busy() &&
+      !context_.screenshot_requested)
+    return;
   const WindowSize pixels = window_.pixels();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels.width, pixels.height);
@@ -446,19 +453,19 @@ void Viewer::present() {
     viewport_.present(pixels.height);
     second_.present(pixels.height);
   }
-  imgui_.end_frame();
+  imgui_.draw();
   recorder_.capture_frame(context_, pixels);
   update_screenshot();
   // After both, so that neither shows it.
   if (recorder_.recording() && !recorder_.ending())
     imgui_.draw_on_top([&](ImDrawList& list) { draw_recording_sign(list, context_, area_); });
-  times_.waiting = 0;
   if (log_) {
     const auto begin = Clock::now();
     glFinish();
     times_.waiting = since(begin);
   }
   window_.swap_buffers();
+  ++presented_;
 }
 
 void Viewer::update_screenshot() {

@@ -10,8 +10,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cfloat>
 #include <cmath>
+#include <string_view>
 
 #include "app/window/toolkit/embedded.h"
 #include "app/window/toolkit/theme.h"
@@ -47,6 +50,31 @@ void add_text_font(float size, bool with_icons) {
   config.MergeMode = true;
   config.GlyphOffset.y = std::round(0.04f * size);
   add_font(embedded_file("fontawesome-webfont.ttf"), size, icons, config);
+}
+
+void add_to(std::uint64_t& hash, const void* data, std::size_t bytes) {
+  const std::string_view text(static_cast<const char*>(data), bytes);
+  hash = 0x9e3779b97f4a7c15 * (std::rotl(hash, 5) ^ std::hash<std::string_view>()(text));
+}
+
+// Triangles, their colors and textures, but not what is in the textures.
+std::uint64_t hash_of(const ImDrawData& data) {
+  std::uint64_t hash = 1;
+  const std::array<float, 4> display{data.DisplaySize.x, data.DisplaySize.y, data.FramebufferScale.x,
+                                     data.FramebufferScale.y};
+  add_to(hash, display.data(), sizeof display);
+  for (int i = 0; i < data.CmdListsCount; ++i) {
+    const ImDrawList& list = *data.CmdLists[i];
+    add_to(hash, list.VtxBuffer.Data, static_cast<std::size_t>(list.VtxBuffer.size_in_bytes()));
+    add_to(hash, list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.size_in_bytes()));
+    for (const ImDrawCmd& command : list.CmdBuffer) {
+      add_to(hash, &command.ClipRect, sizeof command.ClipRect);
+      add_to(hash, &command.TextureId, sizeof command.TextureId);
+      const std::array<unsigned, 3> part{command.VtxOffset, command.IdxOffset, command.ElemCount};
+      add_to(hash, part.data(), sizeof part);
+    }
+  }
+  return hash;
 }
 
 }  // namespace
@@ -85,6 +113,7 @@ void ImGuiLayer::build_fonts() {
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
   apply_theme(theme_, scale);
+  drawn_ = 0;  // other letters may be in the same places of the texture
 }
 
 void ImGuiLayer::feed(const InputEvent& event) {
@@ -142,9 +171,15 @@ void ImGuiLayer::begin_frame(const std::vector<InputEvent>& events) {
   ImGui::NewFrame();
 }
 
-void ImGuiLayer::end_frame() {
+bool ImGuiLayer::end_frame() {
   ImGui::Render();
+  frame_ = hash_of(*ImGui::GetDrawData());
+  return frame_ != drawn_;
+}
+
+void ImGuiLayer::draw() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  drawn_ = frame_;
 }
 
 void ImGuiLayer::draw_on_top(const std::function<void(ImDrawList& list)>& draw) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -30,8 +31,10 @@ class ImGuiLayer {
 
   // Starts a frame that receives these events.
   void begin_frame(const std::vector<InputEvent>& events);
-  void end_frame();  // draws the frame over the window's framebuffer
-  // Draws something more over the window's framebuffer, after end_frame().
+  // Ends the frame. Returns whether it looks other than the last one that was drawn.
+  bool end_frame();
+  void draw();  // over the window's framebuffer, after end_frame()
+  // Draws something more over the window's framebuffer, after draw().
   void draw_on_top(const std::function<void(ImDrawList& list)>& draw);
   // Ends the frame without drawing it.
   void discard_frame();
@@ -45,6 +48,7 @@ class ImGuiLayer {
   render::Theme theme_ = render::Theme::dark;
   float text_scale_ = 1, screen_scale_ = 0;
   bool changed_ = true;
+  std::uint64_t frame_ = 0, drawn_ = 0;  // hashes of what the frame and the last drawn one look like
   struct {
     float x = 0, y = 0;
     bool inside = false;

@@ -127,9 +127,12 @@ void Window::install_callbacks() {
     self.active_ = true;
     self.dropped_.insert(self.dropped_.end(), paths, paths + count);
   });
-  const auto active = [](GLFWwindow* handle, auto...) { window_of(handle).active_ = true; };
-  glfwSetFramebufferSizeCallback(window_, active);
-  glfwSetWindowRefreshCallback(window_, active);
+  const auto expose = [](GLFWwindow* handle, auto...) {
+    window_of(handle).active_ = true;
+    window_of(handle).exposed_ = true;
+  };
+  glfwSetFramebufferSizeCallback(window_, expose);
+  glfwSetWindowRefreshCallback(window_, expose);
 }
 
 std::vector<KeyPress> key_presses_in(const std::vector<InputEvent>& events) {
@@ -203,6 +206,7 @@ void Window::toggle_full_screen() {
 
 std::vector<std::filesystem::path> Window::take_dropped_files() { return std::exchange(dropped_, {}); }
 bool Window::take_activity() { return std::exchange(active_, false); }
+bool Window::take_exposure() { return std::exchange(exposed_, false); }
 
 using Kind = InputEvent::Kind;
 

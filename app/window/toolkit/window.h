@@ -107,6 +107,8 @@ class Window {
   std::vector<std::filesystem::path> take_dropped_files();
   // True if there was any input since the last call.
   bool take_activity();
+  // True if what the window showed may be lost since the last call: it has another size, or another window covered it.
+  bool take_exposure();
 
  private:
   void install_callbacks();
@@ -116,7 +118,7 @@ class Window {
   std::unique_ptr<render::Context> gl_context_;
   InputQueue input_;
   std::vector<std::filesystem::path> dropped_;
-  bool active_ = true;
+  bool active_ = true, exposed_ = true;
   struct {
     int x, y, width, height;
   } windowed_{0, 0, 0, 0};  // position and size to return to from full screen

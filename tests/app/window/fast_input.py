@@ -20,6 +20,7 @@ class FastInput:
         self.xtest = ctypes.CDLL(ctypes.util.find_library("Xtst") or "libXtst.so.6")
         self.x11.XOpenDisplay.restype = ctypes.c_void_p
         self.x11.XStringToKeysym.restype = ctypes.c_ulong
+        self.x11.XDefaultRootWindow.restype = self.x11.XCreateSimpleWindow.restype = ctypes.c_ulong
         self.x11.XKeysymToKeycode.argtypes = [ctypes.c_void_p, ctypes.c_ulong]
         self.x11.XkbKeycodeToKeysym.restype = ctypes.c_ulong
         self.x11.XkbKeycodeToKeysym.argtypes = [ctypes.c_void_p, ctypes.c_ubyte, ctypes.c_uint, ctypes.c_uint]
@@ -42,6 +43,17 @@ class FastInput:
     def resize(self, window, width, height):
         """Between the events before and those after it. `window`: its number in the X server."""
         self.x11.XResizeWindow(self.display, ctypes.c_ulong(window), width, height)
+
+    def cover(self, width, height):
+        """Puts a black window over the top left corner of the display."""
+        root = ctypes.c_ulong(self.x11.XDefaultRootWindow(self.display))
+        self.cover_window = ctypes.c_ulong(self.x11.XCreateSimpleWindow(self.display, root, 0, 0, width, height, 0, 0, 0))
+        self.x11.XMapRaised(self.display, self.cover_window)
+        self.sync()
+
+    def uncover(self):
+        self.x11.XDestroyWindow(self.display, self.cover_window)
+        self.sync()
 
     def move(self, x, y):
         self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, 0)

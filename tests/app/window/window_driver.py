@@ -54,8 +54,9 @@ class Window:
         self.process = subprocess.Popen(
             [program, "view", "--device", "cpu", "--quality", "low", "--size", size, "--report", str(self.report), *arguments],
             cwd=self.folder, env=self.environment, stderr=self.messages)
-        self.items, self.events, self.offset, self.rest = {}, [], 0, ""
+        self.items, self.events, self.file, self.rest = {}, [], None, ""
         self.frames = 0  # frame events read
+        self.clicked = None, 0  # place and time of the last click
         try:
             self.wait("ready")
         except BaseException:
@@ -67,13 +68,11 @@ class Window:
 
     def read_report(self):
         """Reads the new lines of the report."""
-        if not self.report.exists():
+        if self.file is None and self.report.exists():
+            self.file = open(self.report)
+        if self.file is None or self.file.closed:
             return
-        with open(self.report) as file:
-            file.seek(self.offset)
-            text = self.rest + file.read()
-            self.offset = file.tell()
-        *lines, self.rest = text.split("\n")
+        *lines, self.rest = (self.rest + self.file.read()).split("\n")
         for line in lines:
             event = json.loads(line)
             if event["event"] == "item":
@@ -94,7 +93,7 @@ class Window:
                 raise AssertionError(f"the window ended with {self.process.returncode} before {what}: {self.stderr()}")
             if time.monotonic() > deadline:
                 raise AssertionError(f"no {what}; last: {self.events[-3:]}")
-            time.sleep(0.02)
+            time.sleep(0.005)  # a frame of the window takes 10 times as long
 
     def mark(self):
         """The number of events so far, for the `since` of wait() and frame()."""
@@ -146,10 +145,13 @@ class Window:
         while place != (place := self.place(item)):
             self.do("mousemove", *place)
             self.frame()
+        if place == self.clicked[0]:
+            self.until("end of a double click", lambda: time.monotonic() > self.clicked[1] + 0.35)
         self.do("click", button)
         # Press and release take one frame each; their effect shows in the next one.
         self.frame()
         self.frame()
+        self.clicked = place, time.monotonic()
 
     def drag(self, *places, held=(), at_release=()):
         """Drags the left button along places, with keys held; each action waits until the window has drawn what it did."""
@@ -233,7 +235,13 @@ class Window:
         if self.process.poll() is None:
             self.process.kill()
         self.process.wait()
+        self.close_files()
+
+    def close_files(self):
         self.messages.close()
+        self.read_report()
+        if self.file:
+            self.file.close()
 
     def close(self):
         """Quits without saving. Returns the exit status."""
@@ -249,7 +257,7 @@ class Window:
             except (AssertionError, subprocess.TimeoutExpired):
                 self.process.kill()
                 self.process.wait()
-        self.messages.close()
+        self.close_files()
         return self.process.returncode
 
 

@@ -3,6 +3,7 @@
 import json
 import math
 
+from fast_input import FastInput
 from window_case import SAMPLES, WindowCase, main, numpy
 from window_driver import scratch
 from window_playback_test import robot_that_explodes
@@ -28,6 +29,36 @@ class LayoutTest(WindowCase):
         window.key("c")
         travels = window.frame(lambda frame: frame["layout"] == "grid", since)
         self.assertGreater(farthest(travels["where"], self.after(window, 1.5)["where"]), 3)
+        self.finish(window)
+
+    def test_only_what_is_new_is_brought_to_the_display(self):
+        window = self.small("--paused")
+
+        def rest():
+            """Tooltips and pictures of robots have come."""
+            window.until("rest", lambda: len({window.frame()["presented"] for _ in range(10)}) == 1)
+
+        window.open("View")
+        window.do("mousemove", *window.place("panel.View"))
+        rest()
+        begin, shown = window.frame(), window.pixels()
+        for _ in range(5):
+            later = window.frame()
+        self.assertGreater(later["number"], begin["number"] + 4)
+        self.assertEqual(later["presented"], begin["presented"])
+        window.click("tab.Tune")
+        window.frame(lambda frame: frame["presented"] > begin["presented"])
+        self.assertGreater((window.pixels() != shown).mean(), 0.01, "another panel")
+        # What another window covered is shown again.
+        rest()
+        shown = window.pixels()
+        cover = FastInput(self.display)
+        self.addCleanup(cover.close)
+        cover.cover(300, 200)  # away from the mouse, which would change the picture
+        self.assertFalse(window.pixels()[:200, :300].any())
+        self.assertTrue(shown[:200, :300].any())
+        cover.uncover()
+        window.until("what was covered", lambda: window.frame() and (window.pixels() == shown).all())
         self.finish(window)
 
     def test_top_shows_a_grid_from_above(self):
