@@ -17,6 +17,7 @@ class FilesTest(WindowCase):
         window.click("robot.1")
         window.frame(lambda frame: frame["selected"] == 1)
         for expected in ("saved", "asks"):  # the second time, the file exists
+            window.until("no dialog", lambda: "dialog.text" not in window.items)
             since = window.mark()
             window.key("ctrl+shift+s")
             window.dialog(str(self.folder / "new.json"))
@@ -136,6 +137,7 @@ class FilesTest(WindowCase):
         shown = window.frame(lambda frame: frame["theme"] == "light" and frame["camera"] == "still")
         scene = self.folder / "scene.toml"
         for expected in ("saved", "asks"):  # the second time, the file exists
+            window.until("no dialog", lambda: "dialog.text" not in window.items)
             since = window.mark()
             window.key("ctrl+s")
             window.dialog(str(scene) if expected == "saved" else "")
