@@ -163,12 +163,12 @@ def test_signatures_are_those_of_the_functions():
     assert list(inspect.signature(Own).parameters) == ["size"] and len(Own(2)) == 2
 
 
-def test_the_package_itself_has_no_errors_of_types(tmp_path):
+def test_the_package_itself_has_no_errors_of_types(type_cache):
     if not importlib.util.find_spec("mypy"):
         pytest.skip("there is no mypy")
     if not (FOLDER / "_mercury.pyi").exists():
         pytest.skip("this build has no stubs")
-    result = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path, FOLDER],
+    result = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", type_cache("itself"), FOLDER],
                             capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
 
