@@ -82,8 +82,9 @@ std::size_t usual_population(std::string_view algorithm, const GenomeSpace& spac
   return 4 + static_cast<std::size_t>(3 * portable_log(static_cast<double>(std::max<std::size_t>(1, n))));
 }
 
-Evolution::Evolution(const EvolutionSettings& settings, const GenomeSpace& space)
-    : settings_(settings), space_(space), islands_(std::make_unique<Islands>(settings.algorithm)) {
+Evolution::Evolution(const EvolutionSettings& settings, const GenomeSpace& space, std::unique_ptr<Algorithm> algorithm)
+    : settings_(settings), space_(space),
+      islands_(std::make_unique<Islands>(settings.algorithm, std::move(algorithm))) {
   validate(settings);
   validate(settings, space);
   if (algorithm_named(settings.algorithm.name).of_numbers) start_ = start_of_search(space, settings.seed);
@@ -262,14 +263,34 @@ std::vector<double> Evolution::interim_limits(std::span<const Individual> parent
 }
 
 Generation Evolution::select(std::vector<Individual> children) {
-  Generation generation{.number = next_generation_, .born = children};
-  const std::size_t before = living_.size();
+  std::vector<Individual> pool = living_;
+  std::ranges::copy(children, std::back_inserter(pool));
+  const std::vector<std::size_t> survivors = islands_->survivors(pool, living_.size());
+  return take(std::move(pool), std::move(children), survivors);
+}
+
+Generation Evolution::select(std::vector<Individual> children, std::span<const std::uint64_t> living) {
+  std::vector<Individual> pool = living_;
+  std::ranges::copy(children, std::back_inserter(pool));
+  std::vector<std::size_t> survivors;
+  for (const std::uint64_t id : living) {
+    const auto found = std::ranges::find(pool, id, &Individual::id);
+    const auto index = static_cast<std::size_t>(found - pool.begin());
+    if (found == pool.end() || std::ranges::find(survivors, index) != survivors.end())
+      throw InputError("living", "robot " + std::to_string(id) +
+                                     " is not accepted; give each of those that live or are born, at most once");
+    survivors.push_back(index);
+  }
+  return take(std::move(pool), std::move(children), survivors);
+}
+
+Generation Evolution::take(std::vector<Individual> pool, std::vector<Individual> children,
+                           std::span<const std::size_t> survivors) {
+  Generation generation{.number = next_generation_, .born = std::move(children)};
   if (settings_.pipelined) before_ = living_;
-  std::vector<Individual> pool = std::move(living_);
-  next_id_ += children.size();
-  std::ranges::move(children, std::back_inserter(pool));
+  next_id_ += generation.born.size();
   living_.clear();
-  for (const std::size_t i : islands_->survivors(pool, before)) living_.push_back(std::move(pool.at(i)));
+  for (const std::size_t i : survivors) living_.push_back(std::move(pool.at(i)));
   for (const Individual& individual : living_) generation.living.push_back(individual.id);
   islands_->algorithm().learn(generation.born, Random(seed_of_plan(settings_.seed, next_generation_)));
   ++next_generation_;

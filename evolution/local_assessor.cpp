@@ -52,8 +52,9 @@ class Tally {
     values_.resize(values.size());
     for (std::size_t q = 0; q < values.size(); ++q) values_[q].push_back(values[q]);
     scores_.resize(objectives_.size());
+    if (std::ranges::any_of(objectives_, &Objective::is_custom)) assessment_.trial_values.push_back(values);
     for (std::size_t o = 0; o < objectives_.size(); ++o) {
-      scores_[o].push_back(objectives_[o].score(values));
+      scores_[o].push_back(objectives_[o].is_custom() ? 0 : objectives_[o].score(values));
       if (settings_.median && is_scored(fate) && scores_[o].back() == worst_score) note_undefined(objectives_[o]);
     }
   }

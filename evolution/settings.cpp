@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "evolution/selection/registry.h"
+#include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/evolution.h"
 #include "mercury/names.h"
@@ -91,6 +92,8 @@ void validate(const EvolutionSettings& settings) {
               " islands and their migrants");
   require(!settings.pipelined || !algorithm_named(settings.algorithm.name).learns, "pipelined",
           settings.algorithm.name + " learns from each generation before it makes the next; leave it out");
+  require(!trials.racing || !is_custom(settings.objectives.front()), "racing",
+          "compares robots during their trials, and " + settings.objectives.front() + " is known after them");
   require(!trials.racing || (trials.trials == 1 && settings.objectives.size() == 1), "racing",
           "works with one objective and one trial per robot");
 }

@@ -183,6 +183,8 @@ int check(const CheckOptions& options) {
   std::vector<std::string> notes;
   report.configuration = options.simulation.configuration_of(robots, notes);
   for (const std::string& note : notes) warn(note);
+  if (objective.is_custom())
+    throw InputError("--objective", objective.formula() + " is a function of a program; give a formula");
   if (const std::string why = why_meaningless(objective, report.configuration.environment); !why.empty())
     throw InputError("--objective", why);
   if (options.output.dry_run())

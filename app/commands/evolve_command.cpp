@@ -31,6 +31,7 @@
 #include "evolution/run_folder/new_folder.h"
 #include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
+#include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
 #include "mercury/run_folder.h"
@@ -66,6 +67,14 @@ void require_not_past(int generations, const EvolveOptions& options, const RunHi
                                  options.folder, last, last));
 }
 
+// Custom parts are in a program of the user's.
+void require_no_custom_parts(const EvolveOptions& options, const RunSettings& run) {
+  if (const std::string parts = custom_parts(run.evolution, run.space); !parts.empty())
+    throw InputError(options.folder, fmt::format("has {} of a program in Python, which goes on with the run by "
+                                                 "mercurysim.evolution.resume()",
+                                                 parts));
+}
+
 // The number that the user gives, unless the run is past it.
 void set_generations(const EvolveOptions& options, RunFolder& run) {
   const std::optional<int> given = options.run.generations();
@@ -79,6 +88,7 @@ RunFolder open_folder(const EvolveOptions& options, const Command& command) {
   if (options.resume) {
     options.run.require_only_what_may_change(command);
     RunFolder run = RunFolder::open(folder);
+    require_no_custom_parts(options, run.history().settings());
     set_generations(options, run);
     return run;
   }
@@ -86,6 +96,7 @@ RunFolder open_folder(const EvolveOptions& options, const Command& command) {
     throw InputError(folder.string(), "holds a run; --resume goes on with it, --force replaces it");
   std::vector<std::string> notes;
   const RunSettings settings = options.run.settings(notes);
+  require_no_custom_parts(options, settings);
   for (const std::string& note : notes) warn(note);
   // A device that is not there is noticed before a folder is made or replaced.
   if (settings.evolution.configuration.device.kind == DeviceKind::cuda)
@@ -155,7 +166,7 @@ void report_checks(const EvolveOptions& options, const RunHistory& run, const Ch
                                       ? "is confirmed"
                                       : fmt::format("is not confirmed: {}{}{}", name_of(best->verdict),
                                                     best->reason.empty() ? "" : ": ", best->reason));
-  const bool has_map = algorithm_named(run.settings().evolution.algorithm.name).has_map;
+  const bool has_map = algorithm_of(run.settings().evolution.algorithm).has_map;
   std::size_t confirmed = 0, checked = 0;
   for (const auto& [id, generation] : champions)
     if (const Confirmation* check = check_of(id)) {
@@ -353,6 +364,7 @@ int evolve_shard(const EvolveOptions& options, const Command& command) {
   const auto [shard, count] = shard_from(options.shard);
   options.run.require_only_what_may_change(command);
   const RunHistory history(options.folder);
+  require_no_custom_parts(options, history.settings());
   const EvolutionSettings settings = settings_here(options, command, history.settings());
   Evolution evolution(settings, history.space());
   restore(history, evolution);
@@ -375,6 +387,7 @@ int evolve_shard(const EvolveOptions& options, const Command& command) {
 int merge(const EvolveOptions& options, const Command& command) {
   options.run.require_only_what_may_change(command);
   RunFolder run = RunFolder::open(options.folder);
+  require_no_custom_parts(options, run.history().settings());
   const auto finished = static_cast<int>(run.history().generations().size());
   const bool was_over = finished > run.history().settings().evolution.generations;
   set_generations(options, run);
@@ -403,6 +416,7 @@ int describe_more(const EvolveOptions& options, const Command& command) {
   options.run.require_only_what_may_change(command);
   if (!options.shard.empty()) shard_from(options.shard);
   const RunHistory history(options.folder);
+  require_no_custom_parts(options, history.settings());
   if (options.run.generations()) require_not_past(*options.run.generations(), options, history);
   const EvolutionSettings settings = settings_here(options, command, history.settings());
   return print_dry_run("evolve",
@@ -432,7 +446,9 @@ int describe_work(const EvolveOptions& options, const Command& command) {
   outputs.add_folder("RUN", options.folder);
   outputs.check();
   std::vector<std::string> notes;
-  const EvolutionSettings settings = options.run.settings(notes).evolution;
+  const RunSettings run = options.run.settings(notes);
+  require_no_custom_parts(options, run);
+  const EvolutionSettings& settings = run.evolution;
   for (const std::string& note : notes) say(note);
   const std::size_t population = settings.algorithm.population;
   const std::size_t children = settings.children > 0 ? settings.children : population;

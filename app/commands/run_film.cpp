@@ -75,7 +75,7 @@ struct RunBoard {
 RunBoard board_of(const RunHistory& run) {
   const RunSettings& settings = run.settings();
   const std::vector<MapAxis>& axes = settings.evolution.algorithm.axes;
-  if (!algorithm_named(settings.evolution.algorithm.name).has_map)
+  if (!algorithm_of(settings.evolution.algorithm).has_map)
     throw InputError(run.folder().string(),
                      fmt::format("has no map, since its algorithm is {}; --map takes runs of map-elites or cma-me",
                                  settings.evolution.algorithm.name));

@@ -11,6 +11,7 @@
 #include "app/commands/description.h"
 #include "app/commands/run_film.h"
 #include "app/options/generator_options.h"
+#include "mercury/custom.h"
 #include "mercury/names.h"
 #include "mercury/quantity.h"
 
@@ -45,6 +46,7 @@ std::string genome_text(const GenomeSpaceRequest& space) {
   } else {
     const Generator* generator = find_generator(space.kind);
     text = space.kind + " robots";
+    if (is_custom(space.kind)) return text + ", which a program makes";
     if (generator)
       for (const auto& [option, value] : options_of(*generator, space.values))
         text += fmt::format(", {} {}", option.substr(2), value);
@@ -75,10 +77,13 @@ std::string algorithm_text(const EvolutionSettings& settings) {
   const AlgorithmSettings& algorithm = settings.algorithm;
   const std::size_t children = settings.children > 0 ? settings.children : algorithm.population;
   std::string text = algorithm.name;
-  const AlgorithmDescription& description = algorithm_named(algorithm.name);
+  const AlgorithmDescription& description = algorithm_of(algorithm);
   if (!description.has_map) text += fmt::format(", population {}", algorithm.population);
-  text += fmt::format(", {} children per generation, crossover {:g}, mutation {:g}, seed {}", children,
-                      algorithm.crossover, settings.mutation, settings.seed);
+  if (is_custom(algorithm.name))
+    text += fmt::format(", seed {}", settings.seed);
+  else
+    text += fmt::format(", {} children per generation, crossover {:g}, mutation {:g}, seed {}", children,
+                        algorithm.crossover, settings.mutation, settings.seed);
   if (algorithm.islands > 1) {
     text += fmt::format("; {} islands", algorithm.islands);
     text +=

@@ -25,7 +25,7 @@ std::vector<Champion> champions_of(const RunHistory& history) {
 EliteMap map_of(const RunHistory& history) {
   const AlgorithmSettings& algorithm = history.settings().evolution.algorithm;
   const std::vector<MapAxis>& axes = algorithm.axes;
-  if (!algorithm_named(algorithm.name).has_map) return {};
+  if (!algorithm_of(algorithm).has_map) return {};
   EliteMap map;
   map.axes.assign(axes.begin(), axes.begin() + std::min<std::ptrdiff_t>(2, std::ssize(axes)));
   map.columns = static_cast<std::size_t>(axes[0].cells);

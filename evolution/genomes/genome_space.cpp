@@ -8,6 +8,7 @@
 
 #include "evolution/genomes/spaces.h"
 #include "mercury/configuration.h"
+#include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/genome.h"
 #include "mercury/origin.h"
@@ -210,6 +211,7 @@ std::unique_ptr<GenomeSpace> make_body_space(const GenomeSpaceRequest& request) 
 
 std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request) {
   if (!request.environment.empty()) environment_named(request.environment);  // or it throws
+  if (request.founders.empty() && is_custom(request.kind)) return std::make_unique<CustomSpace>(request.kind);
   require_brains(request);
   std::unique_ptr<GenomeSpace> bodies = make_body_space(request);
   const bool has_brains =

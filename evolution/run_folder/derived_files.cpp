@@ -64,7 +64,7 @@ std::optional<Robot> grown(const RunHistory& run, std::uint64_t id) {
   }
 }
 
-bool has_map(const RunHistory& run) { return algorithm_named(run.settings().evolution.algorithm.name).has_map; }
+bool has_map(const RunHistory& run) { return algorithm_of(run.settings().evolution.algorithm).has_map; }
 
 // 0 if its population is not split.
 std::size_t islands_of(const RunHistory& run) {

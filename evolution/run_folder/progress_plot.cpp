@@ -316,7 +316,7 @@ std::string footer_of(const RunHistory& run) {
 std::string progress_plot(const RunHistory& run) {
   const EvolutionSettings& settings = run.settings().evolution;
   const std::size_t objectives = settings.objectives.size();
-  const bool has_map = settings.algorithm.name == "map-elites" && !settings.algorithm.axes.empty();
+  const bool has_map = algorithm_of(settings.algorithm).has_map;
   const bool has_front = objectives == 2;
   const double score_height = objectives == 1 ? 340 : 230, front_height = 420;
   const double map_height = settings.algorithm.axes.size() > 1 ? 420 : 90;

@@ -201,7 +201,7 @@ void RunHistory::Parts::add(GenerationRecord record) {
                                    std::span(individuals).subspan(record.first_id), living, individuals,
                                    first_ancestors, objectives));
   const AlgorithmSettings& algorithm = file.settings.evolution.algorithm;
-  if (GenerationSummary& last = generations.back(); algorithm_named(algorithm.name).has_map)
+  if (GenerationSummary& last = generations.back(); algorithm_of(algorithm).has_map)
     last.coverage = static_cast<double>(last.scored) / static_cast<double>(map_cells(algorithm));
   if (algorithm.islands > 1) generations.back().best_of_islands = best_of_islands();
 }

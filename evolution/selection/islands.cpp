@@ -2,6 +2,7 @@
 #include "evolution/selection/islands.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "evolution/selection/ranking.h"
 
@@ -20,13 +21,15 @@ struct Group {
 
 }  // namespace
 
-Islands::Islands(const AlgorithmSettings& settings) : settings_(settings), all_(make_algorithm(settings)) {
+Islands::Islands(const AlgorithmSettings& settings, std::unique_ptr<Algorithm> custom)
+    : settings_(settings), all_(make_algorithm(settings)) {
   algorithms_.resize(settings.islands);
   for (std::size_t island = 0; island < settings.islands; ++island) {
     AlgorithmSettings own = settings;
     own.population = share_of(settings.population, island);
     algorithms_[island] = algorithm_named(settings.name).make(own);
   }
+  if (custom) algorithms_.front() = std::move(custom);
 }
 
 std::size_t Islands::share_of(std::size_t count, std::size_t island) const {

@@ -23,8 +23,8 @@ namespace mercury {
 
 class Islands {
  public:
-  // Throws as make_algorithm().
-  explicit Islands(const AlgorithmSettings& settings);
+  // `custom` = in place of the algorithm of the settings, on one island. Throws as make_algorithm().
+  explicit Islands(const AlgorithmSettings& settings, std::unique_ptr<Algorithm> custom = nullptr);
 
   // Of one island: the algorithm itself, which may learn.
   Algorithm& algorithm() const { return *algorithms_.front(); }

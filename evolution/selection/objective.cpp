@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/individual.h"
 #include "mercury/names.h"
@@ -154,9 +155,14 @@ struct Objective::Parsed {
 };
 
 Objective::Objective(const std::string& formula)
-    : formula_(formula), parsed_(std::make_shared<const Parsed>(formula)) {}
+    : formula_(formula), parsed_(mercury::is_custom(formula) ? nullptr : std::make_shared<const Parsed>(formula)) {
+  if (is_custom()) check_custom_name("objective", formula);
+}
 
-const std::vector<std::size_t>& Objective::uses() const { return parsed_->used; }
+const std::vector<std::size_t>& Objective::uses() const {
+  static const std::vector<std::size_t> none;
+  return parsed_ ? parsed_->used : none;
+}
 
 std::string Objective::undefined_text() const { return "the objective \"" + formula_ + "\" is not a finite number"; }
 
@@ -180,6 +186,7 @@ std::string why_meaningless(const Objective& objective, const Environment& envir
 }
 
 double Objective::score(std::span<const double> values) const {
+  if (is_custom()) throw std::logic_error("a program scores robots by " + formula_);
   if (values.size() != parsed_->variables.size()) throw std::invalid_argument("an objective needs all quantities");
   const std::lock_guard lock(parsed_->mutex);
   std::ranges::copy(values, parsed_->variables.begin());

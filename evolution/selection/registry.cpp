@@ -5,6 +5,7 @@
 
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
+#include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/names.h"
 
@@ -17,12 +18,23 @@ std::span<const AlgorithmDescription> algorithms() {
 }
 
 const AlgorithmDescription& algorithm_named(std::string_view name) {
+  static const AlgorithmDescription custom = custom_algorithm();
+  if (is_custom(name)) {
+    check_custom_name("algorithm", name);
+    return custom;
+  }
   std::vector<std::string> names;
   for (const AlgorithmDescription& algorithm : algorithms()) {
     if (algorithm.name == name) return algorithm;
     names.emplace_back(algorithm.name);
   }
   throw ParameterError("algorithm", "\"" + std::string(name) + "\" is not an algorithm; give one of " + list_of(names));
+}
+
+const AlgorithmDescription& algorithm_of(const AlgorithmSettings& settings) {
+  static const AlgorithmDescription map = custom_map();
+  const AlgorithmDescription& named = algorithm_named(settings.name);
+  return is_custom(settings.name) && !settings.axes.empty() ? map : named;
 }
 
 std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings) {

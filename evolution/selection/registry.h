@@ -19,5 +19,8 @@ AlgorithmDescription cma_es();
 AlgorithmDescription cma_me();
 AlgorithmDescription sep_cma_es();
 AlgorithmDescription random_search();
+// Of custom algorithms (mercury/custom.h), without and with axes. They are in no list.
+AlgorithmDescription custom_algorithm();
+AlgorithmDescription custom_map();
 
 }  // namespace mercury

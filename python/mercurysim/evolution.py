@@ -15,32 +15,39 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _mercury
-from ._mercury import Environment, Genome, Genomes, InputError, Result, Robot
+from ._custom import PREFIX, Kind, Population, Scoring, Selection, Values, name_of
+from ._mercury import Assessed, Environment, Genome, Genomes, InputError, Result, Robot
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-__all__ = ["Genome", "Genomes", "Run", "Search", "Settings", "Table", "resume", "start"]
+__all__ = ["Assessed", "Genome", "Genomes", "Population", "Run", "Search", "Settings", "Table", "resume", "start"]
 
 _cpp: Any = _mercury  # has classes for this file alone, which its stubs leave out
 
 Table = dict[str, NDArray[Any]]  # columns of equal length by name; pandas.DataFrame(table) makes a frame
 
 
+Function = Callable[[Values], ArrayLike]  # an objective: scores of arrays (robots, trials)
+
+
 class Settings(TypedDict, total=False):
     """How robots are searched: the options of `mercury evolve`, all of them optional."""
 
-    objective: str | Sequence[str]  # formulas of quantities, more is better; default "distance"
-    # "afpo" (default), "ga", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es", "cma-me", "random".
-    algorithm: str
-    # Of map-elites, novelty and cma-me.
+    # Formulas of quantities, or functions of them (docs/python.md), more is better; default "distance". "python:NAME" is
+    # an objective whose scores come by tell().
+    objective: str | Function | Sequence[str | Function]
+    # "afpo" (default), "ga", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es", "cma-me", "random"; an
+    # object, a class or a function (docs/python.md); "python:NAME" for an optimizer that gives its genomes.
+    algorithm: str | object
+    # Of map-elites, novelty, cma-me, and of algorithms in Python that keep a map.
     axes: Sequence[str | tuple[str] | tuple[str, float, float] | tuple[str, float, float, int]]
     population: int  # robots that live on after each generation; of cma-es by default 4 + 3 ln n
     children: int  # born in a generation; 0 = as many as the population
@@ -88,44 +95,210 @@ class Settings(TypedDict, total=False):
     threads: int
 
 
+def _functions(objective: Any) -> dict[str, Function]:
+    """Those of the objectives that are functions, by their names in files."""
+    given = [objective] if isinstance(objective, str) or callable(objective) else list(objective or [])
+    functions: dict[str, Function] = {}
+    for function in given:
+        if not callable(function):
+            continue
+        if name_of(function) in functions:
+            raise InputError(f"objective: two functions have the name {function.__name__}; give them different ones")
+        functions[name_of(function)] = function
+    return functions
+
+
+def _named(settings: Mapping[str, Any]) -> tuple[dict[str, Any], Selection | None, Scoring | None]:
+    """Settings in which functions and objects have the names that files have, and what they stand for."""
+    named = dict(settings)
+    objectives = named.get("objective", "distance")
+    functions = _functions(objectives)
+    if isinstance(objectives, str) or callable(objectives):
+        objectives = [objectives]
+    objectives = [objective if isinstance(objective, str) else name_of(objective) for objective in objectives]
+    if "objective" in named:
+        named["objective"] = objectives
+    scoring = Scoring(objectives, functions) if any(name.startswith(PREFIX) for name in objectives) else None
+    algorithm = named.get("algorithm", "")
+    selection = None
+    if not isinstance(algorithm, str):
+        selection = Selection(algorithm, int(named.get("seed", 1)))
+        named["algorithm"] = selection.name
+    return named, selection, scoring
+
+
+def _require_names(what: str, given: Iterable[str], known: Iterable[str]) -> None:
+    for name in given:
+        if name not in known:
+            raise InputError(f"{what}: the run has {', '.join(known) or 'none of a program'}, not {name}")
+
+
 def start(
     folder: str | os.PathLike[str],
-    robots: str | Robot | Iterable[Robot] = "voxel",
+    robots: str | type | Robot | Iterable[Robot] = "voxel",
     parameters: dict[str, Any] | None = None,
     *,
     genes: str = "body",
     force: bool = False,
     **settings: Unpack[Settings],
 ) -> Run:
-    """Makes the folder of a new run, whose first generation go_on() or advance() tries.
+    """Makes the folder of a new run, whose first generation go_on(), advance(), or ask() and tell() try.
 
     robots, parameters, genes: as of Genomes, what the search begins with and what changes. settings: see Settings.
     force: replaces a run that is in the folder.
 
     Raises InputError for what cannot be used, also a folder that is not empty.
     """
-    search = _cpp._Search(folder, robots, parameters, genes, force, settings)
-    return Run(folder, _search=search)
+    named, selection, scoring = _named(settings)
+    search = _cpp._Search(folder, robots, parameters, genes, force, named, selection, scoring)
+    return Run(folder, genomes=robots if isinstance(robots, type) else None, _search=search)
 
 
-def resume(folder: str | os.PathLike[str], generations: int | None = None, *, device: object = None) -> Run:
+def resume(
+    folder: str | os.PathLike[str],
+    generations: int | None = None,
+    *,
+    device: object = None,
+    repeat: int | None = None,
+    genomes: type | None = None,
+    algorithm: object = None,
+    objective: Function | Sequence[str | Function] | None = None,
+) -> Run:
     """Opens a run to go on with it, as `mercury evolve --resume` does. `generations` raises how many it has.
 
-    Raises InputError for a folder that is no run, or that another process writes.
+    genomes, algorithm, objective: those in Python that the run was started with.
+    repeat: the generation from which ask(), assess() and tell() repeat what the run has, without trying a robot again. A
+    program that does the same as before, as an optimizer with a seed does, comes so to where it was; 0 = all of it.
+
+    Raises InputError for a folder that is no run, or that another process writes, and for parts that the run does not
+    have.
     """
-    return Run(folder, _search=_cpp._Search.resume(folder, generations, device))
+    settings = _cpp._History(folder, None).settings()
+    kind = None if genomes is None else Kind(genomes)
+    if kind is not None:
+        _require_names("genomes", [kind.name], [settings["robots"]])
+    selection = None if algorithm is None else Selection(algorithm, settings["seed"])
+    if selection is not None:
+        _require_names("algorithm", [selection.name], [settings["algorithm"]])
+    functions = _functions(objective)
+    custom = [name for name in settings["objective"] if name.startswith(PREFIX)]
+    _require_names("objective", functions, custom)
+    scoring = Scoring(settings["objective"], functions) if custom else None
+    search = _cpp._Search.resume(folder, generations, device, repeat, kind, selection, scoring)
+    return Run(folder, genomes=genomes, _search=search)
 
 
-class Run:
+def _fnv1a(hashes: Iterable[int]) -> int:
+    """Of several trials, as in lineage.csv."""
+    value = 0xCBF29CE484222325
+    for number in hashes:
+        for byte in int(number).to_bytes(8, "little"):
+            value = (value ^ byte) * 0x100000001B3 % 2**64
+    return value
+
+
+def _hash_of(result: Result) -> int:
+    trials = result.trials
+    hashes = [trial.hash or 0 for trial in trials]
+    return hashes[0] if len(trials) == 1 else _fnv1a(hashes)
+
+
+class _Asked:
+    """What runs in a folder and searches in memory share: genomes are asked for, tried by the program, and scored."""
+
+    def _opened(self) -> Any:
+        raise NotImplementedError
+
+    @property
+    def generation(self) -> int:
+        """How many generations have scores: the number of the one that ask(), assess() and tell() are about."""
+        return int(self._opened().next_generation)
+
+    def ask(self) -> list[Genome]:
+        """The genomes of the next generation, by the algorithm of the settings; the same until tell() is called."""
+        return list(self._opened().ask())
+
+    def assess(self, genomes: Iterable[Genome | Robot] | None = None) -> Assessed:
+        """Tries genomes, of ask() or of your own, as the settings say; None = those of ask(). tell() takes the result.
+
+        Robots are genomes where the robots of the search are "python:NAME". Ctrl-C ends it.
+        """
+        assessed: Assessed = self._opened().assess(None if genomes is None else list(genomes))
+        return assessed
+
+    def tell(
+        self,
+        scores: ArrayLike | Assessed,
+        results: Sequence[Result] | None = None,
+        *,
+        genomes: Iterable[Genome | Robot] | None = None,
+        parents: Sequence[Sequence[int]] | None = None,
+        living: Sequence[int] | None = None,
+    ) -> None:
+        """Says how robots did, which ends the generation: those of ask(), or `genomes` that another optimizer made.
+
+        scores: what assess() gave, or in the order of the genomes a score each, or a row of them for several objectives;
+        more is better. NaN and infinities are those of robots that failed.
+        results: of evaluate(), where tables and the axes of a map find their quantities.
+        parents: of genomes that were not asked for, at most two ids each; None = they have none.
+        living: ids of those that live on, the best first; None = those that the algorithm chooses. Ids count all robots
+        in the order of their birth, these included.
+
+        Of a run, the generation is in its folder when this returns.
+        """
+        search = self._opened()
+        assessed = scores if isinstance(scores, Assessed) else self._assessed(scores, results, genomes)
+        lines = None if parents is None else [[int(parent) for parent in row] for row in parents]
+        search.tell(assessed, lines, None if living is None else [int(id) for id in living])
+
+    def _assessed(
+        self, scores: ArrayLike, results: Sequence[Result] | None, genomes: Iterable[Genome | Robot] | None
+    ) -> Assessed:
+        search = self._opened()
+        numbers = np.asarray(scores, float)
+        rows = np.array(numbers[:, None] if numbers.ndim == 1 else numbers)  # a copy
+        if rows.ndim != 2 or rows.shape[1] != search.objectives:
+            raise InputError(f"scores: the shape {numbers.shape} is not accepted; give a score per genome and objective")
+        values: list[list[float]] = []
+        hashes: list[int] = []
+        fates, problems = ["failed"] * len(rows), ["its score is not a finite number"] * len(rows)
+        if results is not None:
+            if len(results) != len(rows):
+                raise InputError(f"results: {len(results)} of them and {len(rows)} scores; give one per genome")
+            names = _cpp._quantities()
+            for i, result in enumerate(results):
+                quantities = result.quantities
+                values.append([quantities.get(name, np.nan) for name in names])
+                if result.failure is not None or result.exploded:
+                    rows[i] = np.nan
+                    fates[i], problems[i] = ("failed", result.failure) if result.failure else ("exploded", "")
+            if any(result.hash is not None for result in results):
+                hashes = [_hash_of(result) if result.failure is None else 0 for result in results]
+        elif search.needs_values:
+            raise InputError("results: map-elites, novelty and cma-me need them, and what else has axes")
+        assessed: Assessed = search.scored(
+            None if genomes is None else list(genomes), rows.tolist(), values, fates, problems, hashes
+        )
+        return assessed
+
+
+class Run(_Asked):
     """A run folder, to read it, also while another process or thread adds to it, and to go on with it.
 
-    What it says is as of the last refresh(); advance() and go_on() refresh by themselves.
+    What it says is as of the last refresh(); advance(), go_on() and tell() refresh by themselves. genomes: the class of
+    the genomes, if that is one of yours.
     """
 
-    def __init__(self, folder: str | os.PathLike[str], *, _search: Any = None) -> None:
+    def __init__(self, folder: str | os.PathLike[str], *, genomes: type | None = None, _search: Any = None) -> None:
         self._folder = os.fspath(folder)
-        self._history = _cpp._History(folder)
+        self._kind = None if genomes is None else Kind(genomes)
+        self._history = _cpp._History(folder, self._kind)
         self._search = _search
+
+    def _opened(self) -> Any:
+        if self._search is None:
+            self._search = _cpp._Search.resume(self._folder, None, None, None, self._kind, None, None)
+        return self._search
 
     def __repr__(self) -> str:
         done, wanted = len(self.generations()["generation"]), self.settings["generations"] + 1
@@ -147,8 +320,16 @@ class Run:
         return settings
 
     @property
+    def genomes(self) -> Genomes:
+        """The genomes among which it searches."""
+        genomes: Genomes = self._history.genomes(self._kind)
+        return genomes
+
+    @property
     def is_over(self) -> bool:
-        """Whether all its generations are there."""
+        """Whether all its generations are there; of a run that is repeated, whether they are all repeated."""
+        if self._search is not None:
+            return bool(self._search.is_over)
         return len(self.generations()["generation"]) > int(self.settings["generations"])
 
     def refresh(self) -> bool:
@@ -160,11 +341,25 @@ class Run:
 
         Ctrl-C ends it, and the run is as it was before.
         """
-        if self._search is None:
-            self._search = _cpp._Search.resume(self._folder, None, None)
-        advanced = bool(self._search.advance())
+        advanced = bool(self._opened().advance())
         self.refresh()
         return advanced
+
+    def tell(
+        self,
+        scores: ArrayLike | Assessed,
+        results: Sequence[Result] | None = None,
+        *,
+        genomes: Iterable[Genome | Robot] | None = None,
+        parents: Sequence[Sequence[int]] | None = None,
+        living: Sequence[int] | None = None,
+    ) -> None:
+        super().tell(scores, results, genomes=genomes, parents=parents, living=living)
+        self.refresh()
+        if self.is_over:
+            self._search.write_all()
+
+    tell.__doc__ = _Asked.tell.__doc__
 
     def go_on(self, callback: Callable[[Run], object] | None = None) -> Run:
         """All generations that are left. After each one `callback(run)` is called; if it returns False, the run stops.
@@ -181,7 +376,9 @@ class Run:
         return self
 
     def close(self) -> None:
-        """Lets another process go on with the run."""
+        """Writes charts and tables, and lets another process go on with the run."""
+        if self._search is not None:
+            self._search.write_all()
         self._search = None
 
     def __enter__(self) -> Run:
@@ -268,7 +465,7 @@ class Run:
         return pandas.DataFrame(self.generations()).set_index("generation")
 
 
-class Search:
+class Search(_Asked):
     """An evolution in memory, whose robots a program tries itself.
 
         search = evolution.Search("voxel", population=64, seed=1)
@@ -277,51 +474,23 @@ class Search:
             search.tell([result.distance for result in mercurysim.evaluate(robots, 5)])
         best = search.best().robot("best")
 
-    robots, parameters, genes: as of Genomes. settings: `objective` says only how many scores a robot has, and those of
-    trials are not used. Raises InputError for what cannot be used.
+    robots, parameters, genes: as of Genomes. settings: with scores of tell(), `objective` says only how many a robot has,
+    and those of trials are not used. Raises InputError for what cannot be used.
     """
 
     def __init__(
         self,
-        robots: str | Robot | Iterable[Robot] = "voxel",
+        robots: str | type | Robot | Iterable[Robot] = "voxel",
         parameters: dict[str, Any] | None = None,
         *,
         genes: str = "body",
         **settings: Unpack[Settings],
     ) -> None:
-        self._search = _cpp._Search(None, robots, parameters, genes, False, settings)
+        named, selection, scoring = _named(settings)
+        self._search = _cpp._Search(None, robots, parameters, genes, False, named, selection, scoring)
 
-    @property
-    def generation(self) -> int:
-        """How many generations have scores."""
-        return int(self._search.next_generation)
-
-    def ask(self) -> list[Genome]:
-        """The genomes of the next generation; the same until tell() is called."""
-        return list(self._search.ask())
-
-    def tell(self, scores: ArrayLike, results: Sequence[Result] | None = None) -> None:
-        """Says how they did, in their order: a score each, or a row of them for several objectives; more is better. NaN
-        and infinities are those of robots that failed. `results` are those of evaluate(), where the axes of map-elites,
-        novelty and cma-me find their quantities.
-        """
-        numbers = np.asarray(scores, float)
-        rows = np.array(numbers[:, None] if numbers.ndim == 1 else numbers)  # a copy
-        if rows.ndim != 2 or rows.shape[1] != self._search.objectives:
-            raise InputError(f"scores: the shape {numbers.shape} is not accepted; give a score per genome and objective")
-        values: list[list[float]] = []
-        if results is not None:
-            if len(results) != len(rows):
-                raise InputError(f"results: {len(results)} of them and {len(rows)} scores; give one per genome")
-            names = _cpp._quantities()
-            for row, result in zip(rows, results):
-                quantities = result.quantities
-                values.append([quantities.get(name, np.nan) for name in names])
-                if result.failure is not None or result.exploded:
-                    row[:] = np.nan
-        elif self._search.needs_values:
-            raise InputError("results: map-elites, novelty and cma-me need them, for their axes")
-        self._search.tell(rows.tolist(), values)
+    def _opened(self) -> Any:
+        return self._search
 
     def living(self) -> list[tuple[list[float], Genome]]:
         """Scores and genomes of those that live, the best first."""

@@ -59,6 +59,7 @@ void bind_batch(nb::module_& module);
 void bind_brains(nb::module_& module);
 void bind_evaluate(nb::module_& module);
 void bind_evolution(nb::module_& module);
+void bind_run_history(nb::module_& module);
 void bind_pictures(nb::module_& module);
 void bind_recording(nb::module_& module);
 void bind_export(nb::module_& module);

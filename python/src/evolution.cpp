@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What mercurysim/evolution.py is written with: genomes, searches, and the history of a run folder.
-#include <nanobind/ndarray.h>
+// The search that mercurysim/evolution.py is written with.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -14,244 +14,87 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "mercury/environment.h"
+#include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/evolution.h"
-#include "mercury/generator.h"
-#include "mercury/objective.h"
-#include "mercury/origin.h"
-#include "mercury/quantity.h"
-#include "mercury/real_body.h"
 #include "mercury/run_folder.h"
-#include "mercury/threads.h"
-#include "python/src/arguments.h"
 #include "python/src/bindings.h"
+#include "python/src/custom_parts.h"
+#include "python/src/evolution_settings.h"
+#include "python/src/genomes.h"
 #include "python/src/gil.h"
 #include "python/src/values.h"
 
 namespace mercury::python {
 namespace {
 
-// --- Genomes
-
-struct SharedGenome {
-  GenomePointer genome;
+// What a program brings.
+struct BroughtParts {
+  nb::object kind, selection, scoring;  // of custom genomes, of an algorithm, of objectives; None = it brings none
 };
-
-SharedRobot robot_of(const SharedGenome& self, const std::string& name) {
-  const ReleasedGil released;
-  return {std::make_shared<const Robot>(self.genome->grow(name))};
-}
-
-nb::bytes encoded(const SharedGenome& self) {
-  const std::string text = self.genome->encode();
-  return nb::bytes(text.data(), text.size());
-}
-
-GenomeSpaceRequest space_request(nb::handle robots, nb::handle parameters, const std::string& genes) {
-  GenomeSpaceRequest request;
-  request.genes = genes_named(genes);
-  if (!nb::isinstance<nb::str>(robots)) {
-    for (const auto& robot : robots_of(robots)) request.founders.push_back(*robot);
-    if (request.founders.empty()) throw InputError("robots", "there is none; give at least one, or the name of a kind");
-    if (!parameters.is_none()) throw InputError("parameters", "go with a kind of robots, such as \"voxel\"");
-    return request;
-  }
-  const std::string word = text_from("robots", robots);
-  std::vector<std::string> words;
-  const Generator* found = nullptr;
-  for (const Generator& generator : generators()) {
-    words.push_back(generator.kind);
-    if (word == generator.word || word == generator.kind) found = &generator;
-  }
-  if (!found) {
-    std::string all;
-    for (const std::string& each : words) all += (all.empty() ? "" : ", ") + each;
-    throw InputError("robots", "\"" + word + "\" is no kind of robots; there are " + all + suggestion(word, words));
-  }
-  request.kind = found->kind;
-  if (!parameters.is_none())
-    request.values = generator_values("parameters of " + found->kind, *found,
-                                      nb::steal<nb::kwargs>(PyDict_Copy(nb::cast<nb::dict>(parameters).ptr())));
-  return request;
-}
-
-struct Genomes {
-  std::shared_ptr<const GenomeSpace> space;
-};
-
-// --- Settings
-
-void set(const std::string& name, double& to, nb::handle value) { to = number_from(name, value); }
-void set(const std::string& name, bool& to, nb::handle value) { to = bool_from(name, value); }
-void set(const std::string& name, std::uint64_t& to, nb::handle value) { to = seed_from(name, value); }
-void set(const std::string& name, int& to, nb::handle value) {
-  to = static_cast<int>(whole_from(name, value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
-}
-
-// "masses:20:120:8", or (name, lowest, highest, cells), of which only the name is needed.
-MapAxis axis_from(nb::handle given) {
-  const std::string wanted = "a text such as \"masses:20:120:8\", or (name, lowest, highest, cells)";
-  nb::object parts = nb::borrow(given);
-  if (nb::isinstance<nb::str>(given)) parts = given.attr("split")(":");
-  if (!nb::isinstance<nb::list>(parts) && !nb::isinstance<nb::tuple>(parts)) refuse_type("axes", wanted, given);
-  const std::size_t count = nb::len(parts);
-  if (count != 1 && count != 3 && count != 4) throw InputError("axes", "give " + wanted);
-  MapAxis axis;
-  axis.quantity = text_from("axes", parts[0]);
-  const auto quantity = find_quantity(axis.quantity);
-  if (!quantity)
-    throw InputError("axes",
-                     "\"" + axis.quantity + "\" is no quantity" + suggestion(axis.quantity, names_of_quantities()));
-  axis.lowest = quantities()[*quantity].usual_lowest;
-  axis.highest = quantities()[*quantity].usual_highest;
-  const nb::object to_number = nb::borrow(nb::handle(reinterpret_cast<PyObject*>(&PyFloat_Type)));
-  if (count > 1)
-    axis.lowest = nb::cast<double>(to_number(parts[1])), axis.highest = nb::cast<double>(to_number(parts[2]));
-  if (count > 3)
-    axis.cells = nb::cast<int>(nb::borrow(nb::handle(reinterpret_cast<PyObject*>(&PyLong_Type)))(parts[3]));
-  return axis;
-}
-
-std::vector<std::string> texts_from(const std::string& name, nb::handle given) {
-  if (nb::isinstance<nb::str>(given)) return {text_from(name, given)};
-  std::vector<std::string> texts;
-  for (const nb::handle each : given) texts.push_back(text_from(name, each));
-  return texts;
-}
-
-// The water, floor and so on for which the robots are made, as `mercury evolve` chooses them.
-Configuration usual_configuration(const GenomeSpaceRequest& space) {
-  const Physics physics = physics_of(space);
-  std::string wanted =
-      space.founders.empty() ? generator_named(space.kind).environment : environment_of(space.founders.front());
-  if (!is_environment(wanted) || (physics == Physics::real && has_water(environment_named(wanted)))) wanted.clear();
-  return default_configuration(physics, wanted);
-}
-
-// Takes all settings out of `given` that it knows; refuses those that are left.
-EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space) {
-  EvolutionSettings settings;
-  settings.configuration = usual_configuration(space);
-  AlgorithmSettings& algorithm = settings.algorithm;
-  bool has_algorithm = false, has_trials = false, has_population = false;
-  nb::object device = nb::str("auto");
-  int threads = 0;
-  std::vector<std::string> names{"objective", "algorithm", "axes",   "environment", "solver",
-                                 "dt",        "damping",   "device", "threads"};
-  const auto read_table = [&](auto& table, const std::string& name, nb::handle value) {
-    bool found = false;
-    for_each_parameter(table, [&](const auto& parameter, auto& member) {
-      if (names.empty() || std::string(parameter.name) != name) return;
-      set(name, member, value);
-      found = true;
-    });
-    return found;
-  };
-  const auto collect = [&](auto& table) {
-    for_each_parameter(table, [&](const auto& parameter, auto&) { names.emplace_back(parameter.name); });
-  };
-  collect(settings), collect(algorithm), collect(settings.trials);
-  for (const auto [key, value] : given) {
-    const std::string name = text_from("settings", key);
-    if (name == "objective") {
-      settings.objectives = texts_from(name, value);
-    } else if (name == "algorithm") {
-      algorithm.name = text_from(name, value);
-      has_algorithm = true;
-    } else if (name == "axes") {
-      for (const nb::handle axis : value) algorithm.axes.push_back(axis_from(axis));
-    } else if (name == "environment") {
-      if (!value.is_none()) settings.configuration.environment = environment_of(value);
-    } else if (name == "solver") {
-      settings.configuration.solver = solver_named(text_from(name, value));
-    } else if (name == "dt") {
-      settings.configuration.dt = number_from(name, value);
-    } else if (name == "damping") {
-      settings.configuration.damping = number_from(name, value);
-    } else if (name == "device") {
-      device = nb::borrow(value);
-    } else if (name == "threads") {
-      set(name, threads, value);
-    } else if (!read_table(settings, name, value) && !read_table(algorithm, name, value) &&
-               !read_table(settings.trials, name, value)) {
-      throw nb::type_error(("there is no setting " + name + suggestion(name, names)).c_str());
-    }
-    has_trials = has_trials || name == "trials";
-    has_population = has_population || name == "population";
-  }
-  settings.configuration.device = device_named(nb::str(device).c_str());
-  settings.configuration.device.threads = threads;
-  require_possible_threads(settings.configuration.device);
-  if (!has_algorithm)
-    algorithm.name = !algorithm.axes.empty() ? "map-elites" : settings.objectives.size() > 1 ? "nsga2" : "afpo";
-  if (algorithm_named(algorithm.name).of_behavior && algorithm.axes.empty())
-    for (const char* usual : {"masses", "muscle_share"}) algorithm.axes.push_back(axis_from(nb::str(usual)));
-  if (settings.trials.racing && !has_trials) settings.trials.trials = 1;
-  validate(settings);
-  for (const std::string& formula : settings.objectives)
-    if (const std::string why = why_meaningless(Objective(formula), settings.configuration.environment); !why.empty())
-      throw InputError("objective", "\"" + formula + "\": " + why + "; give another environment or objective");
-  space.environment = name_of(settings.configuration.environment);
-  const std::unique_ptr<GenomeSpace> genomes = make_genome_space(space);
-  validate(settings, *genomes);
-  if (!has_population) algorithm.population = usual_population(algorithm.name, *genomes, settings.seed);
-  return settings;
-}
-
-// --- A search
 
 // An evolution, in a run folder or in memory alone.
+//
+// A run that goes on may repeat the generations that it has: ask(), assess() and tell() then give and take what is in
+// the journal, so a program that does the same as before, such as an optimizer with its seed, comes to where it was.
 class Search {
  public:
   Search(const std::optional<std::filesystem::path>& folder, const GenomeSpaceRequest& space,
-         const EvolutionSettings& settings, bool force)
-      : settings_(settings) {
-    if (folder) {
+         const EvolutionSettings& settings, bool force, const BroughtParts& brought)
+      : Search(brought) {
+    settings_ = settings;
+    if (folder)
       folder_.emplace(RunFolder::create(
-          *folder, {.evolution = settings, .space = space, .program = "Mercury " MERCURY_VERSION}, force));
-      evolution_.emplace(settings_, folder_->space());
-    } else {
-      space_ = make_genome_space(space);
-      evolution_.emplace(settings_, *space_);
-    }
+          *folder, {.evolution = settings, .space = space, .program = "Mercury " MERCURY_VERSION}, force, make_space_));
+    else
+      space_ = make_space_(space);
+    begin(brought);
   }
-  // Goes on with a run.
-  Search(const std::filesystem::path& folder, std::optional<int> generations, const std::optional<Device>& device)
-      : folder_(RunFolder::open(folder)) {
+  // Goes on with a run, or repeats it from generation `repeat` on.
+  Search(const std::filesystem::path& folder, std::optional<int> generations, const std::optional<Device>& device,
+         std::optional<int> repeat, const BroughtParts& brought)
+      : Search(brought) {
+    folder_.emplace(RunFolder::open(folder, make_space_));
     if (generations) folder_->set_generations(*generations);
     settings_ = folder_->history().settings().evolution;
     if (device) settings_.configuration.device = *device;
-    evolution_.emplace(settings_, folder_->space());
-    restore(folder_->history(), *evolution_);
+    const auto recorded = static_cast<int>(folder_->history().generations().size());
+    if (repeat && (*repeat < 0 || *repeat > recorded))
+      throw InputError("repeat", std::to_string(*repeat) + " is not accepted; the run has " + std::to_string(recorded) +
+                                     " generations");
+    if (repeat && *repeat < recorded) repeated_ = *repeat;
+    begin(brought);
+    {
+      const ReleasedGil released;
+      restore(folder_->history(), *evolution_);
+    }
+    for (const Individual& individual : folder_->history().individuals()) line_began_.push_back(individual.line_began);
   }
 
-  bool is_over() const { return evolution_->is_over(); }
-  int next_generation() const { return evolution_->next_generation(); }
-  bool needs_values() const { return algorithm_named(settings_.algorithm.name).of_behavior; }
+  bool is_over() const { return !repeated_ && evolution_->is_over(); }
+  int next_generation() const { return repeated_.value_or(evolution_->next_generation()); }
+  bool needs_values() const { return algorithm_of(settings_.algorithm).of_behavior; }
   std::size_t objectives() const { return settings_.objectives.size(); }
   const std::vector<Individual>& living() const { return evolution_->living(); }
+  const GenomeSpace& space() const { return folder_ ? folder_->space() : *space_; }
 
   // One generation; false if there was none to go. Ctrl-C ends it, and it is as if it had not begun.
   bool advance() {
     const Use use(*this);
-    if (evolution_->is_over()) return false;
-    if (!assessor_) assessor_ = make_assessor(settings_);
+    if (is_over()) return false;
+    if (repeated_) return end_repeated(), true;
+    require_children();
     std::optional<nb::python_error> interrupted;
-    const auto start = std::chrono::steady_clock::now();
+    start_clock();
     {
       const ReleasedGil released;
-      const auto generation = evolution_->advance(*assessor_, [&](std::size_t, std::size_t) {
-        const nb::gil_scoped_acquire acquired;
-        if (!interrupted && PyErr_CheckSignals() != 0) interrupted.emplace();
-        return !interrupted;
-      });
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      if (generation && folder_) folder_->append(*generation, {.seconds = seconds, .device = assessor_->device_name()});
+      const auto generation = evolution_->advance(assessor(), watch(interrupted));
+      if (generation) record(*generation);
     }
     if (interrupted) throw nb::python_error(std::move(*interrupted));
     return true;
@@ -265,33 +108,73 @@ class Search {
 
   std::vector<SharedGenome> ask() {
     const Use use(*this);
-    if (folder_) throw InputError("a run folder tries its robots itself, by its objective");
-    if (asked_.empty()) {
-      const ReleasedGil released;
-      asked_ = evolution_->children();
-    }
     std::vector<SharedGenome> genomes;
-    for (const Individual& child : asked_) genomes.push_back({child.genome});
+    for (GenomePointer& genome : asked_genomes()) genomes.push_back({std::move(genome)});
     return genomes;
   }
-  // `scores`: [child][objective]; `values`: [child][quantity], or empty.
-  void tell(const std::vector<std::vector<double>>& scores, const std::vector<std::vector<double>>& values) {
+
+  // Tries genomes, or those that are asked, as the settings say.
+  Assessed assess(const std::optional<std::vector<nb::object>>& given) {
     const Use use(*this);
-    if (asked_.empty()) throw InputError("call ask() before tell()");
-    if (scores.size() != asked_.size())
-      throw InputError("scores", std::to_string(scores.size()) + " are not accepted; ask() gave " +
-                                     std::to_string(asked_.size()) + " genomes");
-    for (std::size_t i = 0; i < asked_.size(); ++i) {
-      Assessment& assessment = asked_[i].assessment = {};
-      bool sound = true;
-      for (const double score : scores[i]) sound = sound && std::isfinite(score);
-      assessment.fate = sound ? Fate::sound : Fate::failed;
+    Assessed assessed{.genomes = genomes_or_asked(given), .assessments = {}};
+    if (repeated_) {
+      require_same(assessed.genomes);
+      for (const Individual& individual : recorded()) assessed.assessments.push_back(individual.assessment);
+      return assessed;
+    }
+    std::optional<nb::python_error> interrupted;
+    {
+      const ReleasedGil released;
+      auto assessments = assessor().assess(assessed.genomes, evolution_->interim_limits(), watch(interrupted));
+      if (assessments) assessed.assessments = *std::move(assessments);
+    }
+    if (interrupted) throw nb::python_error(std::move(*interrupted));
+    return assessed;
+  }
+
+  // What a program says of genomes, or of those that are asked. `scores`: [genome][objective], `values`:
+  // [genome][quantity], or none at all; the fate of robots whose scores are not finite is `failed` unless `fates` says
+  // another one.
+  Assessed scored(const std::optional<std::vector<nb::object>>& given, const std::vector<std::vector<double>>& scores,
+                  const std::vector<std::vector<double>>& values, const std::vector<std::string>& fates,
+                  const std::vector<std::string>& problems, const std::vector<std::uint64_t>& hashes) {
+    const Use use(*this);
+    if (!given && !repeated_ && asked_.empty()) throw InputError("call ask() before tell()");
+    Assessed assessed{.genomes = genomes_or_asked(given), .assessments = {}};
+    if (scores.size() != assessed.genomes.size())
+      throw InputError("scores", std::to_string(scores.size()) + " are not accepted; " +
+                                     (given ? "there are " : "ask() gave ") + std::to_string(assessed.genomes.size()) +
+                                     " genomes");
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      Assessment& assessment = assessed.assessments.emplace_back();
+      const bool sound = std::ranges::all_of(scores[i], [](double score) { return std::isfinite(score); });
+      assessment.fate = sound ? Fate::sound : fate_named(fates[i]).value_or(Fate::failed);
       assessment.scores = sound ? scores[i] : std::vector<double>(scores[i].size(), worst_score);
       assessment.violation = sound ? 0 : std::numeric_limits<double>::infinity();
-      if (!values.empty()) assessment.values = values[i];
+      if (!sound) assessment.problem = problems[i];
+      if (!values.empty() && assessment.fate != Fate::failed) assessment.values = values[i];
+      if (!hashes.empty()) assessment.hash = hashes[i];
     }
+    return assessed;
+  }
+
+  // Selects, and writes the generation. Children that were not asked for have these `parents`, by their ids.
+  void tell(const Assessed& assessed, const std::optional<std::vector<std::vector<std::uint64_t>>>& parents,
+            const std::optional<std::vector<std::uint64_t>>& living) {
+    const Use use(*this);
+    if (folder_ && is_over())
+      throw InputError("the run has all its " + std::to_string(settings_.generations) +
+                       " generations; evolution.resume(folder, generations=N) raises their number");
+    if (repeated_) {
+      require_same(assessed.genomes);
+      require_same_scores(assessed);
+      return end_repeated();
+    }
+    std::vector<Individual> born = born_of(assessed, parents);
     const ReleasedGil released;
-    evolution_->select(std::exchange(asked_, {}));
+    const Generation generation =
+        living ? evolution_->select(std::move(born), *living) : evolution_->select(std::move(born));
+    record(generation);
   }
 
  private:
@@ -309,13 +192,158 @@ class Search {
    private:
     Search& search_;
   };
+  using Clock = std::chrono::steady_clock;
 
+  explicit Search(const BroughtParts& brought)
+      : make_space_(space_maker(brought.kind)), has_selection_(!brought.selection.is_none()) {}
+
+  void begin(const BroughtParts& brought) {
+    std::unique_ptr<Algorithm> algorithm;
+    if (has_selection_) algorithm = algorithm_of_python(settings_.algorithm, brought.selection);
+    if (!brought.scoring.is_none()) assessor_ = scored_by_python(make_assessor(settings_), settings_, brought.scoring);
+    const ReleasedGil released;
+    evolution_.emplace(settings_, space(), std::move(algorithm));
+  }
+
+  // A device that is not there is noticed when it is needed.
+  Assessor& assessor() {
+    if (!assessor_) assessor_ = make_assessor(settings_);
+    return *assessor_;
+  }
+
+  void require_children() const {
+    if (is_custom(settings_.algorithm.name) && !has_selection_)
+      throw InputError("algorithm", settings_.algorithm.name +
+                                        " is a program, which makes the children itself; give them to assess() and "
+                                        "tell(), or the algorithm to start() or resume()");
+  }
+
+  void start_clock() {
+    if (!started_) started_ = Clock::now();
+  }
+
+  // Without the GIL.
+  static Watch watch(std::optional<nb::python_error>& interrupted) {
+    return [&interrupted](std::size_t, std::size_t) {
+      const nb::gil_scoped_acquire acquired;
+      if (!interrupted && PyErr_CheckSignals() != 0) interrupted.emplace();
+      return !interrupted;
+    };
+  }
+
+  void record(const Generation& generation) {
+    asked_.clear();
+    for (const Individual& individual : generation.born) line_began_.push_back(individual.line_began);
+    const double seconds =
+        started_ ? std::chrono::duration<double>(Clock::now() - *std::exchange(started_, std::nullopt)).count() : 0;
+    if (folder_) folder_->append(generation, {.seconds = seconds, .device = assessor_ ? assessor_->device_name() : ""});
+  }
+
+  std::vector<GenomePointer> asked_genomes() {
+    start_clock();
+    std::vector<GenomePointer> genomes;
+    if (repeated_) {
+      for (const Individual& individual : recorded()) genomes.push_back(folder_->history().genome(individual.id));
+      return genomes;
+    }
+    if (asked_.empty()) {
+      require_children();
+      const ReleasedGil released;
+      asked_ = evolution_->children();
+    }
+    if (asked_.empty()) throw InputError("generation " + std::to_string(next_generation()), "no robot could be made");
+    for (const Individual& child : asked_) genomes.push_back(child.genome);
+    return genomes;
+  }
+  std::vector<GenomePointer> genomes_or_asked(const std::optional<std::vector<nb::object>>& given) {
+    if (!given) return asked_genomes();
+    start_clock();
+    std::vector<GenomePointer> genomes;
+    for (const nb::object& one : *given) genomes.push_back(genome_from(one, space()));
+    if (genomes.empty()) throw InputError("genomes", "there is none; give at least one");
+    return genomes;
+  }
+
+  // Those that are asked, or new ones.
+  std::vector<Individual> born_of(const Assessed& assessed,
+                                  const std::optional<std::vector<std::vector<std::uint64_t>>>& parents) const {
+    std::vector<Individual> born = asked_;
+    const bool are_asked = !asked_.empty() && std::ranges::equal(asked_, assessed.genomes, {}, &Individual::genome);
+    if (are_asked && parents) throw InputError("parents", "are known of the genomes that ask() gave");
+    if (!are_asked) born = born_elsewhere(assessed.genomes, parents);
+    for (std::size_t i = 0; i < born.size(); ++i) born[i].assessment = assessed.assessments[i];
+    return born;
+  }
+  std::vector<Individual> born_elsewhere(const std::vector<GenomePointer>& genomes,
+                                         const std::optional<std::vector<std::vector<std::uint64_t>>>& parents) const {
+    if (settings_.algorithm.islands > 1)
+      throw InputError("islands", "have the genomes of ask() alone; start the run without islands");
+    if (parents && parents->size() != genomes.size())
+      throw InputError("parents", std::to_string(parents->size()) + " are not accepted; give those of " +
+                                      std::to_string(genomes.size()) + " genomes");
+    std::vector<Individual> born;
+    for (const GenomePointer& genome : genomes) {
+      Individual& child = born.emplace_back();
+      child.id = evolution_->next_id() + born.size() - 1;
+      child.generation = child.line_began = evolution_->next_generation();
+      child.genome = genome;
+      if (!parents) continue;
+      child.parents = (*parents)[born.size() - 1];
+      if (child.parents.size() > 2) throw InputError("parents", "a robot has more than two; give at most two");
+      for (const std::uint64_t parent : child.parents) {
+        if (parent >= line_began_.size())
+          throw InputError("parents", "robot " + std::to_string(parent) + " is out of range, " +
+                                          std::to_string(line_began_.size()) + " were born before");
+        child.line_began = std::min(child.line_began, line_began_[parent]);
+      }
+    }
+    return born;
+  }
+
+  // --- A run that is repeated
+
+  // Those born in the generation.
+  std::span<const Individual> recorded() const {
+    const std::span<const Individual> all = folder_->history().individuals();
+    const auto born = std::ranges::equal_range(all, *repeated_, {}, &Individual::generation);
+    return all.subspan(static_cast<std::size_t>(born.begin() - all.begin()), born.size());
+  }
+  std::string place() const { return "generation " + std::to_string(*repeated_); }
+  void require_same(const std::vector<GenomePointer>& genomes) const {
+    const std::span<const Individual> born = recorded();
+    if (genomes.size() != born.size())
+      throw InputError(place(), std::to_string(genomes.size()) + " genomes, and the run has " +
+                                    std::to_string(born.size()) + "; repeat what the program did before");
+    for (std::size_t i = 0; i < born.size(); ++i)
+      if (genomes[i]->identity() != folder_->history().genome(born[i].id)->identity())
+        throw InputError(place(), "genome " + std::to_string(i) + " is not that of robot " +
+                                      std::to_string(born[i].id) +
+                                      "; repeat what the program did before, with its "
+                                      "seed");
+  }
+  void require_same_scores(const Assessed& assessed) const {
+    const std::span<const Individual> born = recorded();
+    for (std::size_t i = 0; i < born.size(); ++i)
+      if (assessed.assessments[i].scores != born[i].assessment.scores)
+        throw InputError(place(), "the score of genome " + std::to_string(i) + " is not that of robot " +
+                                      std::to_string(born[i].id) + "; repeat what the program did before");
+  }
+  void end_repeated() {
+    started_.reset();
+    if (++*repeated_ == evolution_->next_generation()) repeated_.reset();
+  }
+
+  const GenomeSpaceMaker make_space_;
+  const bool has_selection_;
   EvolutionSettings settings_;
   std::optional<RunFolder> folder_;
-  std::unique_ptr<GenomeSpace> space_;
+  std::unique_ptr<GenomeSpace> space_;  // unless there is a folder
   std::optional<Evolution> evolution_;
   std::unique_ptr<Assessor> assessor_;
-  std::vector<Individual> asked_;
+  std::vector<Individual> asked_;  // children of the next generation, once they were asked for
+  std::vector<int> line_began_;    // of everyone, by id
+  std::optional<int> repeated_;    // the next generation, of those that the run has
+  std::optional<Clock::time_point> started_;
   bool used_ = false;
 };
 
@@ -326,230 +354,36 @@ std::vector<std::pair<std::vector<double>, SharedGenome>> living_of(const Search
   return living;
 }
 
-// --- A run folder
-
-// The memory belongs to the array.
-template <class T>
-nb::object owned(std::vector<T> values, std::vector<std::size_t> shape = {}) {
-  auto* const kept = new std::vector<T>(std::move(values));
-  const nb::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<T>*>(memory); });
-  if (shape.empty()) shape = {kept->size()};
-  static T none{};
-  return nb::cast(nb::ndarray<nb::numpy, T>(kept->empty() ? &none : kept->data(), shape.size(), shape.data(), owner),
-                  nb::rv_policy::reference);
-}
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-// One array per property, one element per individual.
-nb::dict individuals_of(const RunHistory& self) {
-  const auto all = self.individuals();
-  const std::size_t count = all.size(), objectives = self.settings().evolution.objectives.size();
-  nb::dict columns;
-  const auto column = [&]<class T>(const char* name, T, const auto& value) {
-    std::vector<T> values;
-    values.reserve(count);
-    for (const Individual& individual : all) values.push_back(static_cast<T>(value(individual)));
-    columns[name] = owned(std::move(values));
-  };
-  using Integer = std::int64_t;
-  const auto parent = [](std::size_t i) {
-    return [i](const Individual& one) { return i < one.parents.size() ? static_cast<Integer>(one.parents[i]) : -1; };
-  };
-  column("id", Integer{}, [](const Individual& one) { return one.id; });
-  column("parent", Integer{}, parent(0));
-  column("other_parent", Integer{}, parent(1));
-  column("generation", Integer{}, [](const Individual& one) { return one.generation; });
-  column("died", Integer{}, [&](const Individual& one) { return self.died(one.id).value_or(-1); });
-  column("line_began", Integer{}, [](const Individual& one) { return one.line_began; });
-  if (self.settings().evolution.algorithm.islands > 1)
-    column("island", Integer{}, [](const Individual& one) { return one.island; });
-  nb::list fates;
-  for (const Individual& individual : all) {
-    const std::string_view fate = name_of(individual.assessment.fate);
-    fates.append(nb::str(fate.data(), fate.size()));
-  }
-  columns["fate"] = nb::module_::import_("numpy").attr("array")(fates, nb::arg("dtype") = "U12");
-  for (std::size_t i = 0; i < objectives; ++i)
-    column(i == 0 ? "score" : ("score" + std::to_string(i + 1)).c_str(), double{}, [i](const Individual& one) {
-      return i < one.assessment.scores.size() ? one.assessment.scores[i] : worst_score;
-    });
-  for (std::size_t i = 0; i < quantities().size(); ++i)
-    column(std::string(quantities()[i].name).c_str(), double{}, [i](const Individual& one) {
-      return i < one.assessment.values.size() ? one.assessment.values[i] : not_a_number;
-    });
-  return columns;
-}
-
-nb::dict generations_of(const RunHistory& self) {
-  nb::dict columns;
-  const auto column = [&]<class T>(const char* name, T, const auto& value) {
-    std::vector<T> values;
-    for (const GenerationSummary& generation : self.generations()) values.push_back(static_cast<T>(value(generation)));
-    columns[name] = owned(std::move(values));
-  };
-  using Integer = std::int64_t;
-  column("generation", Integer{}, [](const GenerationSummary& one) { return one.number; });
-  column("born", Integer{}, [](const GenerationSummary& one) { return one.born; });
-  column("living", Integer{}, [](const GenerationSummary& one) { return one.living; });
-  column("best", Integer{}, [](const GenerationSummary& one) { return one.best; });
-  const std::size_t objectives = self.settings().evolution.objectives.size();
-  for (std::size_t i = 0; i < objectives; ++i) {
-    const std::string number = i == 0 ? "" : std::to_string(i + 1);
-    const auto spread = [&](const char* name, double ScoreSpread::*member) {
-      column((name + number).c_str(), double{},
-             [&](const GenerationSummary& one) { return i < one.scores.size() ? one.scores[i].*member : worst_score; });
-    };
-    column(("best_score" + number).c_str(), double{},
-           [i](const GenerationSummary& one) { return i < one.best_scores.size() ? one.best_scores[i] : worst_score; });
-    spread("lower_quartile", &ScoreSpread::lower_quartile);
-    spread("median", &ScoreSpread::median);
-    spread("upper_quartile", &ScoreSpread::upper_quartile);
-    spread("highest", &ScoreSpread::highest);
-  }
-  column("exploded", Integer{}, [](const GenerationSummary& one) { return one.exploded; });
-  column("overstretched", Integer{}, [](const GenerationSummary& one) { return one.overstretched; });
-  column("too_small", Integer{}, [](const GenerationSummary& one) { return one.too_small; });
-  column("undefined", Integer{}, [](const GenerationSummary& one) { return one.undefined; });
-  column("stopped", Integer{}, [](const GenerationSummary& one) { return one.stopped; });
-  column("failed", Integer{}, [](const GenerationSummary& one) { return one.failed; });
-  column("lines", Integer{}, [](const GenerationSummary& one) { return one.lines; });
-  if (algorithm_named(self.settings().evolution.algorithm.name).has_map) {
-    column("cells", Integer{}, [](const GenerationSummary& one) { return one.scored; });
-    column("coverage", double{}, [](const GenerationSummary& one) { return one.coverage; });
-    column("qd_score", double{}, [](const GenerationSummary& one) { return one.score_sum; });
-  }
-  if (const std::size_t islands = self.settings().evolution.algorithm.islands; islands > 1)
-    for (std::size_t i = 0; i < islands; ++i)
-      column(("best_of_island_" + std::to_string(i)).c_str(), double{},
-             [i](const GenerationSummary& one) { return one.best_of_islands[i]; });
-  column("seconds", double{}, [](const GenerationSummary& one) { return one.times.seconds; });
-  return columns;
-}
-
-nb::dict settings_of(const RunHistory& self) {
-  const RunSettings& run = self.settings();
-  const EvolutionSettings& evolution = run.evolution;
-  nb::dict values;
-  values["robots"] = run.space.founders.empty() ? run.space.kind : std::to_string(run.space.founders.size()) + " given";
-  values["genes"] = name_of(run.space.genes);
-  values["objective"] = nb::cast(evolution.objectives);
-  values["algorithm"] = evolution.algorithm.name;
-  nb::list axes;
-  for (const MapAxis& axis : evolution.algorithm.axes)
-    axes.append(nb::make_tuple(axis.quantity, axis.lowest, axis.highest, axis.cells));
-  values["axes"] = axes;
-  const auto add = [&](const auto& table) {
-    for_each_parameter(table, [&](const auto& parameter, const auto& value) {
-      values[std::string(parameter.name).c_str()] = nb::cast(value);
-    });
-  };
-  add(evolution), add(evolution.algorithm), add(evolution.trials);
-  values["environment"] = object_of(evolution.configuration.environment);
-  values["solver"] = std::string(name_of(evolution.configuration.solver));
-  values["dt"] = evolution.configuration.dt;
-  values["damping"] = evolution.configuration.damping;
-  values["program"] = run.program;
-  return values;
-}
-
-std::uint64_t known_id(const RunHistory& self, nb::handle given) {
-  const std::int64_t id = whole_from("id", given);
-  if (id < 0 || static_cast<std::uint64_t>(id) >= self.individuals().size())
-    throw std::out_of_range("robot " + std::to_string(id) + " is out of range, the run has " +
-                            std::to_string(self.individuals().size()));
-  return static_cast<std::uint64_t>(id);
-}
-
-void bind_genomes(nb::module_& module) {
-  nb::class_<SharedGenome>(
-      module, "Genome",
-      "What evolution changes, and what a robot is grown from. It never changes; everything is the "
-      "same, bit\nfor bit, on every machine.")
-      .def("robot", &robot_of, nb::arg("name") = "", "The robot. Raises InputError if this genome has none.")
-      .def(
-          "mutate",
-          [](const SharedGenome& self, double strength, nb::handle seed) {
-            return SharedGenome{self.genome->mutate(strength, seed_from("seed", seed))};
-          },
-          nb::kw_only(), nb::arg("strength") = 1.0, nb::arg("seed"),
-          nb::sig("def mutate(self, *, strength: float = 1.0, seed: int) -> Genome"),
-          "A changed copy; a strength of 1 changes a little, as in a search.")
-      .def(
-          "cross",
-          [](const SharedGenome& self, const SharedGenome& other, nb::handle seed) {
-            return SharedGenome{self.genome->cross(*other.genome, seed_from("seed", seed))};
-          },
-          nb::arg("other"), nb::kw_only(), nb::arg("seed"),
-          nb::sig("def cross(self, other: Genome, *, seed: int) -> Genome"),
-          "A child of this genome and another one of the same Genomes.")
-      .def("encode", &encoded, "The genome as bytes, which Genomes.decode() takes.")
-      .def(
-          "__eq__",
-          [](const SharedGenome& self, nb::handle other) {
-            SharedGenome second;
-            return nb::try_cast(other, second) && second.genome->identity() == self.genome->identity();
-          },
-          nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"))
-      .def("__hash__",
-           [](const SharedGenome& self) { return static_cast<std::int64_t>(self.genome->identity() >> 2); });
-  nb::class_<Genomes>(module, "Genomes",
-                      R"(The genomes among which a search looks.
-
-robots: a kind of robots ("voxel", "cppn", "nn", "shell", "tapered"), or Robots to begin with.
-parameters: of that kind, as of mercurysim.random_voxel() and its like.
-genes: what changes: "body", "muscles", "both", or these with "brain" ("muscles,brain").
-
-Raises InputError for what cannot be used.)")
-      .def(
-          "__init__",
-          [](Genomes* self, nb::handle robots, nb::handle parameters, const std::string& genes) {
-            new (self) Genomes{make_genome_space(space_request(robots, parameters, genes))};
-          },
-          nb::arg("robots") = "voxel", nb::arg("parameters") = nb::none(), nb::kw_only(), nb::arg("genes") = "body",
-          nb::sig("def __init__(self, robots: str | Robot | collections.abc.Iterable[Robot] = 'voxel', "
-                  "parameters: dict[str, typing.Any] | None = None, *, genes: str = 'body') -> None"))
-      .def(
-          "random",
-          [](const Genomes& self, nb::handle seed, nb::handle index) {
-            return SharedGenome{self.space->random(seed_from("seed", seed), seed_from("index", index))};
-          },
-          nb::arg("seed") = 1, nb::arg("index") = 0,
-          nb::sig("def random(self, seed: int = 1, index: int = 0) -> Genome"),
-          "The index-th random genome of a seed. The first ones are those of the robots that were given.")
-      .def(
-          "decode",
-          [](const Genomes& self, const nb::bytes& bytes) {
-            return SharedGenome{self.space->decode({bytes.c_str(), bytes.size()})};
-          },
-          nb::arg("bytes"), "The reverse of Genome.encode(). Raises InputError for bytes that are no genome.");
-}
-
 }  // namespace
 
 void bind_evolution(nb::module_& module) {
   bind_genomes(module);
+  bind_custom_parts(module);
+  bind_run_history(module);
   nb::class_<Search>(module, "_Search")
       .def(
           "__init__",
           [](Search* self, nb::handle folder, nb::handle robots, nb::handle parameters, const std::string& genes,
-             bool force, const nb::dict& settings) {
+             bool force, const nb::dict& settings, nb::object selection, nb::object scoring) {
             std::optional<std::filesystem::path> path;
             if (!folder.is_none()) path = path_from("folder", folder);
-            GenomeSpaceRequest space = space_request(robots, parameters, genes);
-            const EvolutionSettings read = settings_from(settings, space);
-            new (self) Search(path, space, read, force);
+            WantedSpace wanted = space_wanted(robots, parameters, genes);
+            const EvolutionSettings read = settings_from(settings, wanted.request);
+            new (self) Search(path, wanted.request, read, force, {wanted.kind, selection, scoring});
           },
           nb::arg("folder").none(), nb::arg("robots"), nb::arg("parameters").none(), nb::arg("genes"), nb::arg("force"),
-          nb::arg("settings"))
+          nb::arg("settings"), nb::arg("selection").none(), nb::arg("scoring").none())
       .def_static(
           "resume",
-          [](nb::handle folder, std::optional<int> generations, nb::handle device) {
+          [](nb::handle folder, std::optional<int> generations, nb::handle device, std::optional<int> repeat,
+             nb::object kind, nb::object selection, nb::object scoring) {
             std::optional<Device> other;
             if (!device.is_none()) other = device_named(nb::str(device).c_str());
-            return std::make_unique<Search>(path_from("folder", folder), generations, other);
+            return std::make_unique<Search>(path_from("folder", folder), generations, other, repeat,
+                                            BroughtParts{kind, selection, scoring});
           },
-          nb::arg("folder"), nb::arg("generations").none(), nb::arg("device").none())
+          nb::arg("folder"), nb::arg("generations").none(), nb::arg("device").none(), nb::arg("repeat").none(),
+          nb::arg("kind").none(), nb::arg("selection").none(), nb::arg("scoring").none())
       .def_prop_ro("is_over", &Search::is_over)
       .def_prop_ro("next_generation", &Search::next_generation)
       .def_prop_ro("needs_values", &Search::needs_values)
@@ -558,27 +392,10 @@ void bind_evolution(nb::module_& module) {
       .def("advance", &Search::advance)
       .def("write_all", &Search::write_all)
       .def("ask", &Search::ask)
-      .def("tell", &Search::tell, nb::arg("scores"), nb::arg("values"));
-  nb::class_<RunHistory>(module, "_History")
-      .def(
-          "__init__", [](RunHistory* self, nb::handle folder) { new (self) RunHistory(path_from("folder", folder)); },
-          nb::arg("folder"))
-      .def("refresh", &RunHistory::refresh)
-      .def("individuals", &individuals_of)
-      .def("generations", &generations_of)
-      .def("settings", &settings_of)
-      .def("__len__", [](const RunHistory& self) { return self.individuals().size(); })
-      .def("robot",
-           [](const RunHistory& self, nb::handle id) {
-             return SharedRobot{std::make_shared<const Robot>(self.grow(known_id(self, id)))};
-           })
-      .def("genome",
-           [](const RunHistory& self, nb::handle id) { return SharedGenome{self.genome(known_id(self, id))}; })
-      .def("line_of", [](const RunHistory& self, nb::handle id) { return self.line_of(known_id(self, id)); })
-      .def("living", [](const RunHistory& self) {
-        return std::vector<std::uint64_t>(self.living().begin(), self.living().end());
-      });
-  module.def("_quantities", [] { return names_of_quantities(); });
+      .def("assess", &Search::assess, nb::arg("genomes").none())
+      .def("scored", &Search::scored, nb::arg("genomes").none(), nb::arg("scores"), nb::arg("values"), nb::arg("fates"),
+           nb::arg("problems"), nb::arg("hashes"))
+      .def("tell", &Search::tell, nb::arg("assessed"), nb::arg("parents").none(), nb::arg("living").none());
 }
 
 }  // namespace mercury::python

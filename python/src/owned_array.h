@@ -16,7 +16,8 @@ template <class T>
 nanobind::object owned_array(std::vector<T> values, std::initializer_list<std::size_t> shape) {
   auto* kept = new std::vector<T>(std::move(values));
   const nanobind::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<T>*>(memory); });
-  return nanobind::cast(nanobind::ndarray<nanobind::numpy, T>(kept->data(), shape, owner));
+  static T none{};  // an empty array points somewhere, too
+  return nanobind::cast(nanobind::ndarray<nanobind::numpy, T>(kept->empty() ? &none : kept->data(), shape, owner));
 }
 
 }  // namespace mercury::python

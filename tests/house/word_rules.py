@@ -76,9 +76,8 @@ ALLOWED = [
     (r"^docs/formats\.md", r"first_bad_spring"),
     ("", r"Hooke's law|muscle[ _]law|Coulomb's law|law of|assembly language|the assembler|__asm__|inline assembly"),
     ("", r"third[- ]part(y|ies)"),
-    (r"\.(py|md)$", r"(file|search)\.tell\("),  # methods of Python, of cmaes and of mercurysim.evolution
-    (r"evolution\.(py|cpp)$", r"\btell\(|::tell"),
-    (r"\.(py|md)$", r"ask[ _]and[ _]tell"),  # the name of such an interface
+    (r"\.(py|md|cpp|ipynb)$", r"\btell(\(|\.__doc__)|::tell|\"tell\""),  # of Python's files, optimizers, mercurysim.evolution
+    (r"\.(py|md|ipynb)$", r"\b(A|a)sk[ _-]and[ _-]tell\b"),  # the name of such an interface
     ("", r"culprit_?(spring|mass)|CulpritSpring|culprit spring"),
     ("", r"first_bad_spring.*(HDF5|JSON|key|attribute|column)|\"first_bad_spring\"|'first_bad_spring'|`first_bad_spring`"),
 ]

@@ -116,8 +116,10 @@ struct AlgorithmDescription {
 };
 // ga, afpo, alps, nsga2, map-elites, novelty, cma-es, sep-cma-es, cma-me, random.
 std::span<const AlgorithmDescription> algorithms();
-// Throws ParameterError("algorithm", ...) for an unknown name.
+// Throws ParameterError("algorithm", ...) for an unknown name. Custom ones (mercury/custom.h) have one description.
 const AlgorithmDescription& algorithm_named(std::string_view name);
+// The same for these settings: a custom algorithm with axes has a map.
+const AlgorithmDescription& algorithm_of(const AlgorithmSettings& settings);
 // Throws ParameterError("algorithm", ...) for an unknown name, or ("population", ...), ("axes", ...) and so on for
 // settings out of range.
 std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings);

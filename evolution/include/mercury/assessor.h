@@ -41,7 +41,8 @@ class Assessor {
   virtual double busy_seconds() const { return 0; }
 };
 
-// On the devices of this process (configuration.device).
+// On the devices of this process (configuration.device). Scores of custom objectives are 0; who computes them finds
+// what the trials gave in Assessment::trial_values.
 std::unique_ptr<Assessor> make_local_assessor(const Configuration& configuration, const TrialSettings& trials,
                                               std::vector<Objective> objectives, std::uint64_t seed);
 

@@ -86,8 +86,10 @@ class Islands;
 
 class Evolution {
  public:
-  // The space must outlive it. Throws as validate().
-  Evolution(const EvolutionSettings& settings, const GenomeSpace& space);
+  // The space must outlive it. `algorithm` = a custom one (mercury/custom.h), in place of that of the settings. Throws
+  // as validate().
+  Evolution(const EvolutionSettings& settings, const GenomeSpace& space,
+            std::unique_ptr<Algorithm> algorithm = nullptr);
   ~Evolution();
 
   // Continues after a generation: `living` as it left them; `born` = all individuals so far, by id, whose genomes are
@@ -107,8 +109,14 @@ class Evolution {
   std::vector<Individual> children(const Watch& watch = {}) const;
   // Scores that its robots must reach at the checks of racing; empty without racing.
   std::vector<double> interim_limits() const;
-  // Selects among the living and these children, which are assessed.
+  // The id of the first of them.
+  std::uint64_t next_id() const { return next_id_; }
+  // Selects among the living and these children, which are assessed: those of children(), or others that a program has
+  // made, with ids from next_id() on. Throws InputError, and changes nothing, if the algorithm fails.
   Generation select(std::vector<Individual> children);
+  // The same, but these live on, by their ids, the best first. Throws InputError unless each lives or is a child, and
+  // is named once.
+  Generation select(std::vector<Individual> children, std::span<const std::uint64_t> living);
 
   // All of it: one generation. Nothing if it is over, or if `watch` said to stop; then nothing has changed. Throws
   // InputError if no robot of generation 0 can be tried.
@@ -116,6 +124,8 @@ class Evolution {
 
  private:
   void begin_to_learn();
+  Generation take(std::vector<Individual> pool, std::vector<Individual> children,
+                  std::span<const std::size_t> survivors);
   // Those who are the parents of the next generation.
   const std::vector<Individual>& parents() const;
   // The children of a generation.

@@ -35,6 +35,8 @@ struct Assessment {
   // Of the trials' scores, per objective; empty where a score is the mean of trials, or the worst.
   std::vector<double> lower_quartiles, upper_quartiles;
   double violation = 0;  // the largest violation_of() a trial (trials.h): how far it is from being sound
+  // Per trial and quantity; only while a custom objective (custom.h) is to be computed from them.
+  std::vector<std::vector<double>> trial_values;
   friend bool operator==(const Assessment&, const Assessment&) = default;
 };
 

@@ -11,7 +11,8 @@
 
 namespace mercury {
 
-// A formula such as "distance - 0.1 * work". Copies share the parsed formula; several threads may use one objective.
+// A formula such as "distance - 0.1 * work", or the name of a custom objective, whose scores a program gives
+// (mercury/custom.h). Copies share the parsed formula; several threads may use one objective.
 class Objective {
  public:
   // Throws ParameterError("objective", ...) that says where the formula is wrong and, for an unknown name, which names
@@ -19,8 +20,10 @@ class Objective {
   explicit Objective(const std::string& formula);
 
   const std::string& formula() const { return formula_; }
+  bool is_custom() const { return !parsed_; }
   // Its value; `values` has one number per quantity, in the order of quantities(). NaN and infinities become
-  // worst_score: what divides by zero does not win. Throws std::invalid_argument for another number of values.
+  // worst_score: what divides by zero does not win. Throws std::invalid_argument for another number of values, and
+  // std::logic_error for a custom objective.
   double score(std::span<const double> values) const;
   // Indices of the quantities that the formula names, ascending.
   const std::vector<std::size_t>& uses() const;
