@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/robot_file.h"
+#include "mercury/real_body.h"
 
 #include <algorithm>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "mercury/error.h"
 #include "mercury/samples.h"
+#include "robots/file/inner_members.h"
 #include "robots/file/robot_document.h"
 #include "robots/file/whole_file.h"
 
@@ -61,8 +63,11 @@ RobotFormat robot_format_of(const std::filesystem::path& path) {
 
 Robot parse_robot(std::string_view document, RobotFormat format) {
   RobotReader reader;
-  format == RobotFormat::json ? read_json(document, reader) : read_cbor(document, reader);
-  return reader.take();
+  InnerMembersReader all(reader);
+  format == RobotFormat::json ? read_json(document, all) : read_cbor(document, all);
+  Robot robot = reader.take();
+  robot.other = all.with_inner(robot.other, !real_material_of(robot));  // whose table is another one than the file's
+  return robot;
 }
 
 RobotDocuments::RobotDocuments(std::string_view text) : rest_(text), format_(RobotFormat::json) {

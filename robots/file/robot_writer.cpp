@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mercury/error.h"
+#include "robots/file/inner_members.h"
 #include "robots/file/robot_document.h"
 
 namespace mercury {
@@ -45,57 +46,10 @@ class Copy : public DocumentEvents {
   int depth_ = 0;
 };
 
-// Copies the members of an object into the robot's document, or counts them.
-class Members : public DocumentEvents {
- public:
-  explicit Members(DocumentEvents* to) : to_(to) {}
-  std::size_t count() const { return count_; }
-  void null() override {
-    send([&] { to_->null(); });
-  }
-  void boolean(bool value) override {
-    send([&] { to_->boolean(value); });
-  }
-  void number(const Number& value) override {
-    send([&] { to_->number(value); });
-  }
-  void text(std::string_view value) override {
-    send([&] { to_->text(value); });
-  }
-  void bytes(std::string_view value) override {
-    send([&] { to_->bytes(value); });
-  }
-  void begin_array(std::size_t announced) override {
-    send([&] { to_->begin_array(announced); }), ++depth_;
-  }
-  void end_array() override {
-    --depth_, send([&] { to_->end_array(); });
-  }
-  void begin_object(std::size_t announced) override {
-    send([&] { to_->begin_object(announced); }), ++depth_;
-  }
-  void key(std::string_view name) override {
-    if (depth_ == 1) ++count_;
-    send([&] { to_->key(name); });
-  }
-  void end_object() override {
-    --depth_, send([&] { to_->end_object(); });
-  }
-
- private:
-  template <class Event>
-  void send(const Event& event) {
-    if (to_ && depth_ > 0) event();
-  }
-
-  DocumentEvents* to_;  // null = they are counted
-  int depth_ = 0;
-  std::size_t count_ = 0;
-};
-
 class RobotWriter {
  public:
-  RobotWriter(const Robot& robot, DocumentEvents& events) : robot_(robot), events_(events) {}
+  RobotWriter(const Robot& robot, DocumentEvents& events)
+      : robot_(robot), inner_(events, robot.other), events_(robot.other.empty() ? events : inner_) {}
 
   void run() {
     const bool has_materials = !robot_.materials.empty(), has_mass = !robot_.mass.empty(),
@@ -103,8 +57,9 @@ class RobotWriter {
                has_actuators = !robot_.actuators.empty(), has_origin = !robot_.origin.empty(),
                has_sensors = !robot_.sensors.empty(), has_brain = robot_.brain.has_value();
     const std::vector<std::string_view> requirements = requirements_of(robot_);
+    const MemberTexts others = members_of_document(robot_.other);
     events_.begin_object(6u + !requirements.empty() + has_materials + has_mass + has_velocity + has_fixed +
-                         has_actuators + has_sensors + has_brain + has_origin + send_other(nullptr));
+                         has_actuators + has_sensors + has_brain + has_origin + others.size());
     field("format", "mercury-robot");
     field("version", 1u);
     if (!requirements.empty())
@@ -139,7 +94,10 @@ class RobotWriter {
     if (has_sensors) events_.key("sensors"), write_sensors(robot_, events_);
     if (has_brain) events_.key("brain"), write_brain(*robot_.brain, events_);
     if (has_origin) write_origin();
-    send_other(&events_);
+    for (const auto& [name, value] : others) {
+      events_.key(name);
+      read_json(value, events_);
+    }
     events_.end_object();
   }
 
@@ -211,14 +169,8 @@ class RobotWriter {
     }
   }
 
-  // Members that this version does not know. Returns how many there are.
-  std::size_t send_other(DocumentEvents* to) const {
-    Members members(to);
-    if (!robot_.other.empty()) read_json(robot_.other, members);
-    return members.count();
-  }
-
   const Robot& robot_;
+  InnerMembersWriter inner_;
   DocumentEvents& events_;
   std::array<char, 32> room_{};
 };

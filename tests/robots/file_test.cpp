@@ -17,6 +17,7 @@
 #include "mercury/random_voxel.h"
 #include "robots/file/document.h"
 #include "robots/file/whole_file.h"
+#include "tests/refusal.h"
 #include "tests/size_limit.h"
 
 namespace mercury {
@@ -186,7 +187,7 @@ TEST_F(RobotFiles, LinesOfAFileAreShort) {
     EXPECT_TRUE(line.size() < 160 || line.starts_with("\"origin\"")) << line;
 }
 
-TEST_F(RobotFiles, UnknownKeysOfMaterialsAreIgnoredAndThoseOfTheDocumentKept) {
+TEST_F(RobotFiles, UnknownMembersOfTheDocumentAndOfMaterialsAreKept) {
   const std::string document =
       R"({"comment": [1, {"masses": [[]]}, null], "springs": [[0, 1, 1]], "format": "mercury-robot",
     "materials": [{"stiffness": 1}, {"stiffness": 2, "color": {"r": [1]}, "name": "m"}],
@@ -195,7 +196,7 @@ TEST_F(RobotFiles, UnknownKeysOfMaterialsAreIgnoredAndThoseOfTheDocumentKept) {
   EXPECT_EQ(robot.springs, (std::vector<Spring>{{0, 1, 1, 1}}));
   EXPECT_EQ(robot.materials, (std::vector<Material>{{1, 0, 0, 0}, {2, 0, 0, 0}}));
   EXPECT_EQ(robot.material_names, (std::vector<std::string>{"", "m"}));
-  const std::string others = R"({"comment":[1,{"masses":[[]]},null],"x":1.5})";
+  const std::string others = R"({"comment":[1,{"masses":[[]]},null],"x":1.5,"materials":{"1":{"color":{"r":[1]}}}})";
   EXPECT_EQ(robot.other, others);
   for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor}) {
     const std::string written = serialize_robot(robot, format);
@@ -203,6 +204,50 @@ TEST_F(RobotFiles, UnknownKeysOfMaterialsAreIgnoredAndThoseOfTheDocumentKept) {
     EXPECT_EQ(serialize_robot(parse_robot(written, format), format), written);
   }
   EXPECT_EQ(json_member(serialize_robot(robot, RobotFormat::json), "comment"), R"([1,{"masses":[[]]},null])");
+}
+
+TEST_F(RobotFiles, UnknownMembersWithinTheDocumentAreWrittenWhereTheyWere) {
+  const std::string document =
+      R"({"format":"mercury-robot","version":1,"name":"a","materials":[{"stiffness":0,"note":"air"},)"
+      R"({"stiffness":2,"amplitude":0.1,"supplier":{"name":"A","codes":[1,2.50]}}],)"
+      R"("masses":[[0,0,0],[1,0,0]],"springs":[[0,1,1]],"faces":[],)"
+      R"("actuators":[{"name":"leg","color":null,"materials":[1]}],)"
+      R"("sensors":[{"kind":"clock","frequency":2,"label":"beat"}],)"
+      R"("brain":{"author":"B","layers":[{"name":"out","neurons":1,"trained":true,)"
+      R"("inputs":[{"from":"senses","weights":[[0.5,1]],"learned":[0]}]}],)"
+      R"("outputs":[{"actuator":"leg","layer":"out","neuron":0,"gain":3}]}})";
+  const Robot robot = parse_robot(document, RobotFormat::json);
+  EXPECT_EQ(robot.other, R"({"materials":{"0":{"note":"air"},"1":{"supplier":{"name":"A","codes":[1,2.50]}}},)"
+                         R"("actuators":{"0":{"color":null}},"sensors":{"0":{"label":"beat"}},)"
+                         R"("brain":{"author":"B","layers":{"0":{"trained":true,"inputs":{"0":{"learned":[0]}}}},)"
+                         R"("outputs":{"0":{"gain":3}}}})");
+  for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor}) {
+    const std::string written = serialize_robot(robot, format);
+    Robot again = parse_robot(written, format);
+    EXPECT_NE(again.other.find("2.5"), std::string::npos);
+    again.other = robot.other;  // of a number, CBOR keeps the value and not the digits
+    EXPECT_EQ(again, robot);
+  }
+  const std::string written = serialize_robot(robot, RobotFormat::json);
+  for (const char* part : {R"("supplier":{"name":"A","codes":[1,2.50]}})", R"("color":null})", R"("label":"beat"})",
+                           R"("learned":[0]})", R"("trained":true})", R"("gain":3})", R"("author":"B"})"})
+    EXPECT_THAT(written, testing::HasSubstr(part));
+}
+
+TEST_F(RobotFiles, UnknownMembersOfOtherPlacesDoNotStopAReader) {
+  // Beside an array where an object belongs, the place of the error is that of the file.
+  EXPECT_EQ(refusal([] {
+              parse_robot(R"({"format":"mercury-robot","version":1,"materials":[{"stiffness":1,"x":[{"y":1}]},[2]],)"
+                          R"("masses":[],"springs":[],"faces":[]})",
+                          RobotFormat::json);
+            }),
+            "/materials: holds an array at 1, not an object");
+  // A robot whose table was shortened has no members of materials that are not there.
+  Robot robot = parse_robot(R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[],)"
+                            R"("materials":[{"stiffness":0},{"stiffness":1,"note":2}]})",
+                            RobotFormat::json);
+  robot.materials.pop_back();
+  EXPECT_EQ(parse_robot(serialize_robot(robot, RobotFormat::json), RobotFormat::json).other, "");
 }
 
 TEST_F(RobotFiles, MembersThatJsonCannotHoldAreLeftOut) {

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Members that this version does not know, in objects within a robot's document: materials, actuators, sensors, and the
+// parts of a brain. They are kept in Robot::other beside those of the document, under the keys and indices of their
+// places,
+//
+//     {"color": "red", "materials": {"3": {"supplier": "A"}}, "brain": {"layers": {"0": {"note": 1}}}}
+//
+// since a member of the document that is called "materials" is no unknown one.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "robots/file/document.h"
+#include "robots/file/other_members.h"
+
+namespace mercury {
+
+// An object of the document that may have unknown members; null = nothing is known of what is there.
+struct ObjectPlace;
+
+// Keys and values of an object, as JSON text.
+using MemberTexts = std::vector<std::pair<std::string, std::string>>;
+MemberTexts members_of(std::string_view object);
+// Those members of Robot::other that are of the document itself.
+MemberTexts members_of_document(std::string_view other);
+
+// Takes unknown inner members out of a document that is read, and sends all else on.
+class InnerMembersReader : public DocumentEvents {
+ public:
+  explicit InnerMembersReader(DocumentEvents& to) : to_(to) {}
+
+  void null() override;
+  void boolean(bool value) override;
+  void number(const Number& value) override;
+  void text(std::string_view value) override;
+  void bytes(std::string_view value) override;
+  void begin_array(std::size_t announced) override;
+  void end_array() override;
+  void begin_object(std::size_t announced) override;
+  void key(std::string_view name) override;
+  void end_object() override;
+
+  // Robot::other with them; `other` = that of the document.
+  std::string with_inner(const std::string& other, bool with_materials) const;
+
+ private:
+  // An object or an array that is open.
+  struct Frame {
+    const ObjectPlace* place = nullptr;  // of the object, or of the objects of the array
+    bool is_array = false;
+    std::size_t index = 0;  // of the element of the array
+    std::string key;        // of the member of the object
+    std::string members;    // that are kept, here and below, as JSON text
+  };
+
+  template <class Send, class Take>
+  void value(const Send& send, const Take& take);
+  void open(bool is_array);
+  void close();
+  void end_taken();
+
+  DocumentEvents& to_;
+  std::vector<Frame> frames_;  // within each other; those of places that may have unknown members
+  int beyond_ = 0;             // arrays and objects that are open within the last of them
+  OtherMembers taken_;
+  int taken_depth_ = -1;  // of an unknown member: arrays and objects of it that are open; -1 = there is none
+  std::string of_materials_, of_others_;
+};
+
+// Puts them back into a document that is written.
+class InnerMembersWriter : public DocumentEvents {
+ public:
+  // `other` = Robot::other.
+  InnerMembersWriter(DocumentEvents& to, std::string_view other) : to_(to), other_(other) {}
+
+  void null() override;
+  void boolean(bool value) override;
+  void number(const Number& value) override;
+  void text(std::string_view value) override;
+  void bytes(std::string_view value) override;
+  void begin_array(std::size_t announced) override;
+  void end_array() override;
+  void begin_object(std::size_t announced) override;
+  void key(std::string_view name) override;
+  void end_object() override;
+
+ private:
+  struct Frame {
+    const ObjectPlace* place = nullptr;
+    bool is_array = false;
+    std::size_t index = 0;
+    std::string key;
+    MemberTexts members, unknown;  // that belong below, and here
+  };
+
+  void open(bool is_array);
+  void close();
+  void value_ended();
+
+  DocumentEvents& to_;
+  const std::string_view other_;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace mercury
