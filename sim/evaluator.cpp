@@ -38,6 +38,7 @@ Evaluator::Evaluator(const EvaluationRequest& request, RobotSource source, std::
   validate(request.configuration);
   if (request.steps < 0 || request.settling < 0 || request.sample_every < 0)
     throw std::invalid_argument("numbers of steps must be 0 or more");
+  if (request.drive && request.drive_every <= 0) throw std::invalid_argument("drives need steps between them");
   validate_checks(request);
   if (request.grows && count == unknown_count) throw std::invalid_argument("a source that grows needs a number");
   parts_ = std::make_unique<Parts>(request, std::move(source), count);

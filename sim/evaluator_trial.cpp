@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "mercury/error.h"
@@ -49,7 +51,10 @@ PortionTrial::PortionTrial(Simulation& simulation, const EvaluationRequest& requ
     results_.push_back(
         {.index = portion.first + results_.size(), .robot = candidate.robot, .failure = candidate.failure});
   }
-  for (std::size_t i = 0; i < simulation.size(); ++i) size_ += size_of(simulation.robot(i));
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    size_ += size_of(simulation.robot(i));
+    if (request.drive) actuator_counts_.push_back(actuators_of(simulation.robot(i)).size());
+  }
 }
 
 bool PortionTrial::run() {
@@ -86,11 +91,29 @@ void PortionTrial::place() {
   simulation_.reset_to(positions);
 }
 
+std::int64_t PortionTrial::drive() {
+  if (!request_.drive) return std::numeric_limits<std::int64_t>::max();
+  const std::int64_t since = simulation_.steps() % request_.drive_every;
+  if (since > 0) return request_.drive_every - since;
+  std::vector<std::vector<float>> drives(simulation_.size());
+  parallel_for(0, simulation_.size(), [&](std::size_t i) {
+    drives[i].resize(actuator_counts_[i], std::numeric_limits<float>::quiet_NaN());
+    request_.drive(results_[candidates_[i]].index, simulation_.robot(i), simulation_.steps() / request_.drive_every,
+                   drives[i]);
+  });
+  std::vector<HeldDrive> held;
+  for (std::size_t i = 0; i < drives.size(); ++i)
+    for (std::size_t a = 0; a < drives[i].size(); ++a)
+      if (!std::isnan(drives[i][a])) held.push_back({.robot = i, .actuator = a, .drive = drives[i][a]});
+  simulation_.hold_drives(held);
+  return request_.drive_every;
+}
+
 // Makes the steps before the start, or fewer if the evaluation stops.
 bool PortionTrial::settle() {
   while (simulation_.steps() < request_.settling && !context_.stopping()) {
     if (context_.canceled()) return false;
-    step(std::min(steps_per_call(), request_.settling - simulation_.steps()));
+    step(std::min({drive(), steps_per_call(), request_.settling - simulation_.steps()}));
   }
   return !context_.canceled();
 }
@@ -99,7 +122,7 @@ bool PortionTrial::settle() {
 bool PortionTrial::advance(std::int64_t end) {
   while (simulation_.size() > 0 && steps_done() < end && !context_.stopping()) {
     if (context_.canceled()) return false;
-    const std::int64_t count = std::min(steps_per_call(), end - steps_done());
+    const std::int64_t count = std::min({drive(), steps_per_call(), end - steps_done()});
     const std::int64_t next = observed_ + sample_every_;
     if (steps_done() == observed_ && count >= sample_every_) {
       step_and_observe(count - count % sample_every_);
@@ -196,6 +219,7 @@ void PortionTrial::keep(std::span<const std::size_t> robots) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     candidates_[i] = candidates_[robots[i]];
     measures_[i] = measures_[robots[i]];
+    if (request_.drive) actuator_counts_[i] = actuator_counts_[robots[i]];
     size_ += size_of(simulation_.robot(i));
   }
   candidates_.resize(robots.size());

@@ -95,6 +95,8 @@ class PortionTrial {
 
  private:
   void place();
+  // Writes the drives of a period that begins now. Returns in how many steps the next one begins.
+  std::int64_t drive();
   bool settle();
   bool advance(std::int64_t end);
   void step(std::int64_t steps);
@@ -120,8 +122,9 @@ class PortionTrial {
   // Per robot of the simulation.
   std::vector<std::size_t> candidates_;
   std::vector<TrialMeasures> measures_;
-  std::int64_t settled_ = 0;   // steps of the simulation at the start of the trial
-  std::int64_t observed_ = 0;  // steps of the trial at the last sample
+  std::vector<std::size_t> actuator_counts_;  // if they are driven
+  std::int64_t settled_ = 0;                  // steps of the simulation at the start of the trial
+  std::int64_t observed_ = 0;                 // steps of the trial at the last sample
 };
 
 }  // namespace mercury

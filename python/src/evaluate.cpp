@@ -14,6 +14,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -23,6 +24,8 @@
 #include "mercury/evaluator.h"
 #include "mercury/trials.h"
 #include "python/src/bindings.h"
+#include "python/src/called_object.h"
+#include "python/src/drives.h"
 #include "python/src/gil.h"
 #include "python/src/result.h"
 #include "python/src/robot_source.h"
@@ -55,7 +58,17 @@ or nearer by up to this share of it [m]; 0 = where the robot has its masses. qua
 trials that came within the environment's `reach` of it.
 target_sphere: whether the direction may point up and down.
 turned: whether each trial starts turned about the vertical by a random angle.
-seed: of jitter, directions and angles, which are the same for all robots. Senses have other noise in each trial.
+delay, noise, damage: all trials but the first start at random moments of the muscles' movement, up to `delay` [s];
+stiffnesses and amplitudes differ between trials by the standard deviation `noise`; each trial lacks the share `damage` of
+the voxels. Result.robot is the robot of the first trial.
+seed: of all of that, which is the same for all robots. Senses have other noise in each trial.
+drives, drive_every: signals for the actuators (Batch.actuation), from -1 to 1: an array (periods, actuators) for all
+robots, a list of them, one per robot, or a function of index and Robot that returns one. A period lasts `drive_every` [s],
+settling included; after the last one the first one follows. A column of NaN leaves an actuator to its sine or brain.
+checks, goes_on: racing. At each of these times after settling [s], goes_on(so_far) is asked about every robot, whose
+Result is what it would be if its trial ended there. Where it returns False, it does end there (Result.steps), and its steps
+are saved; results of others are the same bit for bit. With one trial per robot. Several threads call the function, in no
+particular order, so it has to depend on `so_far` alone.
 folding: whether results have `inverted` and `overlap`, which take all positions from the device.
 hashes, states: whether results have the hash and the masses of the final state.
 memory_limit: of the host, for robots that are made and not yet returned [bytes]; None = a quarter of what is free.
@@ -68,7 +81,9 @@ function, is a Result with `failure`. Raises InputError for a value that is not 
 // All functions are called with the GIL, which guards the members.
 class Results {
  public:
-  Results(const EvaluationRequest& request, nb::object source, const TrialSettings& trials, std::uint64_t seed);
+  // `drives` may be null.
+  Results(const EvaluationRequest& request, nb::object source, const TrialSettings& trials, std::uint64_t seed,
+          std::shared_ptr<const Drives> drives);
   ~Results() { close(); }
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
@@ -92,6 +107,7 @@ class Results {
   std::shared_ptr<const EvaluationRequest> request_;
   bool hashes_, states_;
   std::vector<Evaluation> collected_;  // trials of the next robot
+  std::shared_ptr<const Drives> drives_;
   nb::object source_, iterator_;
   std::size_t pulled_robots_ = 0;
   std::shared_ptr<PulledSource> pulled_;  // null unless robots come from an iterator
@@ -117,9 +133,10 @@ class Results::Use {
   Results& results_;
 };
 
-Results::Results(const EvaluationRequest& request, nb::object source, const TrialSettings& trials, std::uint64_t seed)
+Results::Results(const EvaluationRequest& request, nb::object source, const TrialSettings& trials, std::uint64_t seed,
+                 std::shared_ptr<const Drives> drives)
     : trials_(static_cast<std::size_t>(trials.trials)), request_(std::make_shared<EvaluationRequest>(request)),
-      hashes_(request.hashes), states_(request.states), source_(std::move(source)) {
+      hashes_(request.hashes), states_(request.states), drives_(std::move(drives)), source_(std::move(source)) {
   EvaluationRequest complete = request;
   RobotSource robots;
   std::size_t count = Evaluator::unknown_count;
@@ -203,6 +220,7 @@ std::optional<Result> Results::wait() {
   Result result{std::move(collected_.front()), {}, request_, hashes_, states_, 0};
   result.more.assign(std::make_move_iterator(collected_.begin() + 1), std::make_move_iterator(collected_.end()));
   collected_.clear();
+  if (drives_) drives_->forget(result.evaluation.index);
   return result;
 }
 
@@ -253,11 +271,45 @@ std::int64_t steps_in(double seconds, double dt, const char* name) {
   return std::llround(steps);
 }
 
+void race(EvaluationRequest& request, const std::vector<double>& checks, nb::handle goes_on,
+          const TrialSettings& trials) {
+  if (checks.empty() != goes_on.is_none()) throw InputError("checks", "go with goes_on; give both or neither");
+  if (checks.empty()) return;
+  if (trials.trials != 1) throw InputError("checks", "racing works with one trial per robot");
+  for (const double time : checks) {
+    const std::int64_t step = steps_in(time, request.configuration.dt, "checks");
+    if (step <= (request.checks.empty() ? 0 : request.checks.back()) || step >= request.steps)
+      throw InputError("checks", "give times in ascending order, after the start and before the end of the trial");
+    request.checks.push_back(step);
+  }
+  const auto tried = std::make_shared<const EvaluationRequest>(request);
+  request.goes_on = [called = CalledObject(goes_on), tried](const Evaluation& so_far) {
+    return called.call([&](nb::handle function) {
+      const nb::object answer = function(Result{so_far, {}, tried, false, false, 0});
+      const int truth = PyObject_IsTrue(answer.ptr());
+      if (truth < 0) throw nb::python_error();
+      return truth == 1;
+    });
+  };
+}
+
+void drive(EvaluationRequest& request, std::shared_ptr<const Drives> drives, double period,
+           const TrialSettings& trials) {
+  request.drive_every = steps_in(period, request.configuration.dt, "drive_every");
+  if (request.drive_every < 1) throw InputError("drive_every", "is less than a step; give at least dt");
+  request.drive = [drives = std::move(drives), count = static_cast<std::size_t>(trials.trials)](
+                      std::size_t index, const Robot& robot, std::int64_t number, std::span<float> values) {
+    drives->write(index / count, robot, number, values);
+  };
+}
+
 nb::object evaluate(nb::object source, double seconds, nb::handle environment, const std::string& solver, double dt,
                     double damping, nb::handle device, int threads, double settle, std::optional<double> sample_every,
                     int trials, std::optional<double> jitter, double target_radius, double target_spread,
-                    bool target_sphere, bool turned, std::uint64_t seed, bool folding, bool hashes, bool states,
-                    std::optional<std::size_t> memory_limit, std::optional<std::size_t> portion) {
+                    bool target_sphere, bool turned, double delay, double noise, double damage, std::uint64_t seed,
+                    nb::handle drives, double drive_every, const std::vector<double>& checks, nb::handle goes_on,
+                    bool folding, bool hashes, bool states, std::optional<std::size_t> memory_limit,
+                    std::optional<std::size_t> portion) {
   const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
   validate(configuration);
   const std::int64_t steps = steps_in(seconds, dt, "seconds"), settling = steps_in(settle, dt, "settle");
@@ -273,6 +325,9 @@ nb::object evaluate(nb::object source, double seconds, nb::handle environment, c
   settings.target_spread = target_spread;
   settings.target_sphere = target_sphere;
   settings.turned = turned;
+  settings.delay = delay;
+  settings.noise = noise;
+  settings.damage = damage;
   check_parameters(settings);
   EvaluationRequest request = trial_request(settings, configuration, seed);
   request.settling = settling;
@@ -282,7 +337,10 @@ nb::object evaluate(nb::object source, double seconds, nb::handle environment, c
   request.states = states;
   request.memory_limit = memory_limit.value_or(0);
   request.portion = portion.value_or(0);
-  nb::object results = nb::cast(std::make_unique<Results>(request, std::move(source), settings, seed));
+  race(request, checks, goes_on, settings);
+  const std::shared_ptr<const Drives> signals = drives.is_none() ? nullptr : std::make_shared<const Drives>(drives);
+  if (signals) drive(request, signals, drive_every, settings);
+  nb::object results = nb::cast(std::make_unique<Results>(request, std::move(source), settings, seed, signals));
   nb::module_::import_("mercurysim._mercury").attr("_open_results").attr("add")(results);
   return results;
 }
@@ -310,23 +368,30 @@ void bind_evaluate(nb::module_& module) {
       .def("__reduce_ex__",
            refused_pickle("the results of evaluate() cannot be pickled or copied: collect them in a list"),
            refused_pickle_signature);
-  module.def("evaluate", &evaluate, nb::arg("source").none(), nb::arg("seconds"), nb::kw_only(),
-             nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3,
-             nb::arg("damping") = 0.1, nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0,
-             nb::arg("sample_every") = nb::none(), nb::arg("trials") = 1, nb::arg("jitter") = nb::none(),
-             nb::arg("target_radius") = 0.0, nb::arg("target_spread") = 0.0, nb::arg("target_sphere") = false,
-             nb::arg("turned") = false, nb::arg("seed") = 1, nb::arg("folding") = false, nb::arg("hashes") = false,
-             nb::arg("states") = false, nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(),
-             nb::sig("def evaluate(source: Robot | collections.abc.Iterable[Robot] | "
-                     "collections.abc.Callable[[int], Robot | None], seconds: float, *, "
-                     "environment: Environment | str | None = None, solver: str = 'force', dt: float = 0.001, "
-                     "damping: float = 0.1, device: object = 'auto', threads: int = 0, settle: float = 0.0, "
-                     "sample_every: float | None = None, trials: int = 1, jitter: float | None = None, "
-                     "target_radius: float = 0.0, target_spread: float = 0.0, target_sphere: bool = False, "
-                     "turned: bool = False, seed: int = 1, "
-                     "folding: bool = False, hashes: bool = False, states: bool = False, "
-                     "memory_limit: int | None = None, portion: int | None = None) -> Results"),
-             evaluate_description);
+  module.def(
+      "evaluate", &evaluate, nb::arg("source").none(), nb::arg("seconds"), nb::kw_only(),
+      nb::arg("environment") = nb::none(), nb::arg("solver") = "force", nb::arg("dt") = 1e-3, nb::arg("damping") = 0.1,
+      nb::arg("device") = "auto", nb::arg("threads") = 0, nb::arg("settle") = 0.0, nb::arg("sample_every") = nb::none(),
+      nb::arg("trials") = 1, nb::arg("jitter") = nb::none(), nb::arg("target_radius") = 0.0,
+      nb::arg("target_spread") = 0.0, nb::arg("target_sphere") = false, nb::arg("turned") = false,
+      nb::arg("delay") = 0.0, nb::arg("noise") = 0.0, nb::arg("damage") = 0.0, nb::arg("seed") = 1,
+      nb::arg("drives") = nb::none(), nb::arg("drive_every") = 0.02, nb::arg("checks") = std::vector<double>(),
+      nb::arg("goes_on") = nb::none(), nb::arg("folding") = false, nb::arg("hashes") = false, nb::arg("states") = false,
+      nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(),
+      nb::sig("def evaluate(source: Robot | collections.abc.Iterable[Robot] | "
+              "collections.abc.Callable[[int], Robot | None], seconds: float, *, "
+              "environment: Environment | str | None = None, solver: str = 'force', dt: float = 0.001, "
+              "damping: float = 0.1, device: object = 'auto', threads: int = 0, settle: float = 0.0, "
+              "sample_every: float | None = None, trials: int = 1, jitter: float | None = None, "
+              "target_radius: float = 0.0, target_spread: float = 0.0, target_sphere: bool = False, "
+              "turned: bool = False, delay: float = 0.0, noise: float = 0.0, damage: float = 0.0, seed: int = 1, "
+              "drives: numpy.typing.ArrayLike | collections.abc.Sequence[numpy.typing.ArrayLike] | "
+              "collections.abc.Callable[[int, Robot], numpy.typing.ArrayLike] | None = None, "
+              "drive_every: float = 0.02, checks: collections.abc.Sequence[float] = (), "
+              "goes_on: collections.abc.Callable[[Result], bool] | None = None, "
+              "folding: bool = False, hashes: bool = False, states: bool = False, "
+              "memory_limit: int | None = None, portion: int | None = None) -> Results"),
+      evaluate_description);
   // What is open when the interpreter exits is closed while threads can still run.
   const nb::object open = nb::module_::import_("weakref").attr("WeakSet")();
   module.attr("_open_results") = open;

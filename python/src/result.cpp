@@ -110,6 +110,8 @@ Repetition repetition_of(const std::vector<const Result*>& results) {
   for (const Result* result : results) {
     const std::string which = "result " + std::to_string(result->evaluation.index);
     if (!result->was_stepped()) throw InputError(which + ": its robot was not stepped: " + result->evaluation.failure);
+    if (result->request->drive)
+      throw InputError(which + ": it was driven by signals, which are not kept; record a driven Batch with Recorder");
     if (result->request != first.request || result->evaluation.steps != first.evaluation.steps)
       throw InputError(which + ": it is of another call of evaluate(), or of a trial of another length, than result " +
                        std::to_string(first.evaluation.index) + "; take them one by one");

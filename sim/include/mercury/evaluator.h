@@ -60,6 +60,12 @@ struct EvaluationRequest {
   std::function<std::uint64_t(std::size_t index)> noise_seed;
   // Which of `inverted` and `overlap` the telemetry of a robot has: Simulation::measure_folding(). None = of no robot.
   std::function<MeasuredFolding(const Robot&)> folding;
+  // Drives of the actuators, as Simulation::hold_drives() takes them. Every `drive_every` steps, the steps before the
+  // start included, drive() writes those of a robot for the next ones: one per actuator of actuators_of(robot), in [-1,
+  // 1]; NaN = the actuator goes on by itself. `period` counts from 0. Several threads call it at the same time. It
+  // needs drive_every > 0.
+  std::int64_t drive_every = 0;
+  std::function<void(std::size_t index, const Robot& robot, std::int64_t period, std::span<float> drives)> drive;
   bool hashes = false;  // of the final states
   bool states = false;  // the final states themselves
 
