@@ -23,15 +23,20 @@ struct SensedPlace {
   double mass;  // of its masses together [kg]
 };
 
-// What a warp adds up for a place at once, into a row of sums; of tiles of a body that senses how it turns, into two.
-// The cut does not depend on the number of warps, nor do the sums.
+// What a warp adds up for a place at once, in floats, into a row of sums; of tiles of a body that senses how it turns,
+// into two. The rows are then added up in double precision. The cut depends on the robot and not on the number of
+// warps, nor do the sums.
 struct SensingShare {
   enum Kind : std::uint32_t { tiles, masses, springs };
   Kind kind;
   std::uint32_t row, count;
   std::uint64_t first;  // tile of the robot, or entry of the lists
 };
-inline constexpr std::uint32_t tiles_per_share = 3, entries_per_share = 512, sums_per_row = 16;
+inline constexpr std::uint32_t tiles_per_share = 3, entries_per_share = 256, sums_per_row = 16;
+
+struct BrainLayer : BrainPlan::Layer {
+  bool reads_itself;  // a neuron has inputs from neurons of its layer
+};
 
 // Where the parts of a brain begin in the tables.
 struct ThinkingRobot {
@@ -54,7 +59,7 @@ struct BrainTables {
   const BrainPlan::Neuron* neurons;
   const BrainPlan::Run* runs;
   const BrainPlan::Learning* learnings;
-  const BrainPlan::Layer* layers;
+  const BrainLayer* layers;
   const BrainPlan::Output* outputs;
   const SensedPlace* places;
   const SensingShare* shares;
@@ -67,7 +72,7 @@ struct BrainTables {
   std::uint64_t* thoughts;
   const std::uint64_t* noise_seeds;
   // For the time of a thought.
-  double (*sums)[sums_per_row];
+  float (*sums)[sums_per_row];
   PlaceMeasures* measures;  // one per place
   BodyMeasures* bodies;     // one per brain
   float* scratch;           // senses, neurons, sums of neurons, of each brain

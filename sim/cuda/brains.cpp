@@ -14,6 +14,14 @@ DeviceArray<T> uploaded(const std::vector<T>& values, cudaStream_t stream) {
   return array;
 }
 
+bool reads_itself(const BrainPlan& plan, const BrainPlan::Layer& layer) {
+  const auto first = static_cast<std::uint32_t>(plan.senses.size()) + layer.first, last = first + layer.count;
+  for (const BrainPlan::Neuron& neuron : std::span(plan.neurons).subspan(layer.first, layer.count))
+    for (const BrainPlan::Run& run : std::span(plan.runs).subspan(neuron.first_run, neuron.runs))
+      if (run.source < last && run.source + run.count > first) return true;
+  return false;
+}
+
 // All brains as the tables have them, on the host.
 class TableMaker {
  public:
@@ -22,7 +30,7 @@ class TableMaker {
   std::vector<BrainPlan::Neuron> neurons;
   std::vector<BrainPlan::Run> runs;
   std::vector<BrainPlan::Learning> learnings;
-  std::vector<BrainPlan::Layer> layers;
+  std::vector<BrainLayer> layers;
   std::vector<BrainPlan::Output> outputs;
   std::vector<SensedPlace> places;
   std::vector<SensingShare> shares;
@@ -81,7 +89,8 @@ class TableMaker {
     robot.first_neuron = append(neurons, plan.neurons);
     robot.first_run = append(runs, plan.runs);
     robot.first_learning = append(learnings, plan.learnings);
-    robot.first_layer = append(layers, plan.layers);
+    robot.first_layer = layers.size();
+    for (const BrainPlan::Layer& layer : plan.layers) layers.push_back({layer, reads_itself(plan, layer)});
     robot.first_output = append(outputs, plan.outputs);
     robot.senses = count(plan.senses);
     robot.neurons = count(plan.neurons);
@@ -194,7 +203,7 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
   targets_ = DeviceArray<Vec3>(made.robots.size());
   thoughts_ = DeviceArray<std::uint64_t>(made.robots.size());
   noise_seeds_ = DeviceArray<std::uint64_t>(made.robots.size());
-  sums_ = DeviceArray<double>(made.rows * sums_per_row);
+  sums_ = DeviceArray<float>(made.rows * sums_per_row);
   measures_ = DeviceArray<PlaceMeasures>(made.places.size());
   bodies_ = DeviceArray<BodyMeasures>(made.robots.size());
   scratch_ = DeviceArray<float>(made.scratch);
@@ -217,7 +226,7 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
              .targets = targets_.data(),
              .thoughts = thoughts_.data(),
              .noise_seeds = noise_seeds_.data(),
-             .sums = reinterpret_cast<double(*)[sums_per_row]>(sums_.data()),
+             .sums = reinterpret_cast<float(*)[sums_per_row]>(sums_.data()),
              .measures = measures_.data(),
              .bodies = bodies_.data(),
              .scratch = scratch_.data()};

@@ -52,7 +52,7 @@ class DeviceBrains {
   DeviceArray<BrainPlan::Neuron> neurons_;
   DeviceArray<BrainPlan::Run> runs_;
   DeviceArray<BrainPlan::Learning> learnings_;
-  DeviceArray<BrainPlan::Layer> layers_;
+  DeviceArray<BrainLayer> layers_;
   DeviceArray<BrainPlan::Output> outputs_;
   DeviceArray<SensedPlace> places_;
   DeviceArray<SensingShare> shares_;
@@ -65,7 +65,7 @@ class DeviceBrains {
   DeviceArray<float> clamps_, scratch_;
   DeviceArray<Vec3> targets_;
   DeviceArray<std::uint64_t> thoughts_, noise_seeds_;
-  DeviceArray<double> sums_;
+  DeviceArray<float> sums_;
   DeviceArray<PlaceMeasures> measures_;
   DeviceArray<BodyMeasures> bodies_;
 };

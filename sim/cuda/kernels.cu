@@ -123,7 +123,7 @@ __global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, 
                                bool before_step) {
   const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
   if (i >= count) return;
-  const bool works = set_driven(driven[i], sources, clock);
+  const bool works = ActuatedMaterial(driven[i], sources).set(sources, clock);
   // Several threads may write the same step.
   if (!works && before_step && driven[i].status->exploded_step < 0) driven[i].status->exploded_step = clock.step;
 }

@@ -3,9 +3,9 @@
 //
 //   measure   each warp     sums over a share of the masses or springs            -> BrainTables::sums
 //   -- barrier of the robot's warps, as after each of the following --
-//   conclude  each warp     a place from its sums, the frame, the turn rate       -> measures, bodies
+//   conclude  each warp     a place from its sums, or the frame, or the turn rate -> measures, bodies
 //   sense     each thread   one sense                                             -> samples, scratch
-//   update    8 lanes each  the sum of one neuron                                 -> scratch
+//   update    8 lanes each  the sum of one neuron after the other
 //             each thread   one neuron, one weight that learns                    -> scratch, activations, weights
 //   drive     each thread   one output, then one driven material                  -> drives, materials
 //
@@ -31,13 +31,13 @@ __device__ inline void wait_for_robot(std::uint32_t warps) {
 
 // Sums of 16 values over the lanes of a warp. Lanes exchange halves of what they have, so that lanes 2 i and 2 i + 1
 // have the sum of value i in the end.
-__device__ inline double sums_of_warp(double (&values)[sums_per_row]) {
+__device__ inline float sums_of_warp(float (&values)[sums_per_row]) {
 #pragma unroll
   for (unsigned half = 8, distance = 16; half > 0; half /= 2, distance /= 2) {
     const bool upper = threadIdx.x & distance;
 #pragma unroll
     for (unsigned i = 0; i < half; ++i) {
-      const double give = upper ? values[i] : values[i + half], keep = upper ? values[i + half] : values[i];
+      const float give = upper ? values[i] : values[i + half], keep = upper ? values[i + half] : values[i];
       values[i] = keep + __shfl_xor_sync(0xffffffffu, give, distance);
     }
   }
@@ -79,7 +79,7 @@ class Thought {
     if (of_.shares > 0) {
       for (std::uint32_t share = robot_.warp; share < of_.shares; share += robot_.warps()) measure(share);
       wait();
-      for (std::uint32_t place = robot_.warp; place < of_.places; place += robot_.warps()) conclude(place);
+      for (std::uint32_t task = robot_.warp; task < conclusions(); task += robot_.warps()) conclude(task);
       wait();
     }
     sense();
@@ -105,7 +105,7 @@ class Thought {
 
   __device__ void measure(std::uint32_t number) const {
     const SensingShare share = tables_.shares[of_.first_share + number];
-    double* const out = tables_.sums[of_.first_row + share.row];
+    float* const out = tables_.sums[of_.first_row + share.row];
     if (share.kind == SensingShare::springs)
       measure_springs(share, out);
     else if (share.kind == SensingShare::tiles)
@@ -124,10 +124,10 @@ class Thought {
       mv += m * v;
       if (on_ground(z)) touching += 1;
     }
-    __device__ void to(double* sums) const {
+    __device__ void to(float* sums) const {
       const float all[] = {md.x, md.y, md.z, mv.x, mv.y, mv.z, touching};
 #pragma unroll
-      for (int i = 0; i < 7; ++i) sums[i] = static_cast<double>(all[i]);
+      for (int i = 0; i < 7; ++i) sums[i] = all[i];
     }
   };
   // m d x v and m d d^T.
@@ -140,75 +140,82 @@ class Thought {
       squares += Vec3{md.x * d.x, md.y * d.y, md.z * d.z};
       products += Vec3{md.x * d.y, md.x * d.z, md.y * d.z};
     }
-    __device__ void to(double* sums) const {
+    __device__ void to(float* sums) const {
       const float all[] = {momentum.x, momentum.y, momentum.z, squares.x, squares.y,
                            squares.z,  products.x, products.y, products.z};
 #pragma unroll
-      for (int i = 0; i < 9; ++i) sums[i] = static_cast<double>(all[i]);
+      for (int i = 0; i < 9; ++i) sums[i] = all[i];
     }
   };
 
-  // Positions count from a mass, so that nothing cancels far from the origin of the world.
-  __device__ void measure_tiles(const SensingShare& share, double* out) const {
-    const Vec3 origin = robot_.mass_at(0).vector(field_x);
+  // Positions and velocities count from those of a mass, so that nothing cancels in a robot that is far from the origin
+  // of the world, or fast.
+  __device__ Vec3 first_position() const { return robot_.mass_at(0).vector(field_x); }
+  __device__ Vec3 first_velocity() const { return robot_.mass_at(0).vector(field_v); }
+
+  __device__ void measure_tiles(const SensingShare& share, float* out) const {
+    const Vec3 origin = first_position(), moving = first_velocity();
+    const bool uses_frame = of_.uses_frame, uses_turn_rate = of_.uses_turn_rate;
+    const std::uint32_t last =
+        min((static_cast<std::uint32_t>(share.first) + share.count) * lanes, robot_.header().masses);
+    const Vec3* const at_rest = tables_.rest + of_.first_rest;
     MassSums masses;
     TurningSums turning;
-    double shape[9] = {};
-#pragma unroll
-    for (std::uint32_t i = 0; i < tiles_per_share; ++i) {
-      const std::uint32_t slot = (static_cast<std::uint32_t>(share.first) + i) * lanes + robot_.lane;
-      if (i >= share.count || slot >= robot_.header().masses) continue;
+    float shape[9] = {};
+#pragma unroll 2
+    for (std::uint32_t slot = static_cast<std::uint32_t>(share.first) * lanes + robot_.lane; slot < last;
+         slot += lanes) {
+      const Vec3 rest = uses_frame ? at_rest[slot] : Vec3{};
       const float m = mass(slot);
-      const Vec3 x = robot_.mass_at(slot).vector(field_x), d = x - origin, v = robot_.mass_at(slot).vector(field_v);
+      const Vec3 x = robot_.mass_at(slot).vector(field_x), d = x - origin,
+                 v = robot_.mass_at(slot).vector(field_v) - moving;
       masses.add(m, d, v, x.z);
-      if (of_.uses_turn_rate) turning.add(m, d, v);
-      if (!of_.uses_frame) continue;
-      const Vec3 rest = tables_.rest[of_.first_rest + slot];
-      const Double3 X(m * rest), to(d);
-      shape[0] = fma(X.x, to.x, shape[0]), shape[1] = fma(X.x, to.y, shape[1]), shape[2] = fma(X.x, to.z, shape[2]);
-      shape[3] = fma(X.y, to.x, shape[3]), shape[4] = fma(X.y, to.y, shape[4]), shape[5] = fma(X.y, to.z, shape[5]);
-      shape[6] = fma(X.z, to.x, shape[6]), shape[7] = fma(X.z, to.y, shape[7]), shape[8] = fma(X.z, to.z, shape[8]);
+      if (uses_turn_rate) turning.add(m, d, v);
+      const Vec3 X = m * rest;
+      shape[0] = fmaf(X.x, d.x, shape[0]), shape[1] = fmaf(X.x, d.y, shape[1]), shape[2] = fmaf(X.x, d.z, shape[2]);
+      shape[3] = fmaf(X.y, d.x, shape[3]), shape[4] = fmaf(X.y, d.y, shape[4]), shape[5] = fmaf(X.y, d.z, shape[5]);
+      shape[6] = fmaf(X.z, d.x, shape[6]), shape[7] = fmaf(X.z, d.y, shape[7]), shape[8] = fmaf(X.z, d.z, shape[8]);
     }
-    double sums[sums_per_row];
+    float sums[sums_per_row];
     masses.to(sums);
 #pragma unroll
     for (int i = 0; i < 9; ++i) sums[7 + i] = shape[i];
     write_sums(sums, out);
-    if (!of_.uses_turn_rate) return;
+    if (!uses_turn_rate) return;
     turning.to(sums);
 #pragma unroll
     for (std::uint32_t i = 9; i < sums_per_row; ++i) sums[i] = 0;
     write_sums(sums, out + sums_per_row);
   }
 
-  __device__ void measure_masses(const SensingShare& share, double* out) const {
+  __device__ void measure_masses(const SensingShare& share, float* out) const {
+    const Vec3 origin = first_position(), moving = first_velocity();
     MassSums masses;
     for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
       const std::uint32_t slot = tables_.slots[share.first + i];
       const Vec3 x = robot_.mass_at(slot).vector(field_x);
-      masses.add(mass(slot), x - robot_.mass_at(0).vector(field_x), robot_.mass_at(slot).vector(field_v), x.z);
+      masses.add(mass(slot), x - origin, robot_.mass_at(slot).vector(field_v) - moving, x.z);
     }
-    double sums[sums_per_row] = {};
+    float sums[sums_per_row] = {};
     masses.to(sums);
     write_sums(sums, out);
   }
 
-  __device__ void write_sums(double (&sums)[sums_per_row], double* out) const {
-    const double sum = sums_of_warp(sums);
+  __device__ void write_sums(float (&sums)[sums_per_row], float* out) const {
+    const float sum = sums_of_warp(sums);
     if (robot_.lane % 2 == 0) out[robot_.lane / 2] = sum;
   }
 
-  // Springs are many: each is measured in floats.
-  __device__ void measure_springs(const SensingShare& share, double* out) const {
-    double strain = 0, rate = 0;
+  __device__ void measure_springs(const SensingShare& share, float* out) const {
+    float strain = 0, rate = 0;
 #pragma unroll 4
     for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
       const SensedSpring spring = tables_.springs[share.first + i];
       const Mass<Memory> a = robot_.mass_at(spring.a), b = robot_.mass_at(spring.b);
       const Vec3 d = b.vector(field_x) - a.vector(field_x), v = b.vector(field_v) - a.vector(field_v);
       const float length = sqrtf(dot(d, d));
-      strain += static_cast<double>(length * spring.inverse_rest_length - 1);
-      if (length > 0) rate += static_cast<double>(dot(d, v) / length * spring.inverse_rest_length);
+      strain += length * spring.inverse_rest_length - 1;
+      if (length > 0) rate += dot(d, v) / length * spring.inverse_rest_length;
     }
     for (unsigned distance = lanes / 2; distance > 0; distance /= 2) {
       strain += __shfl_xor_sync(0xffffffffu, strain, distance);
@@ -217,52 +224,84 @@ class Thought {
     if (robot_.lane == 0) out[0] = strain, out[1] = rate;
   }
 
-  // Lanes add up the shares of a place: 0 to 15 those of masses, 16 to 24 what else tiles have of turning, 25 and 26
-  // those of springs. Then each lane has all sums, and all compute the same.
-  __device__ void conclude(std::uint32_t number) const {
-    const SensedPlace& place = tables_.places[of_.first_place + number];
-    const std::uint32_t lane = robot_.lane;
-    const std::uint32_t rows = number == 0 && of_.uses_turn_rate ? 2 : 1;  // of a share of masses
-    std::uint32_t row = place.first_row, count = place.mass_shares, column = lane, stride = rows;
-    if (lane >= 16) ++row, column = lane - 16, count = rows == 2 ? count : 0;
-    if (lane >= 25) row = place.first_row + rows * place.mass_shares, column = lane - 25, count = place.spring_shares;
-    if (lane >= 25) stride = 1;
-    if (lane >= 27) count = 0;
-    const double* const sums = tables_.sums[of_.first_row + row] + column;
-    double sum = 0;
-#pragma unroll 4
-    for (std::uint32_t i = 0; i < count; ++i) sum += sums[i * stride * sums_per_row];
-    const auto of = [&](std::uint32_t from) { return __shfl_sync(0xffffffffu, sum, static_cast<int>(from)); };
-    const auto three = [&](std::uint32_t from) {
-      const double x = of(from), y = of(from + 1), z = of(from + 2);
-      return Double3(x, y, z);
-    };
-    const double weight = number == 0 ? robot_.header().mass : place.mass, share_of_mass = 1 / weight;
+  // Of one place, the body's frame, or how it turns: each by a warp of its own.
+  __device__ void conclude(std::uint32_t task) const {
+    if (task < of_.places)
+      conclude_place(task);
+    else if (task == of_.places)
+      conclude_frame();
+    else
+      conclude_turn_rate();
+  }
+  __device__ std::uint32_t conclusions() const {
+    return of_.places + (of_.uses_frame ? 1 : 0) + (of_.uses_turn_rate ? 1 : 0);
+  }
+
+  // Sums over the shares of a place, each in a lane: 0 to 15 those of masses, 16 to 24 what else tiles have of turning,
+  // 25 and 26 those of springs. All lanes then ask for them and compute the same.
+  class PlaceSums {
+   public:
+    __device__ PlaceSums(const Thought& thought, std::uint32_t number) {
+      const SensedPlace& place = thought.place(number);
+      const std::uint32_t lane = thought.robot_.lane;
+      const std::uint32_t rows = number == 0 && thought.of_.uses_turn_rate ? 2 : 1;  // of a share of masses
+      std::uint32_t row = place.first_row, count = place.mass_shares, column = lane, stride = rows;
+      if (lane >= 16) ++row, column = lane - 16, count = rows == 2 ? count : 0;
+      if (lane >= 25) row = place.first_row + rows * place.mass_shares, column = lane - 25, count = place.spring_shares;
+      if (lane >= 25) stride = 1;
+      if (lane >= 27) count = 0;
+      const float* const sums = thought.tables_.sums[thought.of_.first_row + row] + column;
+#pragma unroll 8
+      for (std::uint32_t i = 0; i < count; ++i) sum_ += static_cast<double>(sums[i * stride * sums_per_row]);
+    }
+    __device__ double of(std::uint32_t column) const {
+      return __shfl_sync(0xffffffffu, sum_, static_cast<int>(column));
+    }
+    __device__ Double3 three(std::uint32_t column) const {
+      const double x = of(column), y = of(column + 1), z = of(column + 2);
+      return {x, y, z};
+    }
+
+   private:
+    double sum_ = 0;
+  };
+
+  __device__ const SensedPlace& place(std::uint32_t number) const { return tables_.places[of_.first_place + number]; }
+
+  __device__ void conclude_place(std::uint32_t number) const {
+    const PlaceSums sums(*this, number);
+    const SensedPlace& place = this->place(number);
+    const double share_of_mass = 1 / (number == 0 ? robot_.header().mass : place.mass);
     const std::uint32_t masses = number == 0 ? robot_.header().masses : place.masses;
-    const Double3 center = share_of_mass * three(0), velocity = share_of_mass * three(3);
-    const double touching = of(6), strain = of(25), rate = of(26);
+    const double touching = sums.of(6), share_of_springs = place.springs > 0 ? 1.0 / place.springs : 0;
     PlaceMeasures measured;
-    measured.center = Double3(robot_.mass_at(0).vector(field_x)) + center;
-    measured.velocity = velocity;
+    measured.center = Double3(first_position()) + share_of_mass * sums.three(0);
+    measured.velocity = Double3(first_velocity()) + share_of_mass * sums.three(3);
     measured.touch = thoughts_.world.ground ? touching / masses : 0;
-    const double share_of_springs = place.springs > 0 ? 1.0 / place.springs : 0;
-    measured.strain = share_of_springs * strain;
-    measured.strain_rate = share_of_springs * rate;
-    if (lane == 0) tables_.measures[of_.first_place + number] = measured;
-    if (number > 0 || !of_.uses_frame) return;
+    measured.strain = share_of_springs * sums.of(25);
+    measured.strain_rate = share_of_springs * sums.of(26);
+    if (robot_.lane == 0) tables_.measures[of_.first_place + number] = measured;
+  }
+
+  __device__ void conclude_frame() const {
+    const PlaceSums sums(*this, 0);
     double s[9];
 #pragma unroll
-    for (std::uint32_t i = 0; i < 9; ++i) s[i] = of(7 + i);
-    BodyMeasures body;
-    if (of_.uses_turn_rate) {
-      const Double3 momentum = three(16) - weight * cross(center, velocity);
-      const Double3 squares = three(19), products = three(22), c = center, mc = weight * center;
-      const double xx = squares.x - mc.x * c.x, yy = squares.y - mc.y * c.y, zz = squares.z - mc.z * c.z;
-      body.turn_rate = angular_velocity(momentum, {yy + zz, xx + zz, xx + yy, -(products.x - mc.x * c.y),
-                                                   -(products.y - mc.x * c.z), -(products.z - mc.y * c.z)});
-    }
-    body.frame = rotation_of(s);
-    if (lane == 0) tables_.bodies[of_.brain] = body;
+    for (std::uint32_t i = 0; i < 9; ++i) s[i] = sums.of(7 + i);
+    const Rotation frame = rotation_of(s);
+    if (robot_.lane == 0) tables_.bodies[of_.brain].frame = frame;
+  }
+
+  __device__ void conclude_turn_rate() const {
+    const PlaceSums sums(*this, 0);
+    const double weight = robot_.header().mass;
+    const Double3 c = (1 / weight) * sums.three(0), mc = sums.three(0),
+                  momentum = sums.three(16) - cross(c, sums.three(3));
+    const Double3 squares = sums.three(19), products = sums.three(22);
+    const double xx = squares.x - mc.x * c.x, yy = squares.y - mc.y * c.y, zz = squares.z - mc.z * c.z;
+    const Double3 turn_rate = angular_velocity(momentum, {yy + zz, xx + zz, xx + yy, -(products.x - mc.x * c.y),
+                                                          -(products.y - mc.x * c.z), -(products.z - mc.y * c.z)});
+    if (robot_.lane == 0) tables_.bodies[of_.brain].turn_rate = turn_rate;
   }
 
   __device__ void sense() const {
@@ -287,34 +326,35 @@ class Thought {
       for (std::uint32_t sample = of_.samples - 1; sample > 0; --sample)
         samples[sample * of_.senses + i] = samples[(sample - 1) * of_.senses + i];
       samples[i] = value;
-      z_[i] = samples[sense.delay * of_.senses + i];
+      z_[i] = sense.delay == 0 ? value : samples[sense.delay * of_.senses + i];
     }
     for (std::uint32_t i = robot_.thread(); i < of_.neurons; i += robot_.threads()) z_[of_.senses + i] = neurons[i];
-    wait();
-    if (robot_.thread() == 0) tables_.thoughts[of_.brain] = thought + 1;
   }
 
-  // y <- y + alpha (act(W z + b) - y).
-  __device__ void update(const BrainPlan::Layer& layer) const {
+  // y <- y + alpha (act(W z + b) - y). Eight lanes sum up a neuron, and each of them ends one of the eight that they
+  // have summed up before.
+  __device__ void update(const BrainLayer& layer) const {
     float* const neurons = z_ + of_.senses;
     float* const sums = neurons + of_.neurons;
     float* const weights = tables_.weights + of_.first_weight;
-    const std::uint32_t groups = robot_.threads() / neuron_lanes;
-    for (std::uint32_t first = 0; first < layer.count; first += groups) {  // all lanes, since they exchange sums
-      const std::uint32_t i = first + robot_.thread() / neuron_lanes;
-      const float sum = sum_of_lanes(i < layer.count ? part_of_sum(layer.first + i, weights) : 0);
-      if (i < layer.count && robot_.thread() % neuron_lanes == 0) sums[i] = sum;
+    const std::uint32_t groups = robot_.threads() / neuron_lanes, group = robot_.thread() / neuron_lanes,
+                        member = robot_.thread() % neuron_lanes;
+    for (std::uint32_t first = 0; first < layer.count; first += groups * neuron_lanes) {
+      float own = 0;
+      for (std::uint32_t pass = 0; pass < neuron_lanes && first + pass * groups < layer.count; ++pass) {
+        const std::uint32_t i = first + pass * groups + group;
+        const float sum = sum_of_lanes(i < layer.count ? part_of_sum(layer.first + i, weights) : 0);
+        own = pass == member ? sum : own;
+      }
+      const std::uint32_t i = first + member * groups + group;
+      if (i < layer.count) (layer.reads_itself ? sums : neurons + layer.first)[i] = updated(layer.first + i, own);
     }
     wait();
-    for (std::uint32_t i = robot_.thread(); i < layer.count; i += robot_.threads()) {
-      const BrainPlan::Neuron neuron = tables_.neurons[of_.first_neuron + layer.first + i];
-      const float clamped = tables_.clamps[of_.first_activation + layer.first + i];
-      const float y = neurons[layer.first + i], wanted = activation_of(neuron.activation, sums[i]);
-      const float changed = neuron.alpha == 1 ? wanted : multiply_add(neuron.alpha, wanted - y, y);
-      neurons[layer.first + i] = std::isnan(clamped) ? changed : clamped;
-      tables_.activations[of_.first_activation + layer.first + i] = neurons[layer.first + i];
+    if (layer.reads_itself) {
+      for (std::uint32_t i = robot_.thread(); i < layer.count; i += robot_.threads())
+        neurons[layer.first + i] = sums[i];
+      wait();
     }
-    wait();
     if (layer.learnings == 0) return;
     for (std::uint32_t i = robot_.thread(); i < layer.learnings; i += robot_.threads()) {
       const BrainPlan::Learning learning = tables_.learnings[of_.first_learning + layer.first_learning + i];
@@ -323,6 +363,15 @@ class Thought {
       weight = multiply_add(learning.rate * y, fnma(y, weight, z_[learning.source]), weight);
     }
     wait();
+  }
+
+  // The new activation of a neuron, of which others know nothing yet.
+  __device__ float updated(std::uint32_t number, float sum) const {
+    const BrainPlan::Neuron neuron = tables_.neurons[of_.first_neuron + number];
+    const float clamped = tables_.clamps[of_.first_activation + number];
+    const float y = z_[of_.senses + number], wanted = activation_of(neuron.activation, sum);
+    const float changed = neuron.alpha == 1 ? wanted : multiply_add(neuron.alpha, wanted - y, y);
+    return tables_.activations[of_.first_activation + number] = std::isnan(clamped) ? changed : clamped;
   }
 
   // Lanes that add up a neuron's inputs together.
@@ -356,9 +405,15 @@ class Thought {
       const std::size_t at = of_.robot * sources.columns + output.actuator;
       if (sources.driven[at] != held_drive) sources.drive[at] = drive_of(z_[of_.senses + output.neuron]);
     }
+    if (robot_.thread() == 0) ++tables_.thoughts[of_.brain];
+    const DrivenMaterial* const driven = thoughts_.driven + of_.first_driven;
+    std::uint32_t i = robot_.thread();
+    ActuatedMaterial first;
+    if (i < of_.driven) first = ActuatedMaterial(driven[i], sources);
     wait();
-    for (std::uint32_t i = robot_.thread(); i < of_.driven; i += robot_.threads())
-      (void)set_driven(thoughts_.driven[of_.first_driven + i], sources, clock_);
+    if (i < of_.driven) (void)first.set(sources, clock_);
+    for (i += robot_.threads(); i < of_.driven; i += robot_.threads())
+      (void)ActuatedMaterial(driven[i], sources).set(sources, clock_);
     wait();
   }
 

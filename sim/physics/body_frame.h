@@ -94,6 +94,31 @@ MERCURY_HOST_DEVICE Adjugate adjugate(const Symmetric4& matrix) {
   return of;
 }
 
+// Not below the largest root of l^4 + c2 l^2 + c1 l + c0, as rotation_of() says. A GPU comes near it in single
+// precision, whose divisions take a tenth of the time; the start is then above the root by more than single precision
+// can err.
+MERCURY_HOST_DEVICE double start_of_newton(double c2, double c1, double c0) {
+  const double highest = std::sqrt(-1.5 * c2);
+#ifdef __CUDA_ARCH__
+  if (!(highest > 1e-30 && highest < 1e30)) return highest;
+  // In units of `highest`.
+  const auto scaled = [&](double coefficient, double power) { return static_cast<float>(coefficient / power); };
+  const double square = highest * highest;
+  const float a2 = scaled(c2, square), a1 = scaled(c1, square * highest), a0 = scaled(c0, square * square);
+  float x = 1;
+  MERCURY_NO_UNROLL
+  for (int i = 0; i < 12; ++i) {
+    const float slope = (4 * x * x + 2 * a2) * x + a1, value = ((x * x + a2) * x + a1) * x + a0;
+    if (!(slope > 1e-2f && value > 1e-4f * slope)) break;
+    x -= __fdividef(value, slope);
+  }
+  return highest * static_cast<double>(fminf(x + 1e-4f, 1));
+#else
+  (void)c1, (void)c0;
+  return highest;
+#endif
+}
+
 // `s` = S, row after row.
 //
 // N has no trace, so its characteristic polynomial is l^4 + c2 l^2 + c1 l + c0, and its largest root is at most
@@ -110,7 +135,7 @@ MERCURY_HOST_DEVICE Rotation rotation_of(const double (&s)[9]) {
   for (const double each : s) squares += each * each;
   const double c2 = -2 * squares, c0 = adjugate(n).determinant,
                c1 = -8 * (xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx));
-  double l = std::sqrt(-1.5 * c2);
+  double l = start_of_newton(c2, c1, c0);
   MERCURY_NO_UNROLL
   for (int i = 0; i < 60; ++i) {
     const double slope = (4 * l * l + 2 * c2) * l + c1;
