@@ -52,6 +52,7 @@ struct Options {
   };
   Place ocean{10, 4e-3}, land{5, 1e-3};  // [s]; land is stiffer
   Genes genes = Genes::both;
+  MuscleMutation muscles;
   EvolutionSettings settings;  // their defaults, and what the options say
   std::string device = "cpu", csv;
   double throughput = 0;  // instead of the table: the share of the usual number of generations
@@ -100,6 +101,12 @@ Options options_from(int argc, char** argv) {
       {"--crossover", number(algorithm.crossover)},
       {"--tournament", number(algorithm.tournament)},
       {"--elites", number(algorithm.elites)},
+      {"--islands", number(algorithm.islands)},
+      {"--migration-interval", number(algorithm.migration_interval)},
+      {"--migrants", number(algorithm.migrants)},
+      {"--muscle-adaptation", number(options.muscles.muscle_adaptation)},
+      {"--muscle-tail", number(options.muscles.muscle_tail)},
+      {"--trials", number(options.settings.trials.trials)},
       {"--device", text(options.device)},
       {"--jobs", number(options.jobs)},
       {"--throughput", number(options.throughput)},
@@ -151,7 +158,8 @@ void perform(Task& task, const Options& options) {
       .kind = task.kind,
       .values = {{"voxels", options.voxels}, {"canvas", options.voxels}, {"points", options.points}},
       .environment = task.environment,
-      .genes = options.genes};
+      .genes = options.genes,
+      .muscles = options.muscles};
   const std::unique_ptr<GenomeSpace> space = make_genome_space(request);
   const EvolutionSettings settings = settings_of(task, options);
   const std::unique_ptr<Assessor> assessor = make_assessor(settings);

@@ -9,22 +9,21 @@
 #include "mercury/error.h"
 #include "mercury/material.h"
 #include "mercury/random.h"
-#include "robots/portable_math.h"
+#include "robots/mutation_step.h"
 
 namespace mercury {
 namespace {
 
 constexpr double largest_weight = std::numeric_limits<float>::max();
 
-double limited_step(double step) { return std::clamp(step, BrainGenes::smallest_step, BrainGenes::largest_step); }
+constexpr StepRange steps{BrainGenes::smallest_step, BrainGenes::largest_step};
 
 }  // namespace
 
 BrainGenes BrainGenes::mutated(double strength, std::uint64_t seed) const {
   Random random(seed);
   BrainGenes child = *this;
-  const double tau = 1 / std::sqrt(2 * static_cast<double>(std::max<std::size_t>(1, weights.size())));
-  child.step = limited_step(step * portable_exp(tau * random.normal()));
+  child.step = adapted_step(step, weights.size(), steps, random);
   for (float& weight : child.weights)
     weight = limited_weight(static_cast<double>(weight) + strength * child.step * random.normal());
   return child;
@@ -37,7 +36,7 @@ float BrainGenes::limited_weight(double weight) {
 BrainGenes BrainGenes::crossed(const BrainGenes& other, const Brain& brain, std::uint64_t seed) const {
   Random random(seed);
   BrainGenes child = *this;
-  child.step = limited_step(std::sqrt(step * other.step));
+  child.step = crossed_step(step, other.step, steps);
   std::size_t at = 0;
   for (const NeuronLayer& layer : brain.layers) {
     std::vector<bool> from_other;

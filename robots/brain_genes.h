@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What evolution changes in a brain: its weights. Sensors, layers and what is joined to what stay.
 //
-// Mutation is that of evolution strategies with one step size that adapts itself (Schwefel 1981; Beyer and Schwefel
-// 2002, section 4.2): a child inherits the step of its parent, a little larger or smaller, and is made with it. So
-// steps that make good children survive with them:
+// All weights move at once, by a step that adapts itself (mutation_step.h), n = number of weights:
 //
-//   step  <-  step exp(tau N(0, 1))             tau = 1 / sqrt(2 n), n = number of weights
 //   w_i   <-  w_i + strength step N_i(0, 1)
 #pragma once
 

@@ -36,9 +36,17 @@ std::vector<Material> table_of(const MaterialGenes& genes) {
   return table;
 }
 
-MaterialGenes mutated(const MaterialGenes& genes, double strength, std::uint64_t seed,
+MaterialGenes mutated(const MaterialGenes& genes, const GeneMutation& mutation, std::uint64_t seed,
                       const std::vector<bool>& in_use) {
-  return mutate_muscle_laws(filled_in(genes), strength, seed, in_use);
+  return mutate_muscle_laws(filled_in(genes), mutation.muscles, seed, in_use, mutation.tail);
+}
+
+std::size_t muscle_numbers_of(const MaterialGenes& genes, const std::vector<bool>& in_use) {
+  const MaterialGenes all = filled_in(genes);
+  std::size_t muscles = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    muscles += all[i].amplitude != 0 && (in_use.empty() || (i < in_use.size() && in_use[i]));
+  return 3 * muscles;
 }
 
 MaterialGenes crossed(const MaterialGenes& a, const MaterialGenes& b, std::uint64_t seed) {

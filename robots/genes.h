@@ -3,11 +3,12 @@
 //
 //   tag                     the first byte of its encoding
 //   of(robot)               the genes of a robot, from its origin; throws InputError if it has none
-//   mutated, crossed        children; `genes` says what may change
+//   mutated, crossed        children; `genes` says what may change, the mutation by how much
 //   grown                   the robot
 //   grown_for_trial         the same, whose origin need not hold the genes; only kinds that gain by it
 //   write, read             the encoding without its head; read() throws InputError
 //   add_identity            what makes the robot what it is; without it, all that write() writes
+//   muscle_numbers          how many numbers of the muscles a mutation moves; only kinds that have some
 //   numbers, with_numbers   as of Genome (mercury/genome.h), for these genes; only kinds that are a list of numbers
 //
 // and names genes_kind<its struct>() in its entry of the registry (Generator::genes). Nothing else knows it.
@@ -35,16 +36,29 @@ class IdentityHash : public Fnv1a {
   std::uint64_t value() const { return seed_of(Fnv1a::value(), 0); }
 };
 
+// By how much a mutation changes genes.
+struct GeneMutation {
+  double strength = 1;  // of changes of the body
+  double muscles = 1;   // of changes of the muscles
+  int tail = 0;         // of these: degrees of freedom of Student's t; 0 = normal numbers (mutation_step.h)
+
+  static GeneMutation of_strength(double strength) { return {.strength = strength, .muscles = strength}; }
+  // Whether muscles move as the body does.
+  bool is_uniform() const { return muscles == strength && tail == 0; }
+};
+
 class BodyGenes {
  public:
   virtual ~BodyGenes() = default;
-  virtual std::shared_ptr<const BodyGenes> mutated(Genes genes, double strength, std::uint64_t seed) const = 0;
+  virtual std::shared_ptr<const BodyGenes> mutated(Genes genes, const GeneMutation& mutation,
+                                                   std::uint64_t seed) const = 0;
   // With genes of the same kind.
   virtual std::shared_ptr<const BodyGenes> crossed(const BodyGenes& other, Genes genes, std::uint64_t seed) const = 0;
   virtual Robot grown(const std::string& name, const std::string& environment) const = 0;
   virtual Robot grown_for_trial(const std::string& name) const = 0;
   virtual void write(ByteWriter& writer) const = 0;
   virtual void add_identity(IdentityHash& hash) const = 0;
+  virtual std::size_t muscle_numbers() const { return 0; }
   virtual std::vector<double> numbers(Genes) const { return {}; }
   virtual std::shared_ptr<const BodyGenes> with_numbers(Genes, std::span<const double>) const { return nullptr; }
 };
@@ -59,8 +73,9 @@ template <class Values>
 class GenesOf : public BodyGenes {
  public:
   explicit GenesOf(Values values) : values_(std::move(values)) {}
-  std::shared_ptr<const BodyGenes> mutated(Genes genes, double strength, std::uint64_t seed) const override {
-    return std::make_shared<GenesOf>(values_.mutated(genes, strength, seed));
+  std::shared_ptr<const BodyGenes> mutated(Genes genes, const GeneMutation& mutation,
+                                           std::uint64_t seed) const override {
+    return std::make_shared<GenesOf>(values_.mutated(genes, mutation, seed));
   }
   std::shared_ptr<const BodyGenes> crossed(const BodyGenes& other, Genes genes, std::uint64_t seed) const override {
     return std::make_shared<GenesOf>(values_.crossed(static_cast<const GenesOf&>(other).values_, genes, seed));
@@ -83,6 +98,10 @@ class GenesOf : public BodyGenes {
       values_.write(writer);
       hash.add(std::move(writer).take());
     }
+  }
+  std::size_t muscle_numbers() const override {
+    if constexpr (requires { values_.muscle_numbers(); }) return values_.muscle_numbers();
+    return 0;
   }
   std::vector<double> numbers(Genes genes) const override {
     if constexpr (requires { values_.numbers(genes); }) return values_.numbers(genes);
@@ -125,8 +144,12 @@ std::vector<Material> table_of(const MaterialGenes& genes);
 
 // As mutate_muscle_laws and cross_muscle_laws. Genes of different numbers of materials are not mixed: the child has
 // a's.
-MaterialGenes mutated(const MaterialGenes& genes, double strength, std::uint64_t seed, const std::vector<bool>& in_use);
+MaterialGenes mutated(const MaterialGenes& genes, const GeneMutation& mutation, std::uint64_t seed,
+                      const std::vector<bool>& in_use);
 MaterialGenes crossed(const MaterialGenes& a, const MaterialGenes& b, std::uint64_t seed);
+
+// Amplitude, frequency and phase of each muscle in use; all with an empty list.
+std::size_t muscle_numbers_of(const MaterialGenes& genes, const std::vector<bool>& in_use);
 
 void write(ByteWriter& writer, const MaterialGenes& genes);
 // Throws InputError for materials that are not valid.

@@ -15,6 +15,7 @@
 #include "mercury/origin.h"
 #include "mercury/random.h"
 #include "robots/bounded_number.h"
+#include "robots/mutation_step.h"
 #include "robots/parameter_table.h"
 
 namespace mercury {
@@ -63,22 +64,25 @@ Genome genome_in(const Robot& robot, const ParameterTable<Genome>& table) {
   return genome;
 }
 
-// The genome with the chosen numbers moved by a normal number times `size` times their range. Every number draws, so
-// that its step does not depend on the choice.
+// The genome with the chosen numbers moved by a normal number, or one with a heavier tail (mutation_step.h), times
+// `size` times their range. Every number draws, so that its step does not depend on the choice.
 template <class Genome, class Chosen>
-Genome moved(const Genome& genome, const ParameterTable<Genome>& table, double size, std::uint64_t seed,
-             Chosen chosen) {
+Genome moved(const Genome& genome, const ParameterTable<Genome>& table, double size, std::uint64_t seed, Chosen chosen,
+             int tail = 0) {
   Random random(seed);
+  const auto within = [&](double value, double low, double high) {
+    return tail == 0 ? std::clamp(value, low, high) : reflected(value, low, high);
+  };
   Genome child = genome;
   for (const auto& row : table) {
-    const double drawn = random.normal();
+    const double drawn = step_number(random, tail);
     if (!row.description.highest || !chosen(row.description.name)) continue;
     const double low = row.description.lowest, high = *row.description.highest;
     const double step = size * (high - low) * drawn;
     ParameterValue value = row.get(child);
-    if (auto* number = std::get_if<double>(&value)) *number = std::clamp(*number + step, low, high);
+    if (auto* number = std::get_if<double>(&value)) *number = within(*number + step, low, high);
     if (auto* whole = std::get_if<std::int64_t>(&value))
-      *whole = static_cast<std::int64_t>(std::clamp(std::round(static_cast<double>(*whole) + step), low, high));
+      *whole = static_cast<std::int64_t>(within(std::round(static_cast<double>(*whole) + step), low, high));
     row.set(child, value);
   }
   return child;
@@ -99,11 +103,11 @@ inline double value_of(const GeneratorParameter& description, double number) {
 // the middle.
 template <class Genome, class Chosen>
 Genome surely_moved(const Genome& genome, const ParameterTable<Genome>& table, double size, std::uint64_t seed,
-                    Chosen chosen, double Genome::*nudged, double lowest, double highest) {
+                    Chosen chosen, double Genome::*nudged, double lowest, double highest, int tail = 0) {
   if (size == 0) return genome;
   constexpr std::uint64_t attempts = 30;
   for (std::uint64_t attempt = 0; attempt < attempts; ++attempt) {
-    Genome child = moved(genome, table, size, attempt == 0 ? seed : seed_of(seed, attempt), chosen);
+    Genome child = moved(genome, table, size, attempt == 0 ? seed : seed_of(seed, attempt), chosen, tail);
     if (child != genome) return child;
   }
   Genome child = genome;

@@ -10,6 +10,7 @@
 #include "mercury/error.h"
 #include "mercury/random.h"
 #include "robots/bounded_number.h"
+#include "robots/mutation_step.h"
 
 namespace mercury {
 namespace {
@@ -45,11 +46,15 @@ float wrapped_phase(double phase) {
   return wrapped >= std::numbers::pi_v<float> * 2 ? 0 : wrapped;
 }
 
-std::vector<Material> moved(std::span<const Material> bases, double strength, std::uint64_t seed) {
+std::vector<Material> moved(std::span<const Material> bases, double strength, std::uint64_t seed, int tail) {
   Random random(seed);
   const auto step = [&](double chance, double size) {
     const bool moves = random.chance(chance);
-    return moves ? strength * size * random.normal() : 0;
+    return moves ? strength * size * step_number(random, tail) : 0;
+  };
+  const auto within = [&](double value, Range range) {
+    return static_cast<float>(tail == 0 ? folded(value, range.lowest, range.highest)
+                                        : reflected(value, range.lowest, range.highest));
   };
   std::vector<Material> materials(bases.begin(), bases.end());
   std::map<float, double> together;  // steps by frequency
@@ -60,12 +65,8 @@ std::vector<Material> moved(std::span<const Material> bases, double strength, st
     const double by_frequency = of_frequency->second + step(own_share, frequency_step);
     const double by_amplitude = step(share, amplitude_step), by_phase = step(share, phase_step);
     const Range amplitudes = amplitudes_of(material), frequencies = frequencies_of(material);
-    if (by_amplitude != 0)
-      material.amplitude =
-          static_cast<float>(folded(material.amplitude + by_amplitude, amplitudes.lowest, amplitudes.highest));
-    if (by_frequency != 0)
-      material.frequency =
-          static_cast<float>(folded(material.frequency + by_frequency, frequencies.lowest, frequencies.highest));
+    if (by_amplitude != 0) material.amplitude = within(material.amplitude + by_amplitude, amplitudes);
+    if (by_frequency != 0) material.frequency = within(material.frequency + by_frequency, frequencies);
     if (by_phase != 0) material.phase = wrapped_phase(material.phase + by_phase);
   }
   return materials;
@@ -117,7 +118,7 @@ Robot with_base_materials(Robot robot, std::span<const Material> bases) {
 }
 
 std::vector<Material> mutate_muscle_laws(std::span<const Material> bases, double strength, std::uint64_t seed,
-                                         const std::vector<bool>& in_use) {
+                                         const std::vector<bool>& in_use, int tail) {
   if (!(std::isfinite(strength) && strength >= 0)) throw ParameterError("muscles", "give a strength of 0 or more");
   std::vector<Material> materials(bases.begin(), bases.end());
   const auto counts = [&](std::size_t i) {
@@ -134,7 +135,7 @@ std::vector<Material> mutate_muscle_laws(std::span<const Material> bases, double
   if (strength == 0) return materials;
   constexpr int attempts = 100;
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    materials = moved(bases, strength, attempt == 0 ? seed : seed_of(seed, static_cast<std::uint64_t>(attempt)));
+    materials = moved(bases, strength, attempt == 0 ? seed : seed_of(seed, static_cast<std::uint64_t>(attempt)), tail);
     if (muscles.empty() || changed()) return materials;
   }
   // Steps below the precision of a float.

@@ -92,7 +92,8 @@ Json json_of(const GenomeSpaceRequest& space) {
   return {{"kind", space.founders.empty() ? Json(space.kind) : Json()},
           {"options", options},
           {"founders", space.founders.size()},
-          {"genes", name_of(space.genes)}};
+          {"genes", name_of(space.genes)},
+          {"muscles", parameters_of(space.muscles)}};
 }
 
 Json quantities_of(const Assessment& assessment) {

@@ -54,7 +54,11 @@ std::string genome_text(const GenomeSpaceRequest& space) {
   std::vector<std::string> genes;
   for (const Genes gene : {Genes::body, Genes::muscles, Genes::brain})
     if (contains(space.genes, gene)) genes.push_back(name_of(gene));
-  return text + "; what changes: " + list_of(genes, " and ");
+  text += "; what changes: " + list_of(genes, " and ");
+  if (space.muscles.muscle_adaptation) text += "; steps of muscles adapt themselves";
+  if (space.muscles.muscle_tail > 0)
+    text += fmt::format("; steps of muscles from Student's t, {} degrees of freedom", space.muscles.muscle_tail);
+  return text;
 }
 
 std::string trials_text(const TrialSettings& trials) {

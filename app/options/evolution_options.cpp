@@ -102,6 +102,7 @@ void EvolutionOptions::add_to(const Command& command) {
   add_parameters(command, given_.algorithm, search_group);
   given_.confirm = true;
   add_parameters(command, given_, search_group);
+  add_parameters(command, muscles_, search_group);
   for (const char* name : {"--population", "--generations"}) command.find_option(name)->on_first_screen();
   add_trial_options(command, given_.trials);
   add_evolution_trial_options(command, given_.trials);
@@ -116,7 +117,7 @@ void EvolutionOptions::set_size(GenomeSpaceRequest& space, const std::string& si
 
 // Paths are what is not a kind of robot.
 GenomeSpaceRequest EvolutionOptions::space(std::vector<std::string>& paths) const {
-  GenomeSpaceRequest space{.values = generators_.values(), .genes = genes_named(genes_)};
+  GenomeSpaceRequest space{.values = generators_.values(), .genes = genes_named(genes_), .muscles = muscles_};
   bool has_kind = false;
   for (const std::string& from : from_) {
     const std::string kind = from.substr(0, from.find(':'));
@@ -163,7 +164,8 @@ AlgorithmSettings EvolutionOptions::algorithm() const {
     throw InputError("--axis", "goes with --algorithm map-elites, novelty or cma-me");
   }
   if (algorithm_named(algorithm.name).of_numbers)
-    for (const char* option : {"--tournament", "--elites", "--crossover", "--children"})
+    for (const char* option :
+         {"--tournament", "--elites", "--crossover", "--children", "--muscle-adaptation", "--muscle-tail"})
       if (command_->is_given(option))
         throw InputError(option, fmt::format("does not go with --algorithm {}", algorithm.name));
   return algorithm;

@@ -48,6 +48,7 @@ class EvolutionOptions {
   std::optional<std::string> algorithm_;
   std::vector<std::string> objectives_, axes_;
   EvolutionSettings given_;  // what needs no further reading
+  MuscleMutation muscles_;
 };
 
 }  // namespace mercury

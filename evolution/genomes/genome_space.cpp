@@ -15,6 +15,7 @@
 #include "mercury/random.h"
 #include "mercury/real_body.h"
 #include "robots/genes.h"
+#include "robots/mutation_step.h"
 
 namespace mercury {
 namespace {
@@ -25,25 +26,27 @@ struct GenomeContext {
   Genes genes = Genes::body;
   std::string environment;
   std::optional<RealMaterial> material;  // of the robots' bodies; the genes say nothing of it
+  MuscleMutation muscles;
 };
 
 using GenesPointer = std::shared_ptr<const BodyGenes>;
 
 class BodyGenome : public Genome {
  public:
-  BodyGenome(GenesPointer genes, std::shared_ptr<const GenomeContext> context)
-      : genes_(std::move(genes)), context_(std::move(context)) {}
+  BodyGenome(GenesPointer genes, MuscleStep step, std::shared_ptr<const GenomeContext> context)
+      : genes_(std::move(genes)), step_(step), context_(std::move(context)) {}
 
   Robot grow(const std::string& name) const override { return real(genes_->grown(name, context_->environment)); }
   Robot grow_for_trial(const std::string& name) const override { return real(genes_->grown_for_trial(name)); }
   GenomePointer mutate(double strength, std::uint64_t seed) const override {
-    if (strength == 0) return std::make_shared<BodyGenome>(genes_, context_);
-    return std::make_shared<BodyGenome>(genes_->mutated(context_->genes, strength, seed), context_);
+    if (strength == 0) return make(genes_, step_);
+    const auto [mutation, step] = step_.child(context_->muscles, genes_->muscle_numbers(), strength, seed);
+    return make(genes_->mutated(context_->genes, mutation, seed), step);
   }
   GenomePointer cross(const Genome& other, std::uint64_t seed) const override {
     const auto* mate = dynamic_cast<const BodyGenome*>(&other);
     if (!mate) throw InputError("crossover", "two genomes of one space are needed");
-    return std::make_shared<BodyGenome>(genes_->crossed(*mate->genes_, context_->genes, seed), context_);
+    return make(genes_->crossed(*mate->genes_, context_->genes, seed), step_.crossed(mate->step_));
   }
   std::uint64_t identity() const override {
     std::uint64_t identity = identity_.load(std::memory_order_relaxed);
@@ -56,21 +59,26 @@ class BodyGenome : public Genome {
   std::string encode() const override {
     ByteWriter writer;
     write_head(writer, context_->kind.tag);
+    step_.write(writer, context_->muscles);
     genes_->write(writer);
     return std::move(writer).take();
   }
 
   std::vector<double> numbers() const override { return genes_->numbers(context_->genes); }
   GenomePointer with_numbers(std::span<const double> numbers) const override {
-    return std::make_shared<BodyGenome>(genes_->with_numbers(context_->genes, numbers), context_);
+    return make(genes_->with_numbers(context_->genes, numbers), step_);
   }
 
  private:
   Robot real(Robot robot) const {
     return context_->material ? with_real_body(robot, *context_->material) : std::move(robot);
   }
+  GenomePointer make(GenesPointer genes, MuscleStep step) const {
+    return std::make_shared<BodyGenome>(std::move(genes), step, context_);
+  }
 
   GenesPointer genes_;
+  MuscleStep step_;
   std::shared_ptr<const GenomeContext> context_;
   mutable std::atomic<std::uint64_t> identity_{0};  // 0 = not computed yet
 };
@@ -93,8 +101,8 @@ class BodySpace : public GenomeSpace {
  public:
   BodySpace(const Generator& generator, const GenomeSpaceRequest& request)
       : generator_(generator), values_(request.values),
-        context_(std::make_shared<GenomeContext>(
-            GenomeContext{*generator.genes, request.genes, request.environment, material_of(request)})) {
+        context_(std::make_shared<GenomeContext>(GenomeContext{*generator.genes, request.genes, request.environment,
+                                                               material_of(request), request.muscles})) {
     values_.erase("physics");
     for (const Robot& founder : request.founders) founders_.push_back(genes_of(founder));
     if (founders_.empty()) generator_.validate(values_);
@@ -110,22 +118,25 @@ class BodySpace : public GenomeSpace {
     }
     GenesPointer genes = context_->kind.of(generator_.make(values_, context_->environment, seed, index));
     if (contains(context_->genes, Genes::muscles))
-      genes = genes->mutated(Genes::muscles, strongest_at_first, mutation_seed);
+      genes = genes->mutated(Genes::muscles, GeneMutation::of_strength(strongest_at_first), mutation_seed);
     return genome(std::move(genes));
   }
   std::size_t founders() const override { return founders_.size(); }
   GenomePointer decode(std::string_view bytes) const override try {
     ByteReader reader(bytes);
     read_head(reader, context_->kind.tag);
+    const MuscleStep step = MuscleStep::read(reader, context_->muscles);
     GenesPointer genes = context_->kind.read(reader);
     reader.end();
-    return genome(std::move(genes));
+    return std::make_shared<BodyGenome>(std::move(genes), step, context_);
   } catch (const DamagedBytes& error) {
     throw InputError("genome", error.what());
   }
 
  private:
-  GenomePointer genome(GenesPointer genes) const { return std::make_shared<BodyGenome>(std::move(genes), context_); }
+  GenomePointer genome(GenesPointer genes) const {
+    return std::make_shared<BodyGenome>(std::move(genes), MuscleStep(), context_);
+  }
   // A body or materials that were changed by hand would be lost without a word.
   GenesPointer genes_of(const Robot& founder) const try {
     const bool real = real_material_of(founder).has_value();
@@ -184,6 +195,44 @@ void read_head(ByteReader& reader, std::uint8_t tag) {
     throw InputError("genome", "has version " + std::to_string(version) + "; this program reads version 1");
 }
 
+namespace {
+
+constexpr StepRange muscle_steps{1e-3, 100};
+
+std::uint64_t seed_of_muscle_step(std::uint64_t seed) { return seed_of(seed, 0x6d7573636c65); }
+
+}  // namespace
+
+MuscleStep::Child MuscleStep::child(const MuscleMutation& how, std::size_t numbers, double strength,
+                                    std::uint64_t seed) const {
+  Child child{.mutation = GeneMutation::of_strength(strength), .step = *this};
+  child.mutation.tail = how.muscle_tail;
+  if (!how.muscle_adaptation || numbers == 0) return child;
+  Random random(seed_of_muscle_step(seed));
+  child.step.value_ = adapted_step(value_, numbers, muscle_steps, random);
+  child.mutation.muscles *= child.step.value_;
+  return child;
+}
+
+MuscleStep MuscleStep::crossed(MuscleStep other) const {
+  MuscleStep child;
+  child.value_ = crossed_step(value_, other.value_, muscle_steps);
+  return child;
+}
+
+void MuscleStep::write(ByteWriter& writer, const MuscleMutation& how) const {
+  if (how.muscle_adaptation) writer.add(value_);
+}
+
+MuscleStep MuscleStep::read(ByteReader& reader, const MuscleMutation& how) {
+  MuscleStep step;
+  if (!how.muscle_adaptation) return step;
+  step.value_ = reader.read<double>();
+  if (!(step.value_ >= muscle_steps.smallest && step.value_ <= muscle_steps.largest))
+    throw InputError("genome", "the step of its muscles is out of range");
+  return step;
+}
+
 Physics physics_of(const GenomeSpaceRequest& request) {
   if (real_material_in(request.values)) return Physics::real;
   return request.founders.empty() ? Physics::paper : physics_of(request.founders.front());
@@ -211,6 +260,10 @@ std::unique_ptr<GenomeSpace> make_body_space(const GenomeSpaceRequest& request) 
 
 std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request) {
   if (!request.environment.empty()) environment_named(request.environment);  // or it throws
+  check_parameters(request.muscles);
+  if (request.muscles != MuscleMutation{} && !contains(request.genes, Genes::muscles))
+    throw ParameterError(request.muscles.muscle_adaptation ? "muscle_adaptation" : "muscle_tail",
+                         "the muscles do not change; give muscles among the genes");
   if (request.founders.empty() && is_custom(request.kind)) return std::make_unique<CustomSpace>(request.kind);
   require_brains(request);
   std::unique_ptr<GenomeSpace> bodies = make_body_space(request);

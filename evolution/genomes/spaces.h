@@ -7,6 +7,7 @@
 
 #include "mercury/genome.h"
 #include "robots/bytes.h"
+#include "robots/genes.h"
 
 namespace mercury {
 
@@ -17,6 +18,27 @@ inline constexpr double strongest_at_first = 4;
 void write_head(ByteWriter& writer, std::uint8_t tag);
 // Throws InputError unless the bytes are of this kind, and of a version that this program knows.
 void read_head(ByteReader& reader, std::uint8_t tag);
+
+// The step by which the muscles of a genome move, in units of their usual one. Files have it only where it adapts
+// itself; elsewhere it is 1.
+class MuscleStep {
+ public:
+  // The mutation that makes a child of such a genome, whose muscles have `numbers` numbers, and the child's step.
+  struct Child;
+  Child child(const MuscleMutation& how, std::size_t numbers, double strength, std::uint64_t seed) const;
+  MuscleStep crossed(MuscleStep other) const;
+
+  void write(ByteWriter& writer, const MuscleMutation& how) const;
+  // Throws InputError for a step that child() cannot give.
+  static MuscleStep read(ByteReader& reader, const MuscleMutation& how);
+
+ private:
+  double value_ = 1;
+};
+struct MuscleStep::Child {
+  GeneMutation mutation;
+  MuscleStep step;
+};
 
 // Genomes of brains, each with one of these bodies, which may change as well: what the request says.
 std::unique_ptr<GenomeSpace> make_brain_space(const GenomeSpaceRequest& request, std::unique_ptr<GenomeSpace> bodies);

@@ -73,6 +73,7 @@ void describe(File& file, Run& run) {
     table.named("genes", space.genes, genes_named);
     table.value("environment", space.environment);
     table.value("founders", run.founder_files, "in founders/");
+    describe_parameters(table, space.muscles);
     table.generator_values("values", space.kind, space.values);
   });
 }

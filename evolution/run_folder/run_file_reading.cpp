@@ -279,10 +279,10 @@ void check_format(const std::filesystem::path& path, const toml::table& table, R
 }
 
 // Adds file and line to what validate() says of a parameter.
-void check_values(const std::filesystem::path& path, const EvolutionSettings& settings,
-                  const RunFileReader::Lines& lines) {
+void check_values(const std::filesystem::path& path, const RunSettings& settings, const RunFileReader::Lines& lines) {
   try {
-    validate(settings);
+    validate(settings.evolution);
+    check_parameters(settings.space.muscles);
   } catch (const ParameterError& error) {
     auto found = lines.find(error.parameter());
     if (found == lines.end()) found = lines.find(error.parameter() + "s");
@@ -303,7 +303,7 @@ RunFile parse(const std::filesystem::path& folder, std::string_view text, const 
   check_format(path, table, reader);
   describe(reader, run);
   reader.finish();
-  check_values(path, run.settings.evolution, lines);
+  check_values(path, run.settings, lines);
   run.fingerprint = Fnv1a::empty;
   add_to_fingerprint(run.fingerprint, "", table);
   for (const std::string& name : run.founder_files) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "evolution/selection/ranking.h"
+#include "evolution/selection/registry.h"
 
 namespace mercury {
 namespace {
@@ -21,15 +22,17 @@ struct Group {
 
 }  // namespace
 
-Islands::Islands(const AlgorithmSettings& settings, std::unique_ptr<Algorithm> custom)
-    : settings_(settings), all_(make_algorithm(settings)) {
+Islands::Islands(const AlgorithmSettings& settings, std::unique_ptr<Algorithm> custom) : settings_(settings) {
+  const AlgorithmDescription& algorithm = algorithm_named(settings.name);
+  validate(settings);
   algorithms_.resize(settings.islands);
   for (std::size_t island = 0; island < settings.islands; ++island) {
     AlgorithmSettings own = settings;
     own.population = share_of(settings.population, island);
-    algorithms_[island] = algorithm_named(settings.name).make(own);
+    algorithms_[island] = algorithm.make(own);
   }
   if (custom) algorithms_.front() = std::move(custom);
+  if (settings.islands > 1 && algorithm.many_objectives) all_ = algorithm.make(settings);
 }
 
 std::size_t Islands::share_of(std::size_t count, std::size_t island) const {
@@ -95,9 +98,8 @@ std::vector<std::size_t> Islands::survivors(std::span<const Individual> pool, st
     for (const std::size_t i : migrants[island]) chosen.add(pool, i);
   }
   // Which of several objectives come first is known to the algorithm alone.
-  std::vector<std::size_t> order = algorithm_named(settings_.name).many_objectives
-                                       ? all_->survivors(chosen.individuals, chosen.individuals.size())
-                                       : best_first(chosen.individuals);
+  std::vector<std::size_t> order =
+      all_ ? all_->survivors(chosen.individuals, chosen.individuals.size()) : best_first(chosen.individuals);
   for (std::size_t& i : order) i = chosen.indices[i];
   return order;
 }

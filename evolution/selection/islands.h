@@ -43,7 +43,7 @@ class Islands {
 
   const AlgorithmSettings settings_;
   std::vector<std::unique_ptr<Algorithm>> algorithms_;  // per island, with its population
-  std::unique_ptr<Algorithm> all_;                      // with the whole population
+  std::unique_ptr<Algorithm> all_;  // with the whole population; only of several objectives, whose order it knows
 };
 
 }  // namespace mercury

@@ -53,6 +53,8 @@ class Settings(TypedDict, total=False):
     children: int  # born in a generation; 0 = as many as the population
     generations: int  # after the first, random one
     mutation: float  # strength of mutations
+    muscle_adaptation: bool  # each robot has a step of its own for its muscles, which adapts itself
+    muscle_tail: int  # steps of muscles are of Student's t with that many degrees of freedom; 1 = Cauchy, 0 = normal
     tournament: int  # robots among which the best becomes a parent
     elites: float  # ga: share that lives on unconditionally
     crossover: float  # share of the children with two parents

@@ -130,6 +130,14 @@ def test_children_have_parents_of_their_own_island_but_for_migrants(tmp_path):
         evolution.start(tmp_path / "refused", "voxel", SIZE, algorithm="cma-es", islands=2)
 
 
+def test_steps_of_muscles_are_settings(tmp_path):
+    settings = {**SETTINGS, "generations": 1, "muscle_adaptation": True, "muscle_tail": 1}
+    run = evolution.start(tmp_path / "steps", "voxel", SIZE, genes="both", **settings).go_on()
+    assert run.settings["muscle_adaptation"] is True and run.settings["muscle_tail"] == 1
+    with pytest.raises(mercurysim.InputError, match="muscle_adaptation: the muscles do not change"):
+        evolution.start(tmp_path / "body", "voxel", SIZE, **settings)
+
+
 def test_robots_that_are_given_are_the_first(tmp_path):
     founders = mercurysim.random_voxel(2, seed=5, voxels=(4, 3, 2))
     run = evolution.start(tmp_path / "swim", founders, genes="muscles", **{**SETTINGS, "generations": 0}).go_on()

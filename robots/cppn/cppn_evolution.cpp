@@ -10,6 +10,7 @@
 #include "mercury/muscle_laws.h"
 #include "mercury/random.h"
 #include "robots/cppn/cppn_graph.h"
+#include "robots/mutation_step.h"
 
 namespace mercury {
 namespace {
@@ -166,15 +167,16 @@ CppnGenome mutate(const CppnGenome& genome, double strength, std::uint64_t seed)
   });
 }
 
-CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64_t seed) {
+CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64_t seed, int tail) {
   require_strength(strength);
   validate(genome);
   if (strength == 0) return genome;
   Random random(seed);
   CppnGenome child = genome;
   const auto move = [&](float& value, double size, float highest) {
-    const double moved = value + std::min(strength, 1e6) * size * random.normal();
-    value = static_cast<float>(std::clamp(std::abs(moved), 0., static_cast<double>(highest)));
+    const double moved = value + std::min(strength, 1e6) * size * step_number(random, tail);
+    value = static_cast<float>(tail == 0 ? std::clamp(std::abs(moved), 0., static_cast<double>(highest))
+                                         : reflected(moved, 0, static_cast<double>(highest)));
   };
   const std::uint64_t choice = random.below(3);
   if (choice != 0) move(child.frequency, 0.5, max_muscle_frequency);

@@ -19,13 +19,15 @@ struct CppnGenes {
     return {*std::move(genome)};
   }
 
-  CppnGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
+  CppnGenes mutated(Genes genes, const GeneMutation& mutation, std::uint64_t seed) const {
     CppnGenes child = *this;
     const Changes changes = changes_of(genes, seed);
-    if (changes.body) child.genome = mutate(child.genome, strength, seed);
-    if (changes.muscles) child.genome = mutate_muscles(child.genome, strength, seed_of(seed, 0));
+    if (changes.body) child.genome = mutate(child.genome, mutation.strength, seed);
+    if (changes.muscles) child.genome = mutate_muscles(child.genome, mutation.muscles, seed_of(seed, 0), mutation.tail);
     return child;
   }
+
+  static std::size_t muscle_numbers() { return 2; }
 
   CppnGenes crossed(const CppnGenes& other, Genes genes, std::uint64_t seed) const {
     CppnGenes child{crossover(genome, other.genome, seed)};

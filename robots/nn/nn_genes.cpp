@@ -22,14 +22,16 @@ struct NnGenes {
     return {*std::move(genome), material_genes_of(robot)};
   }
 
-  NnGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
+  NnGenes mutated(Genes genes, const GeneMutation& mutation, std::uint64_t seed) const {
     NnGenes child = *this;
     const Changes changes = changes_of(genes, seed);
     constexpr double rate = 0.1, size = 0.3;
-    if (changes.body) child.genome = mutate(genome, rate, size * strength, seed);
-    if (changes.muscles) child.materials = mercury::mutated(materials, strength, seed_of(seed, 0), {});
+    if (changes.body) child.genome = mutate(genome, rate, size * mutation.strength, seed);
+    if (changes.muscles) child.materials = mercury::mutated(materials, mutation, seed_of(seed, 0), {});
     return child;
   }
+
+  std::size_t muscle_numbers() const { return muscle_numbers_of(materials, {}); }
 
   NnGenes crossed(const NnGenes& other, Genes genes, std::uint64_t seed) const {
     NnGenes child = *this;

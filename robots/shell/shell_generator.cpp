@@ -64,12 +64,13 @@ ShellGenome mutate(const ShellGenome& genome, double strength, std::uint64_t see
   return surely_moved(genome, shell_genome_table(), step * strength, seed, chosen, &ShellGenome::height, 0.2, 3);
 }
 
-ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed) {
+ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed, int tail) {
   const auto chosen = [](const std::string& name) {
     return name == "waves_around" || name == "waves_along" || name == "active" || name == "contraction" ||
            name == "bending" || name == "frequency";
   };
-  return surely_moved(genome, shell_genome_table(), step * strength, seed, chosen, &ShellGenome::frequency, 0, 20);
+  return surely_moved(genome, shell_genome_table(), step * strength, seed, chosen, &ShellGenome::frequency, 0, 20,
+                      tail);
 }
 
 ShellGenome crossover(const ShellGenome& a, const ShellGenome& b, std::uint64_t seed) {

@@ -16,10 +16,10 @@ constexpr std::array real_numbers{&ShellGenome::diameter,   &ShellGenome::thickn
                                   &ShellGenome::lobe_depth, &ShellGenome::lappets,     &ShellGenome::twist,
                                   &ShellGenome::active,     &ShellGenome::waves_along, &ShellGenome::contraction,
                                   &ShellGenome::bending,    &ShellGenome::frequency};
-constexpr std::array muscle_numbers{&ShellGenome::contraction, &ShellGenome::bending, &ShellGenome::frequency};
+constexpr std::array numbers_of_muscles{&ShellGenome::contraction, &ShellGenome::bending, &ShellGenome::frequency};
 
 ShellGenome with_muscles_of(ShellGenome body, const ShellGenome& muscles) {
-  for (const auto number : muscle_numbers) body.*number = muscles.*number;
+  for (const auto number : numbers_of_muscles) body.*number = muscles.*number;
   return body;
 }
 
@@ -35,12 +35,14 @@ struct ShellGenes {
     return {*std::move(genome)};
   }
 
-  ShellGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
-    ShellGenome child = mutate(genome, strength, seed);
-    if (genes == Genes::body) child = with_muscles_of(std::move(child), genome);
-    if (genes == Genes::muscles) child = with_muscles_of(genome, mutate_muscles(genome, strength, seed));
-    return {std::move(child)};
+  ShellGenes mutated(Genes genes, const GeneMutation& mutation, std::uint64_t seed) const {
+    ShellGenome child = genes == Genes::muscles ? genome : mutate(genome, mutation.strength, seed);
+    if (genes == Genes::body) return {with_muscles_of(std::move(child), genome)};
+    if (genes == Genes::both && mutation.is_uniform()) return {std::move(child)};
+    return {with_muscles_of(std::move(child), mutate_muscles(genome, mutation.muscles, seed, mutation.tail))};
   }
+
+  static std::size_t muscle_numbers() { return numbers_of_muscles.size(); }
 
   ShellGenes crossed(const ShellGenes& other, Genes genes, std::uint64_t seed) const {
     ShellGenome child = crossover(genome, other.genome, seed);

@@ -19,9 +19,9 @@ const ParameterTable<TaperedGenome>& tapered_genome_table();
 bool is_of_body(std::string_view number);
 bool is_of_muscles(std::string_view number);
 
-// mutate() for the numbers that `chosen` accepts.
-TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed,
-                     bool (*chosen)(std::string_view));
+// mutate() for the numbers that `chosen` accepts, with a `tail` as of mutate_muscle_laws().
+TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed, bool (*chosen)(std::string_view),
+                     int tail = 0);
 
 // The cells of a robot by its origin.
 std::vector<Hexahedron> tapered_cells(const Robot& robot);

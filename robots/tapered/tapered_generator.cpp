@@ -98,15 +98,15 @@ bool is_of_muscles(std::string_view number) {
   return number == "frequency" || number == "waves" || number.starts_with("contraction_");
 }
 
-TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed,
-                     bool (*chosen)(std::string_view)) {
+TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed, bool (*chosen)(std::string_view),
+                     int tail) {
   constexpr double step = usual_step, share = 1.0 / 3;
   Random random(seed_of(seed, 1));
   const auto moves = [&](std::string_view number) { return random.chance(share) && chosen(number); };
   // What moves where everything else is at the end of its range.
   const auto nudged = chosen("width") ? &TaperedGenome::width : &TaperedGenome::frequency;
   const auto [lowest, highest] = chosen("width") ? std::pair(0.1, 2.0) : std::pair(0.1, 5.0);
-  return surely_moved(genome, tapered_genome_table(), step * strength, seed, moves, nudged, lowest, highest);
+  return surely_moved(genome, tapered_genome_table(), step * strength, seed, moves, nudged, lowest, highest, tail);
 }
 
 TaperedGenome mutate(const TaperedGenome& genome, double strength, std::uint64_t seed) {

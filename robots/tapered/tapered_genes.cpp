@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,10 +29,18 @@ struct TaperedGenes {
     return {*std::move(genome)};
   }
 
-  TaperedGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
-    if (genes == Genes::body) return {mutate(genome, strength, seed, is_of_body)};
-    if (genes == Genes::muscles) return {mutate(genome, strength, seed, is_of_muscles)};
-    return {mutate(genome, strength, seed)};
+  TaperedGenes mutated(Genes genes, const GeneMutation& mutation, std::uint64_t seed) const {
+    if (genes == Genes::both && mutation.is_uniform()) return {mutate(genome, mutation.strength, seed)};
+    TaperedGenome child = genome;
+    if (genes != Genes::muscles) child = mutate(child, mutation.strength, seed, is_of_body);
+    const std::uint64_t of_muscles = genes == Genes::both ? seed_of(seed, 0) : seed;
+    if (genes != Genes::body) child = mutate(child, mutation.muscles, of_muscles, is_of_muscles, mutation.tail);
+    return {std::move(child)};
+  }
+
+  static std::size_t muscle_numbers() {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        tapered_genome_table(), [](const auto& row) { return is_of_muscles(row.description.name); }));
   }
 
   TaperedGenes crossed(const TaperedGenes& other, Genes genes, std::uint64_t seed) const {

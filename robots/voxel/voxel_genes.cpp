@@ -42,14 +42,16 @@ struct VoxelGenes {
     return {*std::move(grid), material_genes_of(robot)};
   }
 
-  VoxelGenes mutated(Genes genes, double strength, std::uint64_t seed) const {
+  VoxelGenes mutated(Genes genes, const GeneMutation& mutation, std::uint64_t seed) const {
     VoxelGenes child = *this;
     const Changes changes = changes_of(genes, seed);
-    if (changes.body) child.grid = mutated_grid(grid, strength, seed);
+    if (changes.body) child.grid = mutated_grid(grid, mutation.strength, seed);
     if (changes.muscles)
-      child.materials = mercury::mutated(materials, strength, seed_of(seed, 0), materials_in(largest_body(child.grid)));
+      child.materials = mercury::mutated(materials, mutation, seed_of(seed, 0), materials_in(largest_body(child.grid)));
     return child;
   }
+
+  std::size_t muscle_numbers() const { return muscle_numbers_of(materials, materials_in(largest_body(grid))); }
 
   VoxelGenes crossed(const VoxelGenes& other, Genes genes, std::uint64_t seed) const {
     VoxelGenes child = *this;

@@ -123,12 +123,16 @@ std::vector<std::string> journal_seeds() {
               index};
 }
 
+// Its genomes have a step.
+const GenomeSpaceRequest adaptive{.genes = Genes::muscles, .muscles = {.muscle_adaptation = true, .muscle_tail = 1}};
+
 // The first byte chooses the kind.
 void check_genome(std::string_view input) {
   static const std::vector<std::unique_ptr<GenomeSpace>> spaces = [] {
     std::vector<std::unique_ptr<GenomeSpace>> made;
     for (const char* kind : {"voxel", "cppn", "nn", "shell", "tapered"})
       made.push_back(make_genome_space({.kind = kind}));
+    made.push_back(make_genome_space(adaptive));
     return made;
   }();
   if (input.empty()) return;
@@ -149,6 +153,7 @@ std::vector<std::string> genome_seeds() {
     const auto space = make_genome_space({.kind = kind});
     seeds.push_back(choice++ + space->random(1, 0)->encode());
   }
+  seeds.push_back(choice + make_genome_space(adaptive)->random(1, 0)->mutate(1, 1)->encode());
   return seeds;
 }
 

@@ -11,9 +11,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "mercury/generator.h"
+#include "mercury/parameters.h"
 #include "mercury/physics.h"
 #include "mercury/robot.h"
 
@@ -66,6 +68,19 @@ class GenomeSpace {
   virtual GenomePointer decode(std::string_view bytes) const = 0;
 };
 
+// How muscles move where they change. Bodies and brains have steps of their own kinds.
+struct MuscleMutation {
+  bool muscle_adaptation = false;  // whether each genome has a step for its muscles, which adapts itself
+  int muscle_tail = 0;             // Student's t with that many degrees of freedom draws the steps; 0 = normal numbers
+  friend bool operator==(const MuscleMutation&, const MuscleMutation&) = default;
+
+  static constexpr std::tuple parameters{
+      Parameter("muscle_adaptation", &MuscleMutation::muscle_adaptation,
+                "Give each robot a step of its own for its muscles, which adapts itself"),
+      Parameter("muscle_tail", &MuscleMutation::muscle_tail, "", Accepts::between(0, 100), {0, 10},
+                "Draw steps of muscles from Student's t with that many degrees of freedom: 1 = Cauchy, 0 = normal")};
+};
+
 // Which of Mercury's genome spaces.
 struct GenomeSpaceRequest {
   std::string kind = "voxel";  // of a generator; ignored if there are founders
@@ -73,13 +88,15 @@ struct GenomeSpaceRequest {
   std::string environment{};   // for the origins of the robots; empty = none is named
   Genes genes = Genes::body;
   std::vector<Robot> founders;  // robots to start from, all of one kind; any kind if the body stays
+  MuscleMutation muscles{};
 };
 
 // What the robots of this space are made for.
 Physics physics_of(const GenomeSpaceRequest& request);
 
 // Throws InputError or ParameterError for a request that cannot be used: an unknown kind, values out of range, founders
-// of several kinds, founders of a kind that no generator knows and whose body should change.
+// of several kinds, founders of a kind that no generator knows and whose body should change, a way to move muscles that
+// do not change.
 std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request);
 
 }  // namespace mercury

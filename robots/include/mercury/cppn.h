@@ -135,8 +135,9 @@ std::string to_origin(const CppnGenome& genome);
 CppnGenome mutate(const CppnGenome& genome, double strength, std::uint64_t seed);
 
 // A genome with another frequency, by a normal number times `strength` times 0.5 rad/s, or amplitude, by a normal
-// number times `strength` times 0.02, or both. It differs unless the strength is 0. Throws InputError as mutate.
-CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64_t seed);
+// number times `strength` times 0.02, or both; with a `tail` by numbers as of mutate_muscle_laws(). It differs unless
+// the strength is 0. Throws InputError as mutate.
+CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64_t seed, int tail = 0);
 
 // A child with the grid of a. Each of its nodes is inherited whole, with its function and all edges into it, from
 // either parent with probability 1/2 if both have it; so are frequency and amplitude. The child has a body, and one

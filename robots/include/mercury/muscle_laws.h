@@ -39,10 +39,11 @@ Robot with_base_materials(Robot robot, std::span<const Material> bases);
 // probability 1/4, by a normal number times `strength` times 0.5 rad/s; muscles of one frequency move together, so that
 // they keep their phases to each other, and each muscle by itself with probability 1/40. Results are folded back into
 // the ranges above, phases into [0, 2 pi). With a strength above 0, at least one of the muscles in use changes, if
-// there are any; an empty `in_use` counts all. Depends on the arguments alone, bit for bit on every machine. Throws
+// there are any; an empty `in_use` counts all. With a `tail` above 0, numbers of Student's t with that many degrees of
+// freedom stand in place of the normal ones. Depends on the arguments alone, bit for bit on every machine. Throws
 // ParameterError("muscles", ...) unless the strength is finite and at least 0.
 std::vector<Material> mutate_muscle_laws(std::span<const Material> bases, double strength, std::uint64_t seed,
-                                         const std::vector<bool>& in_use = {});
+                                         const std::vector<bool>& in_use = {}, int tail = 0);
 
 // Base materials of a child: each from either parent with probability 1/2. Throws InputError if their numbers differ.
 std::vector<Material> cross_muscle_laws(std::span<const Material> a, std::span<const Material> b, std::uint64_t seed);

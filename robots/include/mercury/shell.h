@@ -72,8 +72,9 @@ std::optional<ShellGenome> shell_genome_of(const Robot& robot);
 // draw without a change is repeated up to 30 times, then one number moves by a millionth of its range. Depends on the
 // arguments alone.
 ShellGenome mutate(const ShellGenome& genome, double strength, std::uint64_t seed);
-// The same for the numbers of its muscles alone: waves, share, amplitudes and frequency.
-ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed);
+// The same for the numbers of its muscles alone: waves, share, amplitudes and frequency; with a `tail` by numbers as of
+// mutate_muscle_laws(), which are mirrored at the ends of the ranges.
+ShellGenome mutate_muscles(const ShellGenome& genome, double strength, std::uint64_t seed, int tail = 0);
 
 // A child of two shells: each number from either with probability 1/2, the form and the segments of the first. A shell
 // that would be too thick is as thick as its diameter allows. Depends on the arguments alone.

@@ -248,6 +248,23 @@ TEST_F(EvolveCommand, GenerationsSayHowFullTheMapIsAndHowManyLinesLive) {
   EXPECT_EQ(rows_of(read("no-map/generations.csv")).back().at("coverage"), "");
 }
 
+TEST_F(EvolveCommand, StepsOfMusclesAreSettingsOfARun) {
+  const Arguments steps{"--genes", "both", "--muscle-adaptation", "--muscle-tail", "1"};
+  ASSERT_EQ(evolve("whole", joined(small("4"), steps)).status, 0);
+  ASSERT_EQ(evolve("parts", joined(small("2"), steps)).status, 0);
+  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  EXPECT_EQ(lineage("parts"), lineage("whole"));
+  EXPECT_THAT(read("whole/run.toml"), testing::HasSubstr("\nmuscle_adaptation = true"));
+  EXPECT_THAT(read("whole/run.toml"), testing::HasSubstr("\nmuscle_tail = 1"));
+  const Outcome body = evolve("body", joined(small("1"), {"--muscle-tail", "1"}));
+  EXPECT_EQ(body.status, 2);
+  EXPECT_THAT(body.messages, testing::HasSubstr("--muscle-tail: the muscles do not change; give muscles among"));
+  const Outcome numbers = evolve("numbers", {"--from", "sample:eel", "--genes", "muscles", "--algorithm", "cma-es",
+                                             "--muscle-adaptation", "--quiet"});
+  EXPECT_EQ(numbers.status, 2);
+  EXPECT_THAT(numbers.messages, testing::HasSubstr("--muscle-adaptation: does not go with --algorithm cma-es"));
+}
+
 TEST_F(EvolveCommand, NoveltyAgesIslandsAndEmittersGoOnBitForBit) {
   const Arguments axes{"--axis", "speed_x:-0.1:0.1", "--axis", "speed_y:-0.1:0.1"};
   for (const Arguments& algorithm : {joined({"--algorithm", "novelty"}, axes),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -17,6 +18,7 @@
 #include "mercury/real_body.h"
 #include "mercury/voxel.h"
 #include "robots/brain_genes.h"
+#include "robots/bytes.h"
 #include "tests/refusal.h"
 
 namespace mercury {
@@ -28,7 +30,11 @@ using testing::HasSubstr;
 struct Case {
   std::string kind;
   Genes genes;
+  MuscleMutation muscles{};
 };
+
+// Steps that adapt themselves, from Cauchy's distribution.
+constexpr MuscleMutation adaptive{.muscle_adaptation = true, .muscle_tail = 1};
 
 Robot given_robot() {
   Robot robot = random_voxel_robot({.smallest = {4, 3, 3}, .largest = {4, 3, 3}}, 3);
@@ -45,8 +51,11 @@ Robot thinking_robot() {
 
 GenomeSpaceRequest request_for(const Case& chosen) {
   if (chosen.kind == "given")
-    return {.genes = chosen.genes, .founders = {chosen.genes == Genes::muscles ? given_robot() : thinking_robot()}};
-  GenomeSpaceRequest request{.kind = chosen.kind, .environment = "land", .genes = chosen.genes};
+    return {.genes = chosen.genes,
+            .founders = {chosen.genes == Genes::muscles ? given_robot() : thinking_robot()},
+            .muscles = chosen.muscles};
+  GenomeSpaceRequest request{
+      .kind = chosen.kind, .environment = "land", .genes = chosen.genes, .muscles = chosen.muscles};
   if (chosen.kind == "nn") request.values = {{"points", std::int64_t{64}}, {"hidden", std::vector<int>{8, 8}}};
   return request;
 }
@@ -250,14 +259,100 @@ std::vector<Case> cases() {
   for (const std::string kind : {"voxel", "cppn", "shell", "nn", "tapered"})
     for (const Genes genes : all_gene_sets())
       if (genes != Genes::brain && (kind != "nn" || MERCURY_NN)) all.push_back({kind, genes});
+  const std::vector<Case> fixed = all;
+  for (const Case& each : fixed)
+    if (contains(each.genes, Genes::muscles)) all.push_back({each.kind, each.genes, adaptive});
   return all;
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryGenome, testing::ValuesIn(cases()), [](const auto& parameter) {
   std::string name = parameter.param.kind + "_" + name_of(parameter.param.genes);
   std::ranges::replace(name, ',', '_');
-  return name;
+  return name + (parameter.param.muscles == adaptive ? "_adaptive" : "");
 });
+
+// A step that adapts itself is 8 bytes of the genome; without it, genomes have the bytes that they always had.
+TEST(MuscleSteps, AreStoredOnlyWhereTheyAdapt) {
+  for (const char* kind : {"voxel", "cppn", "shell", "tapered"}) {
+    const auto size = [&](const MuscleMutation& muscles) {
+      return make_genome_space({.kind = kind, .genes = Genes::muscles, .muscles = muscles})
+          ->random(1, 0)
+          ->encode()
+          .size();
+    };
+    EXPECT_EQ(size({.muscle_tail = 3}), size({})) << kind;
+    EXPECT_EQ(size({.muscle_adaptation = true}), size({}) + sizeof(double)) << kind;
+  }
+}
+
+// The step of an adaptive genome by its bytes, after kind and version.
+double step_of(const Genome& genome) {
+  const std::string bytes = genome.encode();
+  return ByteReader(std::string_view(bytes).substr(2)).read<double>();
+}
+
+TEST(MuscleSteps, AreInheritedAndAverageInCrossovers) {
+  for (const bool given : {true, false}) {
+    GenomeSpaceRequest request{.genes = Genes::muscles, .muscles = {.muscle_adaptation = true}};
+    if (given) request.founders = {given_robot()};
+    const auto space = make_genome_space(request);
+    const GenomePointer parent = space->random(1, 0);
+    EXPECT_EQ(step_of(*parent), 1);
+    const GenomePointer a = parent->mutate(1, 1), b = a->mutate(1, 2);
+    EXPECT_NE(step_of(*a), 1);
+    EXPECT_NE(step_of(*a), step_of(*b));
+    EXPECT_NEAR(step_of(*a->cross(*b, 3)), std::sqrt(step_of(*a) * step_of(*b)), 1e-12);
+    EXPECT_EQ(step_of(*space->decode(b->encode())), step_of(*b));
+    std::string bytes = a->encode();
+    bytes.replace(2, 8, std::string(8, '\xff'));
+    EXPECT_EQ(refusal([&] { space->decode(bytes); }), "genome: the step of its muscles is out of range");
+  }
+}
+
+TEST(MuscleSteps, OfMusclesThatDoNotChangeAreRefused) {
+  const auto refused = [](GenomeSpaceRequest request) { return refusal([&] { make_genome_space(request); }); };
+  EXPECT_EQ(refused({.muscles = {.muscle_adaptation = true}}),
+            "muscle_adaptation: the muscles do not change; give muscles among the genes");
+  EXPECT_EQ(refused({.muscles = {.muscle_tail = 2}}),
+            "muscle_tail: the muscles do not change; give muscles among the genes");
+  EXPECT_THAT(refused({.genes = Genes::both, .muscles = {.muscle_tail = -1}}), testing::StartsWith("muscle_tail: -1"));
+  EXPECT_EQ(refused({.genes = Genes::both, .muscles = adaptive}), "");
+}
+
+// Evolution strategies come near to an optimum where fixed steps stay as far away as they are long: an elitist search
+// of the muscles of a body that should have given amplitudes, by the median of five seeds.
+double distance_left(const MuscleMutation& muscles, std::uint64_t seed) {
+  const auto space = make_genome_space({.genes = Genes::muscles, .founders = {given_robot()}, .muscles = muscles});
+  const auto distance = [&](const Genome& genome) {
+    const Robot robot = genome.grow("");
+    double sum = 0;
+    for (const Material& material : base_materials_of(robot))
+      if (material.amplitude != 0) sum += std::pow(static_cast<double>(material.amplitude) - 0.05, 2);
+    return std::sqrt(sum);
+  };
+  std::vector<std::pair<double, GenomePointer>> parents{{0, space->random(seed, 0)}};
+  parents[0].first = distance(*parents[0].second);
+  for (std::uint64_t generation = 1; generation <= 120; ++generation) {
+    std::vector<std::pair<double, GenomePointer>> children;
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      const GenomePointer& parent = parents[i % parents.size()].second;
+      GenomePointer child = parent->mutate(1, seed_of(seed_of(seed, generation), i));
+      const double left = distance(*child);
+      children.emplace_back(left, std::move(child));
+    }
+    std::ranges::sort(children, {}, &std::pair<double, GenomePointer>::first);
+    children.resize(4);
+    parents = std::move(children);
+  }
+  return parents.front().first;
+}
+TEST(MuscleSteps, ComeNearerToAnOptimumThanFixedOnes) {
+  std::vector<double> gains;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+    gains.push_back(distance_left({}, seed) / distance_left({.muscle_adaptation = true}, seed));
+  std::ranges::sort(gains);
+  EXPECT_GT(gains[2], 3) << gains[0] << " to " << gains[4];
+}
 
 TEST(GenomeSpaces, EveryGeneratorHasOne) {
   for (const Generator& generator : generators())
