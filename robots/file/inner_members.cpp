@@ -167,7 +167,7 @@ void InnerMembersReader::bytes(std::string_view of) {
 void InnerMembersReader::open(bool is_array) {
   const ObjectPlace* const place = beyond_ > 0 ? nullptr : place_of_next(frames_, is_array);
   if (place)
-    frames_.push_back({.place = place, .is_array = is_array, .index = 0, .key = {}, .members = {}});
+    frames_.push_back({.place = place, .is_array = is_array, .index = 0, .key = {}, .members = {}, .inner = {}});
   else
     ++beyond_;
 }
@@ -191,10 +191,11 @@ void InnerMembersReader::close() {
   frames_.pop_back();
   if (frames_.empty()) return;
   Frame& outer = frames_.back();
-  if (!closed.members.empty()) {
-    std::string& members = frames_.size() > 1 ? outer.members : outer.key == "materials" ? of_materials_ : of_others_;
-    append_member(members, name_of_next(outer), "{" + closed.members + "}");
-  }
+  std::string members;
+  for (const auto& [name, object] : closed.inner) append_member(members, name, object);
+  if (!closed.members.empty()) members.append(members.empty() ? "" : ",").append(closed.members);
+  Inner& inner = frames_.size() > 1 ? outer.inner : of_document_;
+  if (!members.empty()) inner[name_of_next(outer)] = "{" + members + "}";
   ++outer.index;
 }
 void InnerMembersReader::end_array() {
@@ -231,8 +232,8 @@ void InnerMembersReader::end_taken() {
 
 std::string InnerMembersReader::with_inner(const std::string& other, bool with_materials) const {
   std::string members = other.empty() ? "" : other.substr(1, other.size() - 2);
-  for (const std::string& more : {with_materials ? of_materials_ : std::string(), of_others_})
-    if (!more.empty()) members.append(members.empty() ? "" : ",").append(more);
+  for (const auto& [name, object] : of_document_)
+    if (with_materials || name != "materials") append_member(members, name, object);
   return members.empty() ? "" : "{" + members + "}";
 }
 

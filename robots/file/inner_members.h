@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,6 +28,14 @@ using MemberTexts = std::vector<std::pair<std::string, std::string>>;
 MemberTexts members_of(std::string_view object);
 // Those members of Robot::other that are of the document itself.
 MemberTexts members_of_document(std::string_view other);
+
+// Shorter keys first, so that indices stand in their order. The order must not be that of the document: it would be
+// another one when the robot has been written.
+struct InnerOrder {
+  bool operator()(const std::string& a, const std::string& b) const {
+    return a.size() != b.size() ? a.size() < b.size() : a < b;
+  }
+};
 
 // Takes unknown inner members out of a document that is read, and sends all else on.
 class InnerMembersReader : public DocumentEvents {
@@ -48,13 +57,16 @@ class InnerMembersReader : public DocumentEvents {
   std::string with_inner(const std::string& other, bool with_materials) const;
 
  private:
+  // What is kept of objects within an object or an array, as JSON text, by their keys or indices.
+  using Inner = std::map<std::string, std::string, InnerOrder>;
   // An object or an array that is open.
   struct Frame {
     const ObjectPlace* place = nullptr;  // of the object, or of the objects of the array
     bool is_array = false;
     std::size_t index = 0;  // of the element of the array
     std::string key;        // of the member of the object
-    std::string members;    // that are kept, here and below, as JSON text
+    std::string members;    // unknown ones, as JSON text
+    Inner inner;            // of objects below
   };
 
   template <class Send, class Take>
@@ -68,7 +80,7 @@ class InnerMembersReader : public DocumentEvents {
   int beyond_ = 0;             // arrays and objects that are open within the last of them
   OtherMembers taken_;
   int taken_depth_ = -1;  // of an unknown member: arrays and objects of it that are open; -1 = there is none
-  std::string of_materials_, of_others_;
+  Inner of_document_;
 };
 
 // Puts them back into a document that is written.

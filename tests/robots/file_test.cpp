@@ -217,10 +217,11 @@ TEST_F(RobotFiles, UnknownMembersWithinTheDocumentAreWrittenWhereTheyWere) {
       R"("inputs":[{"from":"senses","weights":[[0.5,1]],"learned":[0]}]}],)"
       R"("outputs":[{"actuator":"leg","layer":"out","neuron":0,"gain":3}]}})";
   const Robot robot = parse_robot(document, RobotFormat::json);
-  EXPECT_EQ(robot.other, R"({"materials":{"0":{"note":"air"},"1":{"supplier":{"name":"A","codes":[1,2.50]}}},)"
-                         R"("actuators":{"0":{"color":null}},"sensors":{"0":{"label":"beat"}},)"
-                         R"("brain":{"author":"B","layers":{"0":{"trained":true,"inputs":{"0":{"learned":[0]}}}},)"
-                         R"("outputs":{"0":{"gain":3}}}})");
+  EXPECT_EQ(robot.other, R"({"brain":{"layers":{"0":{"inputs":{"0":{"learned":[0]}},"trained":true}},)"
+                         R"("outputs":{"0":{"gain":3}},"author":"B"},"sensors":{"0":{"label":"beat"}},)"
+                         R"("actuators":{"0":{"color":null}},)"
+                         R"("materials":{"0":{"note":"air"},"1":{"supplier":{"name":"A","codes":[1,2.50]}}}})");
+  EXPECT_EQ(parse_robot(serialize_robot(robot, RobotFormat::json), RobotFormat::json), robot);
   for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor}) {
     const std::string written = serialize_robot(robot, format);
     Robot again = parse_robot(written, format);
