@@ -88,8 +88,11 @@ void require_shared_parts(const Environment& own, const Environment& shared, con
 
 void Simulation::set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments) {
   if (robots.size() != environments.size()) throw std::invalid_argument("an environment per robot is needed");
+  std::vector<bool> given(size());
   for (std::size_t i = 0; i < robots.size(); ++i) {
     parts_->require(robots[i]);
+    if (given[robots[i]]) throw std::invalid_argument("a robot can have only one environment");
+    given[robots[i]] = true;
     Configuration own = parts_->configuration;
     own.environment = environments[i];
     validate(own);

@@ -77,7 +77,8 @@ It lasts until configure(). Robots with environments of their own step somewhat 
 waits for the device. save() does not keep environments.
 
 Raises TypeError for a parameter that the environment does not have, InputError for a value or shape that is not
-accepted, and for parameters that all robots share; IndexError for a robot that is not there.)";
+accepted, and for parameters that all robots share; IndexError for a robot that is not there, ValueError for
+one that is given twice.)";
 
 constexpr const char* telemetry_description =
     R"(A structured NumPy array, one element per robot, computed on the device. Fields:

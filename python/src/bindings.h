@@ -12,6 +12,11 @@
 #include "mercury/generator.h"
 #include "mercury/robot.h"
 
+namespace mercury {
+struct EvolutionSettings;
+struct GenomeSpaceRequest;
+}  // namespace mercury
+
 namespace mercury::python {
 
 namespace nb = nanobind;
@@ -38,6 +43,10 @@ void set_parameters(std::vector<Environment>& environments, const nb::kwargs& va
 // What Batch and evaluate() are given. `device` = a name, or anything whose str() is one. Throws TypeError, InputError.
 Configuration configuration_of(nb::handle environment, const std::string& solver, double dt, double damping,
                                nb::handle device, int threads);
+
+// The settings of a search among these genomes, from the keyword arguments of evolution.py; sets the environment of
+// the genomes. Throws TypeError for a name that is none, InputError for a value that cannot be used.
+EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space);
 
 // Parameters of a generator from keyword arguments; `function` is named in errors. Throws TypeError, InputError.
 ParameterValues generator_values(const std::string& function, const Generator& generator, const nb::kwargs& given);

@@ -25,7 +25,6 @@
 #include "mercury/run_folder.h"
 #include "python/src/bindings.h"
 #include "python/src/custom_parts.h"
-#include "python/src/evolution_settings.h"
 #include "python/src/genomes.h"
 #include "python/src/gil.h"
 #include "python/src/values.h"

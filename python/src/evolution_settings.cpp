@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "python/src/evolution_settings.h"
-
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -13,6 +11,7 @@
 #include "mercury/custom.h"
 #include "mercury/environment.h"
 #include "mercury/error.h"
+#include "mercury/evolution.h"
 #include "mercury/objective.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"

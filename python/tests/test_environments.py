@@ -183,3 +183,5 @@ def test_what_robots_cannot_have_of_their_own_is_refused(robots, values, error, 
     assert batch.environment_of(0) == mercurysim.Land()
     with pytest.raises(IndexError):
         batch.set_environments([4], friction=1)
+    with pytest.raises(ValueError, match="only one environment"):
+        batch.set_environments([3, 3], friction=[0.1, 0.2])

@@ -175,6 +175,8 @@ TEST_P(OwnEnvironmentOn, RefusesWhatAllRobotsShare) {
   own.ground = Plane{.friction = -1};
   EXPECT_THAT(refused(own), testing::HasSubstr("friction"));
   EXPECT_THROW(simulation.set_environments(std::array<std::size_t, 1>{2}, std::array{land}), std::out_of_range);
+  EXPECT_THROW(simulation.set_environments(std::array<std::size_t, 2>{1, 1}, std::array{land, land}),
+               std::invalid_argument);
   EXPECT_EQ(simulation.environment(1), land);
   Simulation swimming({.environment = Ocean{}, .device = device()}, std::array{feeling});
   EXPECT_THAT(

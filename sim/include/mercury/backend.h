@@ -113,9 +113,9 @@ class Backend {
   // Applies to all later steps, in which every robot lives in the configuration's environment. The device does not
   // change.
   virtual void configure(const Configuration& configuration) = 0;
-  // From the next step on robots[i] lives in environments[i]. It has the parts, contacts, stiffness scale and all else
-  // but gravity, water and ground of the configuration's environment. It lasts until the next call for this robot,
-  // configure(), load(), add() or keep(). The default throws std::logic_error.
+  // From the next step on robots[i] lives in environments[i]; no robot appears twice. It has the parts, contacts,
+  // stiffness scale and all else but gravity, water and ground of the configuration's environment. It lasts until the
+  // next call for this robot, configure(), load(), add() or keep(). The default throws std::logic_error.
   virtual void set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments);
   // Advances every robot that has not exploded by `steps` > 0 steps; the first begins at `clock`. A robot that explodes
   // is frozen in the step that failed, and the others go on. Returns when all are done.

@@ -122,7 +122,7 @@ class Simulation {
   // water and ground may differ. It lasts until the next call for the robot or configure(). Robots in environments of
   // their own step somewhat slower, and small ones on a CPU, where each then steps alone, at up to a third. Throws
   // InputError for what else differs, and for another flow of a robot that senses the flow; std::out_of_range for a
-  // robot that does not exist.
+  // robot that does not exist, std::invalid_argument for one that is given twice.
   void set_environments(std::span<const std::size_t> robots, std::span<const Environment> environments);
   const Environment& environment(std::size_t robot) const;
 
