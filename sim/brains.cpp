@@ -308,6 +308,28 @@ BrainState Brains::state(std::size_t robot) const {
   return of_[robot]->state;
 }
 
+void Brains::read(std::span<float> senses, std::span<float> neurons) const {
+  fetch(false);
+  std::size_t sense = 0, neuron = 0;
+  for (const auto& brain : of_) {
+    if (!brain) continue;
+    sense += brain->plan->senses.size();
+    neuron += brain->plan->neurons.size();
+  }
+  require(senses.size(), sense, "senses");
+  require(neurons.size(), neuron, "neurons");
+  const auto copy = [](const std::vector<float>& from, std::size_t count, std::span<float>& to) {
+    std::copy_n(from.begin(), count, to.begin());
+    to = to.subspan(count);
+  };
+  for (std::size_t i = 0; i < of_.size(); ++i) {
+    if (!of_[i]) continue;
+    take(i);
+    copy(of_[i]->state.senses, of_[i]->plan->senses.size(), senses);
+    copy(of_[i]->state.neurons, of_[i]->plan->neurons.size(), neurons);
+  }
+}
+
 void Brains::require_state(std::size_t robot, const BrainState& state) const {
   const BrainState wanted = of_[robot] ? state_at_start(*of_[robot]->plan) : BrainState{};
   require(state.neurons.size(), wanted.neurons.size(), "neurons");

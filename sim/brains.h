@@ -73,6 +73,8 @@ class Brains {
   std::vector<DriveSetting> take_drives();
 
   BrainState state(std::size_t robot) const;
+  // The senses as sampled last, and the neurons, of all brains. Throws std::invalid_argument for other sizes.
+  void read(std::span<float> senses, std::span<float> neurons) const;
   // Throw std::invalid_argument.
   void require_state(std::size_t robot, const BrainState& state) const;
   void set_state(std::size_t robot, const BrainState& state);

@@ -135,6 +135,11 @@ std::vector<BrainState> Simulation::brain_states() const {
   return states;
 }
 
+void Simulation::read_brains(std::span<float> senses, std::span<float> neurons) const {
+  parts_->brains.begin_access();
+  parts_->brains.read(senses, neurons);
+}
+
 const BrainArrays& Simulation::shared_brains() {
   parts_->host_thinks();  // asks the backend first
   return parts_->brains.share(*parts_->backend);

@@ -207,6 +207,10 @@ void describe(const TrajectoryReader& trajectory) {
     std::string text =
         fmt::format("{} masses, {} springs, {} faces", robot.masses.size(), robot.springs.size(), robot.faces.size());
     if (!robot.actuators.empty()) text += fmt::format(", {} actuators", robot.actuators.size());
+    if (trajectory.has_brains(i)) {
+      const BrainLayout layout = brain_layout(robot);
+      text += fmt::format(", {} senses and {} neurons recorded", layout.senses.size(), layout.neurons.size());
+    }
     if (exploded_at) text += fmt::format(", exploded at {:.6g} s", *exploded_at);
     if (bad_spring) text += fmt::format(", spring {}", *bad_spring);
     fmt::print("    {}: {}\n", printable(group), text);

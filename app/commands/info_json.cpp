@@ -183,7 +183,9 @@ Json info_of(const Robot& robot, const std::filesystem::path& file) {
 
 Json info_of(const TrajectoryReader& recording) {
   Json robots = Json::array();
-  for (const auto& [robot, group, exploded_at, culprit_spring] : recording.robots())
+  for (std::size_t i = 0; i < recording.robots().size(); ++i) {
+    const auto& [robot, group, exploded_at, culprit_spring] = recording.robots()[i];
+    const BrainLayout layout = recording.has_brains(i) ? brain_layout(robot) : BrainLayout{};
     robots.push_back({{"name", robot.name},
                       {"group", group},
                       {"physics", name_of(physics_of(robot))},
@@ -191,8 +193,11 @@ Json info_of(const TrajectoryReader& recording) {
                       {"springs", robot.springs.size()},
                       {"faces", robot.faces.size()},
                       {"actuators", robot.actuators.size()},
+                      {"senses", layout.senses},
+                      {"neurons", layout.neurons},
                       {"exploded_at", value_or_null(exploded_at)},
                       {"first_bad_spring", value_or_null(culprit_spring)}});
+  }
   const std::size_t frames = recording.frames();
   return {{"file", recording.path().string()},
           {"program", recording.program()},

@@ -47,6 +47,7 @@ struct RunOptions {
   std::optional<double> rate;  // --fps, instead of --every
   std::optional<double> checkpoint_every;
   bool compress = false;
+  bool brains = false;  // in the recording, too
   bool json = false, strict = false;
   std::optional<Command> typed;  // the command line
 };
@@ -80,13 +81,22 @@ void prepare_outputs(const RunOptions& options, const std::string& continued = {
   if (!options.output.dry_run()) outputs.make_folders();
 }
 
+// The first option that says how to record; nullptr = none was given.
+const char* way_of_recording(const RunOptions& options) {
+  return options.every      ? "--every"
+         : options.rate     ? "--fps"
+         : options.brains   ? "--brains"
+         : options.compress ? "--compress"
+                            : nullptr;
+}
+
 // Throws InputError for options that do not go together.
 void validate_recording(const RunOptions& options) {
   if (options.every && *options.every < 1)
     throw InputError("--every", fmt::format("{} is not accepted; give a number of steps, 1 or more", *options.every));
   if (options.every && options.rate) throw InputError("--fps", "not together with --every, which counts steps");
-  if (options.record.empty() && (options.every || options.rate || options.compress))
-    throw InputError(options.every ? "--every" : options.rate ? "--fps" : "--compress", "goes with --record FILE.h5");
+  if (const char* option = way_of_recording(options); options.record.empty() && option)
+    throw InputError(option, "goes with --record FILE.h5");
   if (options.checkpoint_every && options.checkpoint.empty())
     throw InputError("--checkpoint-every", "goes with --checkpoint FILE.h5");
   if (options.checkpoint_every && !(*options.checkpoint_every >= 0 && std::isfinite(*options.checkpoint_every)))
@@ -105,6 +115,7 @@ RecordingOptions recording_options(const RunOptions& options, const Configuratio
           .rate = options.rate,
           .last_step = std::llround(options.trials.seconds / configuration.dt),
           .seed = options.robots.seed(),
+          .brains = options.brains,
           .deflate = options.compress ? 1 : 0};
 }
 
@@ -168,8 +179,9 @@ int describe_work(const RunOptions& options, const Configuration& configuration,
        {"in", environment_text(configuration)},
        {"by", solver_text(configuration)},
        {"on", device_text(configuration.device)},
-       {"record",
-        options.record.empty() ? "" : options.record + ": " + count_text(places.count(steps), "frame", "frames")},
+       {"record", options.record.empty() ? ""
+                                         : options.record + ": " + count_text(places.count(steps), "frame", "frames") +
+                                               (options.brains ? ", with senses and neurons" : "")},
        {"checkpoint", options.checkpoint},
        {"write", options.csv},
        {"print", is_standard_output(options.csv) ? "CSV"
@@ -182,8 +194,7 @@ int run_repro(const RunOptions& options, const std::filesystem::path& file) {
   const Device device = options.simulation.configuration().device;
   if (options.simulation.configuration() != Configuration{.device = device})
     throw InputError(file.string(), "has its own configuration; give only --device, --threads and --seconds with it");
-  if (!options.record.empty() || options.every || options.rate)
-    throw InputError("--record", "does not work with a repro; give robots");
+  if (!options.record.empty()) throw InputError("--record", "does not work with a repro; give robots");
   if (options.trials.settle != 0) throw InputError("--settle", "does not work with a repro; give robots");
   if (options.trials.trials != 1) throw InputError("--trials", "does not work with a repro; give robots");
   if (options.trials.jitter != 0) throw InputError("--jitter", "does not work with a repro; give robots");
@@ -222,7 +233,8 @@ CheckpointNotes notes_of(const RunOptions& options, const Configuration& configu
     notes.recording = {.path = std::filesystem::absolute(options.record).string(),
                        .every = recorded_every(options, configuration),
                        .rate = options.rate,
-                       .compressed = options.compress};
+                       .compressed = options.compress,
+                       .brains = options.brains};
   return notes;
 }
 
@@ -289,11 +301,8 @@ void validate_resume(const RunOptions& options) {
       !options.simulation.chosen_environment().empty())
     throw InputError(
         "--resume", options.resume + " has its own configuration; give only --device, --threads and --seconds with it");
-  if (options.every || options.rate || options.compress)
-    throw InputError(options.every  ? "--every"
-                     : options.rate ? "--fps"
-                                    : "--compress",
-                     "is that of " + options.resume + " in a resumed run; leave it out");
+  if (const char* option = way_of_recording(options))
+    throw InputError(option, "is that of " + options.resume + " in a resumed run; leave it out");
 }
 
 // The recording of a resumed run: what it had before the checkpoint, and what follows.
@@ -310,6 +319,7 @@ std::unique_ptr<Recorder> continue_recording(const RunOptions& options, const Re
                                                      .first_step = 0,
                                                      .last_step = last_step,
                                                      .seed = run.notes.seed,
+                                                     .brains = before->brains,
                                                      .deflate = before->compressed ? 1 : 0},
                                     RecordingStart{*reader, before->frames});
 }
@@ -337,6 +347,7 @@ int run_resumed(RunOptions options) {
     if (checkpoint.notes.recording) {
       options.every = checkpoint.notes.recording->every;
       options.rate = checkpoint.notes.recording->rate;
+      options.brains = checkpoint.notes.recording->brains;
     }
     return describe_work(options, configuration, static_cast<std::int64_t>(steps), size_text(checkpoint.robots));
   }
@@ -421,6 +432,7 @@ void add_run_command(const Command& program, const Choose& choose) {
   add_number(command, "--every", options->every, "Steps between two recorded frames (default: 1/30 s)", "N");
   add_number(command, "--fps", options->rate,
              "Instead: frames per second, exactly; interpolated where they fall between two steps", "N");
+  command.add_flag("--brains", options->brains, "Record also the senses and neurons of robots with brains");
   add_text(command, "--checkpoint", options->checkpoint,
            "Save the run now and then, so that --resume goes on with it after a crash", "FILE.h5");
   add_number(command, "--checkpoint-every", options->checkpoint_every, "Wall time between two checkpoints (default 60)",
@@ -444,6 +456,7 @@ void add_run_command(const Command& program, const Choose& choose) {
       "  mercury run --random voxel:64 --seed 1 --seconds 2\n"
       "  mercury run eel.json --record eel.h5 --every 10\n"
       "  mercury run eel.json --record eel.h5 --fps 30\n"
+      "  mercury run sample:hunter --target 2,3,0 --record hunt.h5 --brains\n"
       "  mercury run my-robots --seconds 3600 --checkpoint long.h5\n"
       "  mercury run --resume --checkpoint long.h5                (goes on after a crash)\n"
       "  mercury run swim --robot 57  (an individual of the run swim, tried as there)\n"

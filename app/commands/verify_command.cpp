@@ -41,6 +41,7 @@ struct FrameDifference {
   bool same = true;       // bit for bit
   double position = 0;    // largest of any mass [m]
   double velocity = 0;    // [m/s]
+  double brain = 0;       // of any sense or neuron that is recorded
   std::size_t robot = 0;  // with the largest difference of positions
 };
 
@@ -100,10 +101,22 @@ Simulation simulation_of(TrajectoryReader& recording, const Device& device) {
   return simulation;
 }
 
+// The largest difference of two numbers.
+double largest_difference(std::span<const float> a, std::span<const float> b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::memcmp(&a[i], &b[i], sizeof(float)) == 0) continue;
+    const double between = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    largest = std::max(largest, std::isnan(between) ? std::numeric_limits<double>::infinity() : between);
+  }
+  return largest;
+}
+
 class Comparison {
  public:
   Comparison(const Simulation& simulation, TrajectoryReader& recording)
-      : simulation_(simulation), recording_(recording), now_(simulation.mass_count()), next_(simulation.mass_count()) {}
+      : simulation_(simulation), recording_(recording), now_(simulation.mass_count()), next_(simulation.mass_count()),
+        senses_(recording.senses(0).size()), neurons_(recording.neurons(0).size()) {}
 
   // Steps to a frame. Returns false if the user interrupts.
   bool advance_to(FramePlace place, Stepper& stepper) {
@@ -130,6 +143,7 @@ class Comparison {
       difference.same = false;
       difference.velocity = largest_distance(now_.velocities, velocities).first;
     }
+    if (recording_.has_brains()) compare_brains(frame, difference);
     return difference;
   }
 
@@ -143,9 +157,22 @@ class Comparison {
     simulation_.read_velocities(moment.velocities);
   }
 
+  // Where the simulation is: of a frame between two steps, at the later one.
+  void compare_brains(std::size_t frame, FrameDifference& difference) {
+    simulation_.read_brains(senses_, neurons_);
+    const auto compare = [&](std::span<const float> now, std::span<const float> recorded) {
+      if (std::memcmp(now.data(), recorded.data(), recorded.size_bytes()) == 0) return;
+      difference.same = false;
+      difference.brain = std::max(difference.brain, largest_difference(now, recorded));
+    };
+    compare(senses_, recording_.senses(frame));
+    compare(neurons_, recording_.neurons(frame));
+  }
+
   const Simulation& simulation_;
   TrajectoryReader& recording_;
   Moment now_, next_;
+  std::vector<float> senses_, neurons_;
 };
 
 Verification verify(TrajectoryReader& recording, const Device& device) {
@@ -173,40 +200,45 @@ nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
-nlohmann::ordered_json json_of(const FrameDifference& frame) {
+nlohmann::ordered_json json_of(const FrameDifference& frame, bool brains) {
   return {{"step", frame.step},
           {"time", frame.time},
           {"identical", frame.same},
           {"position", number_or_null(frame.position)},
           {"velocity", number_or_null(frame.velocity)},
+          {"brain", brains ? number_or_null(frame.brain) : nlohmann::ordered_json()},
           {"robot", frame.robot}};
 }
 
 void print_json(const Verification& result, const TrajectoryReader& recording, const VerifyOptions& options) {
   const FrameDifference* first = result.first_difference();
-  nlohmann::ordered_json json{{"file", options.file},
-                              {"program", recording.program()},
-                              {"recorded_on", recording.device_name()},
-                              {"device", result.device},
-                              {"robots", result.robots},
-                              {"identical", first == nullptr},
-                              {"tolerance", options.tolerance},
-                              {"same", result.same(options.tolerance)},
-                              {"largest_difference", number_or_null(result.largest())},
-                              {"first_difference", first ? json_of(*first) : nlohmann::ordered_json()},
-                              {"frames", nlohmann::ordered_json::array()}};
-  for (const FrameDifference& frame : result.frames) json["frames"].push_back(json_of(frame));
+  nlohmann::ordered_json json{
+      {"file", options.file},
+      {"program", recording.program()},
+      {"recorded_on", recording.device_name()},
+      {"device", result.device},
+      {"robots", result.robots},
+      {"identical", first == nullptr},
+      {"tolerance", options.tolerance},
+      {"same", result.same(options.tolerance)},
+      {"largest_difference", number_or_null(result.largest())},
+      {"first_difference", first ? json_of(*first, recording.has_brains()) : nlohmann::ordered_json()},
+      {"frames", nlohmann::ordered_json::array()}};
+  for (const FrameDifference& frame : result.frames) json["frames"].push_back(json_of(frame, recording.has_brains()));
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 // At most a dozen frames, evenly spread, with the first and the last.
 void print_table(const Verification& result, const TrajectoryReader& recording) {
   constexpr std::size_t rows = 12;
-  fmt::print("\n{:>10}  {:>14}  {:>16}  {}\n", "time [s]", "position [m]", "velocity [m/s]", "robot");
+  const bool brains = recording.has_brains();
+  fmt::print("\n{:>10}  {:>14}  {:>16}  {}{}\n", "time [s]", "position [m]", "velocity [m/s]",
+             brains ? "       brain  " : "", "robot");
   const std::size_t last = result.frames.size() - 1, count = std::min(rows, last + 1);
   for (std::size_t row = 0; row < count; ++row) {
     const FrameDifference& frame = result.frames[count > 1 ? row * last / (count - 1) : 0];
-    fmt::print("{:>10.6g}  {:>14.3g}  {:>16.3g}  {}\n", frame.time, frame.position, frame.velocity,
+    fmt::print("{:>10.6g}  {:>14.3g}  {:>16.3g}  {}{}\n", frame.time, frame.position, frame.velocity,
+               brains ? fmt::format("{:>12.3g}  ", frame.brain) : "",
                frame.same ? "" : printable(recording.robots()[frame.robot].group));
   }
   fmt::print("\n");
@@ -219,7 +251,8 @@ void print_text(const Verification& result, const TrajectoryReader& recording, c
              printable(recording.device_name()), result.device);
   const FrameDifference* first = result.first_difference();
   if (!first) {
-    fmt::print("same: positions and velocities are identical, bit for bit\n");
+    fmt::print("same: {} are identical, bit for bit\n",
+               recording.has_brains() ? "positions, velocities, senses and neurons" : "positions and velocities");
     return;
   }
   print_table(result, recording);
@@ -263,9 +296,10 @@ void add_verify_command(const Command& program, const Choose& choose) {
   add_parameters(command, options->device, "Options");
   command.find_option("--threads")->on_first_screen();
   command.set_footer(
-      "Starts at the first frame and compares positions and velocities at all others. On the kind of device that made\n"
-      "the recording they are the same bit for bit; elsewhere the table says how far they part. Frames between\n"
-      "two steps are interpolated again. What a program changed while it recorded, such as materials or actuators, is\n"
+      "Starts at the first frame and compares positions and velocities at all others, and the senses and neurons that\n"
+      "mercury run --brains recorded. On the kind of device that made the recording they are the same bit for bit;\n"
+      "elsewhere the table says how far they part. Frames between two steps are interpolated again. What a program "
+      "changed while it recorded, such as materials or actuators, is\n"
       "not repeated.\n\n"
       "Exit status: 0 the same, 1 different, 2 the file is no recording.\n\n"
       "Examples:\n"

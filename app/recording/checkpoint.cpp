@@ -276,6 +276,7 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   write_attribute(recording, "every", notes.recording->every);
   if (notes.recording->rate) write_attribute(recording, "frame_rate", *notes.recording->rate);
   write_attribute(recording, "compressed", std::uint8_t{notes.recording->compressed});
+  write_attribute(recording, "brains", std::uint8_t{notes.recording->brains});
 }
 
 void require(bool holds, const char* what) {
@@ -301,6 +302,8 @@ CheckpointNotes read_notes(hid_t group) {
                      .frames = read_attribute<std::int64_t>(recording, "frames"),
                      .every = read_attribute<std::int64_t>(recording, "every"),
                      .compressed = read_attribute<std::uint8_t>(recording, "compressed") != 0};
+  if (has_attribute(recording, "brains"))  // of earlier versions without
+    notes.recording->brains = read_attribute<std::uint8_t>(recording, "brains") != 0;
   if (has_attribute(recording, "frame_rate")) {
     notes.recording->rate = read_attribute<double>(recording, "frame_rate");
     require(*notes.recording->rate > 0 && std::isfinite(*notes.recording->rate), "its frame_rate is out of range");

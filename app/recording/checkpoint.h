@@ -32,7 +32,7 @@ struct CheckpointRecording {
   std::int64_t frames = 0;       // that it has up to the checkpoint
   std::int64_t every = 1;        // steps
   std::optional<double> rate;    // instead: frames per second
-  bool compressed = false;
+  bool compressed = false, brains = false;
   friend bool operator==(const CheckpointRecording&, const CheckpointRecording&) = default;
 };
 

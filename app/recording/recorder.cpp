@@ -15,6 +15,11 @@ std::vector<const Robot*> robots_of(const Simulation& simulation) {
   return robots;
 }
 
+bool records_brains(const Simulation& simulation, const RecordingOptions& options) {
+  if (options.brains && !simulation.has_brains()) throw ParameterError("brains", "none of the robots has a brain");
+  return options.brains;
+}
+
 FramePlaces places_of(const Simulation& simulation, const RecordingOptions& options, std::int64_t first) {
   return options.rate ? FramePlaces(first, *options.rate, simulation.configuration().dt)
                       : FramePlaces(first, options.every);
@@ -30,6 +35,7 @@ TrajectoryHeader header_of(const Simulation& simulation, const RecordingOptions&
           .frame_rate = options.rate,
           .expected_frames = options.last_step ? places.count(*options.last_step - first) : 0,
           .time = simulation.clock(),
+          .brains = records_brains(simulation, options),
           .deflate = options.deflate,
           .watch = shown_work()};
 }
@@ -52,13 +58,15 @@ Recorder::Recorder(const Simulation& simulation, const std::filesystem::path& pa
   TrajectoryReader& before = start.recording;
   const auto frames = static_cast<std::size_t>(start.frames);
   if (frames < 1 || before.frames() < frames || before.every() != places_.every() || before.frame_rate() != rate_ ||
-      before.mass_count() != simulation.mass_count() || before.robots().size() != simulation.size() ||
-      before.step(frames - 1) > simulation.steps())
+      before.mass_count() != simulation.mass_count() || before.has_brains() != options.brains ||
+      before.robots().size() != simulation.size() || before.step(frames - 1) > simulation.steps())
     throw InputError(before.path().string(), "is not the beginning of this recording");
   for (std::size_t i = 0; i < frames; ++i) {
     const TrajectoryWriter::Frame frame = writer_.add(before.step(i), before.time(i));
     std::ranges::copy(before.positions(i), frame.positions.begin());
     std::ranges::copy(before.velocities(i), frame.velocities.begin());
+    std::ranges::copy(before.senses(i), frame.senses.begin());
+    std::ranges::copy(before.neurons(i), frame.neurons.begin());
     writer_.commit();
   }
   places_ = places_of(simulation, options, before.step(0));
@@ -91,6 +99,7 @@ void Recorder::take() {
             : writer_.add(simulation_.steps(), simulation_.time());
   simulation_.read_positions(frame.positions);
   simulation_.read_velocities(frame.velocities);
+  if (!frame.senses.empty() || !frame.neurons.empty()) simulation_.read_brains(frame.senses, frame.neurons);
   if (before_) {
     const auto mix = [&](std::vector<Vec3>& earlier, std::span<Vec3> now) {
       interpolate(earlier, now, place.share);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records a simulation while it runs: a frame every few steps, or a number of them per second.
+// Records a simulation while it runs: a frame every few steps, or a number of them per second. Senses and neurons are
+// those of the last thought; of a frame between two steps, those with which the later one was made.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,7 @@ struct RecordingOptions {
   std::optional<double> rate;                         // instead: frames per second, at most one per step
   std::optional<std::int64_t> first_step, last_step;  // where the recording begins and ends, if known
   std::optional<std::uint64_t> seed;                  // of the random robots, if any
+  bool brains = false;                                // frames have senses and neurons, too
   int deflate = 0;                                    // compression: 0 = none, 1 (fast) .. 9
 };
 
@@ -30,7 +32,8 @@ struct RecordingStart {
 
 class Recorder {
  public:
-  // Takes the first frame now. Throws like TrajectoryWriter; its messages name the option.
+  // Takes the first frame now. Throws like TrajectoryWriter; its messages name the option. Throws
+  // ParameterError("brains", ...) if the options ask for brains and no robot has one.
   Recorder(const Simulation& simulation, const std::filesystem::path& path, const RecordingOptions& options,
            const char* option = "--record");
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "app/recording/trajectory_hdf5_reading.h"
 #include "app/recording/trajectory_layout.h"
@@ -232,6 +233,7 @@ void TrajectoryReader::require_chunks(hid_t dataset, std::size_t first, std::siz
 
 void TrajectoryReader::read_robots(const WorkWatch& watch) {
   particles_ = open_group(file_, "particles");
+  if (has_member(file_, "observables")) observables_ = open_group(file_, "observables");
   const std::vector<std::string> groups = members(particles_);
   if (groups.empty()) throw Error("holds no robots");
   robots_.resize(groups.size());
@@ -243,15 +245,40 @@ void TrajectoryReader::read_robots(const WorkWatch& watch) {
       throw Error("the indices of its robots are not 0, 1, 2, ...");
     try {
       robots_[index] = read_robot(name, group);
-      require_frames(group, robots_[index].robot.masses.size());
+      const std::size_t masses = robots_[index].robot.masses.size();
+      for (const char* element : {"position", "velocity"}) require_frames(group, element, {masses, 3});
       chunk_ = std::max(chunk_, chunk_length(open_dataset(open_group(group, "position"), "value")));
     } catch (const std::runtime_error& error) {
       throw Error("/particles/" + name + ": " + error.what());
     }
     if (watch) watch("reading the recording", ++done, groups.size());
   }
-  offsets_.assign(1, 0);
-  for (const RecordedRobot& recorded : robots_) offsets_.push_back(offsets_.back() + recorded.robot.masses.size());
+  for (const RecordedRobot& recorded : robots_) {
+    positions_.offsets.push_back(positions_.width() + recorded.robot.masses.size());
+    read_brains(recorded.group, recorded.robot);
+  }
+  velocities_.offsets = robot_positions_.offsets = robot_velocities_.offsets = positions_.offsets;
+  robot_senses_.offsets = senses_.offsets;
+  robot_neurons_.offsets = neurons_.offsets;
+}
+
+// Earlier versions recorded none.
+void TrajectoryReader::read_brains(const std::string& name, const Robot& robot) {
+  std::size_t senses = 0, neurons = 0;
+  if (robot.brain && observables_ >= 0 && has_member(observables_, name)) {
+    try {
+      const Handle group = open_group(observables_, name);
+      const BrainLayout layout = brain_layout(robot);
+      senses = layout.senses.size();
+      neurons = layout.neurons.size();
+      if (senses > 0) require_frames(group, "senses", {senses});
+      if (neurons > 0) require_frames(group, "neurons", {neurons});
+    } catch (const std::runtime_error& error) {
+      throw Error("/observables/" + name + ": " + error.what());
+    }
+  }
+  senses_.offsets.push_back(senses_.width() + senses);
+  neurons_.offsets.push_back(neurons_.width() + neurons);
 }
 
 RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group) const {
@@ -274,13 +301,13 @@ RecordedRobot TrajectoryReader::read_robot(const std::string& name, hid_t group)
   return recorded;
 }
 
-void TrajectoryReader::require_frames(hid_t robot, std::size_t masses) const {
-  for (const char* element : {"position", "velocity"}) {
-    Extent extent = extent_of(open_dataset(open_group(robot, element), "value"));
-    if (unfinished_ && !extent.empty()) extent[0] = std::min<hsize_t>(extent[0], steps_.size());  // it may be ahead
-    if (extent != Extent{steps_.size(), masses, 3})
-      throw Error(std::string(element) + "/value has another shape than its masses and the file's frames");
-  }
+void TrajectoryReader::require_frames(hid_t robot, const char* element, const std::vector<std::size_t>& row) const {
+  Extent extent = extent_of(open_dataset(open_group(robot, element), "value"));
+  if (unfinished_ && !extent.empty()) extent[0] = std::min<hsize_t>(extent[0], steps_.size());  // it may be ahead
+  Extent wanted{steps_.size()};
+  wanted.insert(wanted.end(), row.begin(), row.end());
+  if (extent != wanted)
+    throw Error(std::string(element) + "/value has another shape than its robot and the file's frames");
 }
 
 // A clock that does not agree with the first frame is not that of its simulation: an older program did not record it.
@@ -317,46 +344,75 @@ BatchState TrajectoryReader::state(std::size_t frame) {
   for (std::size_t i = 0; i < robots_.size(); ++i)
     if (const auto& at = robots_[i].exploded_at; at && *at < time(frame))
       state.explosions.push_back({i, state.clock.step, *at, robots_[i].culprit_spring.value_or(no_spring)});
+  if (has_brains()) add_brains(state, frame);
   return state;
+}
+
+void TrajectoryReader::add_brains(BatchState& state, std::size_t frame) {
+  if (brains_at_start_.empty())
+    for (const RecordedRobot& recorded : robots_) brains_at_start_.push_back(brain_at_start(recorded.robot));
+  state.brains = brains_at_start_;
+  const auto copy = [](const Block<float>& block, std::span<const float> values, std::size_t robot,
+                       std::vector<float>& to) {
+    std::ranges::copy(values.subspan(block.offsets[robot], block.width(robot)), to.begin());
+  };
+  const std::span<const float> senses = this->senses(frame), neurons = this->neurons(frame);
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    copy(senses_, senses, i, state.brains[i].senses);
+    copy(neurons_, neurons, i, state.brains[i].neurons);
+  }
 }
 
 std::size_t TrajectoryReader::frame_at(double time) const { return last_not_above(times_, time); }
 std::size_t TrajectoryReader::frame_of_step(std::int64_t step) const { return last_not_above(steps_, step); }
 
-TrajectoryReader::Block& TrajectoryReader::of_robot(Block& block, std::size_t robot) {
+template <class Value>
+TrajectoryReader::Block<Value>& TrajectoryReader::of_robot(Block<Value>& block, std::size_t robot) {
   if (block.robot != robot) block.count = 0;
   block.robot = robot;
   return block;
 }
 
-std::size_t TrajectoryReader::mass_count(const Block& block) const {
-  return block.robot == all_robots ? mass_count() : offsets_.at(block.robot + 1) - offsets_.at(block.robot);
+template <class Value>
+std::size_t TrajectoryReader::length_of(const Block<Value>& block) const {
+  const std::size_t width = block.robot == all_robots ? block.width() : block.width(block.robot);
+  return std::clamp<std::size_t>(held_bytes / (sizeof(Value) * width), 1, chunk_);
 }
 
-std::size_t TrajectoryReader::length_of(const Block& block) const {
-  return std::clamp<std::size_t>(held_bytes / (sizeof(Vec3) * mass_count(block)), 1, chunk_);
-}
-
-std::span<const Vec3> TrajectoryReader::read(Block& block, std::size_t frame) {
+template <class Value>
+std::span<const Value> TrajectoryReader::read(Block<Value>& block, std::size_t frame) {
   if (frame >= frames()) throw std::out_of_range("frame " + std::to_string(frame) + " of " + std::to_string(frames()));
+  const std::size_t width = block.robot == all_robots ? block.width() : block.width(block.robot);
+  if (width == 0) return {};
   if (frame < block.first || frame >= block.first + block.count)
     guarded([&] { read_block(block, frame - frame % length_of(block)); });
-  return std::span(block.values).subspan((frame - block.first) * mass_count(block), mass_count(block));
+  return std::span(std::as_const(block.values)).subspan((frame - block.first) * width, width);
 }
 
-void TrajectoryReader::read_block(Block& block, std::size_t first) {
+template <class Value>
+void TrajectoryReader::read_block(Block<Value>& block, std::size_t first) {
   block.count = 0;  // none, in case reading throws
   const bool all = block.robot == all_robots;
-  const std::size_t count = std::min(length_of(block), frames() - first), width = mass_count(block);
   const std::size_t first_robot = all ? 0 : block.robot, last_robot = all ? robots_.size() : block.robot + 1;
+  const std::size_t count = std::min(length_of(block), frames() - first),
+                    width = block.offsets[last_robot] - block.offsets[first_robot];
+  const auto extent_of_frames = [&](hsize_t frames, hsize_t values) {
+    return std::is_same_v<Value, Vec3> ? Extent{frames, values, 3} : Extent{frames, values};
+  };
+  const hid_t parent = std::is_same_v<Value, Vec3> ? particles_ : observables_;
+  const Extent held_extent = extent_of_frames(count, width);
   block.values.resize(count * width);
   for (std::size_t i = first_robot; i < last_robot; ++i) {
-    const hsize_t masses = offsets_[i + 1] - offsets_[i], place = offsets_[i] - offsets_[first_robot];
-    const Handle dataset = open_dataset(open_group(open_group(particles_, robots_[i].group), block.element), "value");
-    const Handle stored(H5Dget_space(dataset)), held(H5Screate_simple(3, Extent{count, width, 3}.data(), nullptr));
-    const Extent extent{count, masses, 3};
-    checked(H5Sselect_hyperslab(stored, H5S_SELECT_SET, Extent{first, 0, 0}.data(), nullptr, extent.data(), nullptr));
-    checked(H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, place, 0}.data(), nullptr, extent.data(), nullptr));
+    if (block.width(i) == 0) continue;
+    const Handle dataset = open_dataset(open_group(open_group(parent, robots_[i].group), block.element), "value");
+    const Handle stored(H5Dget_space(dataset)),
+        held(H5Screate_simple(static_cast<int>(held_extent.size()), held_extent.data(), nullptr));
+    const Extent extent = extent_of_frames(count, block.width(i));
+    Extent from(extent.size(), 0), to(extent.size(), 0);
+    from[0] = first;
+    to[1] = block.offsets[i] - block.offsets[first_robot];
+    checked(H5Sselect_hyperslab(stored, H5S_SELECT_SET, from.data(), nullptr, extent.data(), nullptr));
+    checked(H5Sselect_hyperslab(held, H5S_SELECT_SET, to.data(), nullptr, extent.data(), nullptr));
     if (unfinished_) require_chunks(dataset, first, count);
     if (unfinished_ && first + count == frames())
       read_last_rows(dataset, H5T_NATIVE_FLOAT, held, stored, block.values.data());
@@ -366,5 +422,11 @@ void TrajectoryReader::read_block(Block& block, std::size_t first) {
   block.first = first;
   block.count = count;
 }
+
+// What the members in the header use.
+template std::span<const Vec3> TrajectoryReader::read(Block<Vec3>&, std::size_t);
+template std::span<const float> TrajectoryReader::read(Block<float>&, std::size_t);
+template TrajectoryReader::Block<Vec3>& TrajectoryReader::of_robot(Block<Vec3>&, std::size_t);
+template TrajectoryReader::Block<float>& TrajectoryReader::of_robot(Block<float>&, std::size_t);
 
 }  // namespace mercury

@@ -45,9 +45,9 @@ std::string author() {
   return name.empty() ? user->pw_name : std::string(name);
 }
 
-std::size_t block_length(std::size_t masses, std::size_t largest, std::int64_t expected_frames) {
-  std::size_t length =
-      std::min({longest_block, held_bytes / (2 * sizeof(Vec3) * masses), chunk_bytes / (sizeof(Vec3) * largest)});
+// `bytes` = of a frame, `largest` = of a robot's part of one dataset.
+std::size_t block_length(std::size_t bytes, std::size_t largest, std::int64_t expected_frames) {
+  std::size_t length = std::min({longest_block, held_bytes / bytes, chunk_bytes / largest});
   length = std::max<std::size_t>(1, length);
   if (expected_frames <= 0) return length;
   const auto frames = static_cast<std::size_t>(expected_frames), blocks = (frames - 1) / length + 1;
@@ -117,7 +117,7 @@ void TrajectoryWriter::give_up(const std::string& reason) {
   failed_ = true;
   const bool complete = reserved_ > 0 && failure_->number == 0 && is_completed();
   if (!complete && failure_->number == 0) failure_->number = EIO;  // nothing more is written
-  for (Handle* handle : {&particles_, &connectivity_, &parameters_, &file_}) Handle(std::move(*handle));
+  for (Handle* handle : {&particles_, &connectivity_, &parameters_, &observables_, &file_}) Handle(std::move(*handle));
   if (flushed_ == 0 || !(complete || survives_kill())) throw write_failure(path_, reason, "nothing was kept");
   unfinished_.keep();
   throw write_failure(
@@ -148,12 +148,13 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
   if (std::filesystem::is_directory(path, ignored)) throw InputError(option, path.string() + " is a folder");
 
   std::vector<std::string> names;
-  std::size_t largest = 1;
-  offsets_.push_back(0);
   for (const Robot* robot : robots) {
     names.push_back(robot->name);
-    offsets_.push_back(offsets_.back() + robot->masses.size());
-    largest = std::max(largest, robot->masses.size());
+    positions_.add_robot(robot->masses.size());
+    velocities_.add_robot(robot->masses.size());
+    const BrainLayout layout = header.brains ? brain_layout(*robot) : BrainLayout{};
+    senses_.add_robot(layout.senses.size());
+    neurons_.add_robot(layout.neurons.size());
   }
   groups_ = group_names(names);
   prepare();
@@ -166,13 +167,14 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& path, const Traj
     if (is_fault_of_machine(number)) throw write_failure(path_, reason, "nothing was kept");
     throw InputError(option, path.string() + " cannot be written: " + reason);
   }
-  frames_per_block_ = block_length(std::max<std::size_t>(1, offsets_.back()), largest, header.expected_frames);
-  positions_.resize(frames_per_block_ * offsets_.back());
-  velocities_.resize(frames_per_block_ * offsets_.back());
+  const std::size_t largest =
+      std::max({positions_.largest_bytes(), senses_.largest_bytes(), neurons_.largest_bytes(), sizeof(Vec3)});
+  hold(block_length(std::max(frame_bytes(), sizeof(Vec3)), largest, header.expected_frames));
   guarded([&] {
     write_header(header);
     for (std::size_t i = 0; i < robots.size(); ++i) {
       write_robot(i, *robots[i], materials.subspan(i * max_materials, materials_of(*robots[i]).size()));
+      write_brain_names(i, *robots[i]);
       if (header.watch) header.watch("writing robots", i + 1, robots.size());
     }
     if (header.more) header.more(file_);
@@ -332,39 +334,51 @@ void TrajectoryWriter::write_brains(hid_t particles, const Robot& robot) {
   if (robot.brain) write_text_dataset(particles, "brain", brain_as_json(*robot.brain));
 }
 
-// All elements share one time axis, as H5MD allows.
-void TrajectoryWriter::create_frames(hid_t particles, std::size_t masses) {
-  for (const auto& [element, unit] : {std::pair{"position", "m"}, std::pair{"velocity", "m s-1"}}) {
-    const Handle group = create_group(particles, element);
-    write_unit(create_growing(group, "value", H5T_IEEE_F32LE,
-                              {.row = {masses, 3}, .chunk = frames_per_block_, .deflate = deflate_}),
-               unit);
-    link(parameters_, "step", group, "step");
-    link(parameters_, "time", group, "time");
-  }
+// Beside the values: what each column is.
+void TrajectoryWriter::write_brain_names(std::size_t index, const Robot& robot) {
+  if (senses_.width(index) == 0 && neurons_.width(index) == 0) return;
+  if (hid_t{observables_} < 0) observables_ = create_ordered_group(file_, "observables");
+  const Handle group = create_group(observables_, groups_[index]);
+  const BrainLayout layout = brain_layout(robot);
+  if (!layout.senses.empty()) write_text_dataset(create_group(group, "senses"), "name", layout.senses);
+  if (!layout.neurons.empty()) write_text_dataset(create_group(group, "neurons"), "name", layout.neurons);
+}
+
+std::size_t TrajectoryWriter::frame_bytes() const {
+  return positions_.bytes() + velocities_.bytes() + senses_.bytes() + neurons_.bytes();
+}
+
+void TrajectoryWriter::hold(std::size_t frames_per_block) {
+  frames_per_block_ = frames_per_block;
+  positions_.hold(frames_per_block);
+  velocities_.hold(frames_per_block);
+  senses_.hold(frames_per_block);
+  neurons_.hold(frames_per_block);
 }
 
 // With the first block. From here on, the file can be read at every moment.
 void TrajectoryWriter::start_frames() {
   const auto count = static_cast<std::size_t>(frames_);
-  if (count > 0 && count < frames_per_block_) {
-    frames_per_block_ = count;
-    for (auto* values : {&positions_, &velocities_}) {
-      values->resize(count * offsets_.back());
-      values->shrink_to_fit();
-    }
+  if (count > 0 && count < frames_per_block_) hold(count);
+  for (std::size_t robot = 0; robot < groups_.size(); ++robot) {
+    const auto create = [&](const auto& series, hid_t parent) {
+      if (series.width(robot) > 0)
+        series.create(robot, open_group(parent, groups_[robot]), parameters_, frames_per_block_, deflate_);
+    };
+    create(positions_, particles_);
+    create(velocities_, particles_);
+    create(senses_, observables_);
+    create(neurons_, observables_);
   }
-  for (std::size_t robot = 0; robot < groups_.size(); ++robot)
-    create_frames(open_group(particles_, groups_[robot]), offsets_[robot + 1] - offsets_[robot]);
   if (survives_kill()) checked(H5Fstart_swmr_write(file_));
   started_ = true;
 }
 
 TrajectoryWriter::Frame TrajectoryWriter::add(std::int64_t step, double time) {
-  const std::size_t masses = offsets_.back(), first = static_cast<std::size_t>(frames_ - written_) * masses;
+  const auto index = static_cast<std::size_t>(frames_ - written_);
   next_step_ = step;
   next_time_ = time;
-  return {std::span(positions_).subspan(first, masses), std::span(velocities_).subspan(first, masses)};
+  return {positions_.frame(index), velocities_.frame(index), senses_.frame(index), neurons_.frame(index)};
 }
 
 void TrajectoryWriter::commit() {
@@ -383,8 +397,9 @@ void TrajectoryWriter::commit() {
 // HDF5 cannot complete a file on a full disk. So that it never meets one, there must be room for the block, and for all
 // that follows if it is the last, before anything of it is written.
 void TrajectoryWriter::reserve_block() {
-  constexpr hsize_t metadata = 1 << 20, metadata_per_robot = 4 << 10;  // of which 1.8 kB with the first block
-  const hsize_t block = 2 * sizeof(Vec3) * frames_per_block_ * offsets_.back();
+  constexpr hsize_t metadata = 1 << 20;
+  const hsize_t metadata_per_robot = senses_.width() + neurons_.width() > 0 ? 8 << 10 : 4 << 10;  // with room to spare
+  const hsize_t block = frames_per_block_ * frame_bytes();
   const hsize_t blocks = deflate_ > 0 ? 2 : 1;  // a compressed one that was flushed early is written again elsewhere
   hsize_t size = 0;
   checked(H5Fget_filesize(file_, &size));
@@ -402,21 +417,18 @@ void TrajectoryWriter::write_block() {
   if (!survives_kill() && (!started_ || frames_ > written_)) reserve_block();
   if (!started_) start_frames();
   if (frames_ == written_) return;
+  const auto first = static_cast<std::size_t>(written_), count = static_cast<std::size_t>(frames_ - written_);
   for (std::size_t robot = 0; robot < groups_.size(); ++robot) {
-    write_frames(robot, "position", positions_);
-    write_frames(robot, "velocity", velocities_);
+    const auto write = [&](const auto& series, hid_t parent) {
+      if (series.width(robot) == 0) return;
+      series.write(robot, Handle(H5Gopen2(parent, groups_[robot].c_str(), H5P_DEFAULT)), first, count);
+    };
+    write(positions_, particles_);
+    write(velocities_, particles_);
+    write(senses_, observables_);
+    write(neurons_, observables_);
   }
   written_ = frames_;
-}
-
-void TrajectoryWriter::write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values) {
-  const auto first = static_cast<hsize_t>(written_), count = static_cast<hsize_t>(frames_ - written_);
-  const hsize_t masses = offsets_[robot + 1] - offsets_[robot];
-  const Handle group(H5Gopen2(particles_, groups_[robot].c_str(), H5P_DEFAULT)), series = open_group(group, element);
-  const Handle held(H5Screate_simple(3, Extent{count, offsets_.back(), 3}.data(), nullptr));
-  checked(H5Sselect_hyperslab(held, H5S_SELECT_SET, Extent{0, offsets_[robot], 0}.data(), nullptr,
-                              Extent{count, masses, 3}.data(), nullptr));
-  append_rows(open_dataset(series, "value"), H5T_NATIVE_FLOAT, first, count, values.data(), held);
 }
 
 bool TrajectoryWriter::survives_kill() const { return groups_.size() <= most_robots_flushed; }
@@ -447,7 +459,8 @@ void TrajectoryWriter::announce(std::int64_t count) {
 
 // Closes the file, as long as its content.
 void TrajectoryWriter::close() {
-  for (Handle* group : {&particles_, &connectivity_, &parameters_}) group->close();
+  for (Handle* group : {&particles_, &connectivity_, &parameters_, &observables_})
+    if (hid_t{*group} >= 0) group->close();
   checked(H5Fflush(file_, H5F_SCOPE_LOCAL));
   file_.close();
   std::error_code ignored;

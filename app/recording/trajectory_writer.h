@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the positions and velocities of a batch, frame by frame, into an H5MD 1.1 file (docs/formats.md).
+// Writes the positions and velocities of a batch, and if wanted what its brains sense and do, frame by frame, into an
+// H5MD 1.1 file (docs/formats.md).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "app/base/interrupt.h"
+#include "app/recording/frame_series.h"
 #include "app/recording/hdf5_handle.h"
 #include "app/recording/recording_file.h"
 #include "mercury/clock.h"
@@ -35,6 +37,7 @@ struct TrajectoryHeader {
   std::optional<double> frame_rate;         // frames per second, also between steps; none = at steps
   std::int64_t expected_frames = 0;         // 0 = unknown
   Clock time;                               // of the simulation: its base, from which times count
+  bool brains = false;                      // frames have the senses and neurons of robots with brains, too
   int deflate = 0;                          // compression of the frames: 0 = none, 1 (fast) .. 9
   double flush_period = 5;                  // [s] of wall time from one flush to the next; 0 = flush each frame
   double (*clock)() = wall_clock;           // [s]; tests set their own
@@ -61,7 +64,7 @@ bool flush_is_due(double since_flush, double last_frame_took, double period);
 // writer and multiple readers (SWMR): metadata reaches the file after what it points to. The file announces frames in
 // the order
 //
-//   positions and velocities of all robots  ->  flush  ->  step and time  ->  flush
+//   positions, velocities and so on of all robots  ->  flush  ->  step and time  ->  flush
 //
 // so the length of step is a number of frames that all robots have. In this mode no dataset may be created, so the
 // datasets of the frames are created with the first block, when the speed of the simulation is known: a slow one gets
@@ -75,9 +78,11 @@ class TrajectoryWriter {
                    std::span<const Robot* const> robots, std::span<const Material> materials, const char* option);
   ~TrajectoryWriter();
 
-  // A frame that the caller fills: one element per mass, robot after robot.
+  // A frame that the caller fills: one element per mass, robot after robot; with brains also one per sense and per
+  // neuron, in the order of BrainLayout.
   struct Frame {
     std::span<Vec3> positions, velocities;
+    std::span<float> senses, neurons;
   };
   // The next frame. Fill it, then call commit(); without that it does not count. Steps increase from frame to frame.
   Frame add(std::int64_t step, double time);
@@ -107,11 +112,12 @@ class TrajectoryWriter {
   void write_materials(hdf5::Id particles, const Robot& robot, std::span<const Material> materials);
   void write_actuators(hdf5::Id particles, const Robot& robot);
   void write_brains(hdf5::Id particles, const Robot& robot);
+  void write_brain_names(std::size_t index, const Robot& robot);
+  void hold(std::size_t frames_per_block);
   void start_frames();
-  void create_frames(hdf5::Id particles, std::size_t masses);
   void reserve_block();
   void write_block();
-  void write_frames(std::size_t robot, const char* element, const std::vector<Vec3>& values);
+  std::size_t frame_bytes() const;
   bool survives_kill() const;  // otherwise the file can be read only once it is complete
   template <class Work>
   void guarded(const Work& work);
@@ -124,11 +130,11 @@ class TrajectoryWriter {
   std::filesystem::path path_;
   UnfinishedFile unfinished_;
   std::unique_ptr<WriteFailure> failure_;
-  hdf5::Handle file_, particles_, connectivity_, parameters_;
-  std::vector<std::string> groups_;           // names in /particles
-  std::vector<std::size_t> offsets_;          // of each robot's first mass in a frame, then the number of masses
-  std::vector<Vec3> positions_, velocities_;  // frames_per_block_ times offsets_.back() elements
-  std::vector<std::int64_t> steps_;           // of the frames since the last flush
+  hdf5::Handle file_, particles_, connectivity_, parameters_, observables_;
+  std::vector<std::string> groups_;  // names in /particles, and of those with brains in /observables
+  FrameSeries<Vec3> positions_{"position", "m"}, velocities_{"velocity", "m s-1"};
+  FrameSeries<float> senses_{"senses", ""}, neurons_{"neurons", ""};
+  std::vector<std::int64_t> steps_;  // of the frames since the last flush
   std::vector<double> times_;
   std::int64_t next_step_ = 0;  // of the frame that is being filled
   double next_time_ = 0;        // [s]

@@ -28,7 +28,8 @@ constexpr const char* description =
     "    recording = mercurysim.Recording(\"run.h5\")\n"
     "    start, end = recording.positions(0), recording.positions(-1)\n"
     "    first = end[recording.offsets[0] : recording.offsets[1]]  # of the first robot\n\n"
-    "len() is the number of frames. Raises InputError if the file is not a recording or is damaged.";
+    "len() is the number of frames. senses() and neurons() are those of robots with brains, if they were recorded. "
+    "Raises InputError if the file is not a recording or is damaged.";
 
 // An array of its own, since the reader uses its memory again.
 nb::object masses_of(std::span<const Vec3> masses) {
@@ -63,11 +64,53 @@ nb::object per_frame(const TrajectoryReader& recording, Of of) {
   return owned_array(std::move(values), {count});
 }
 
+std::size_t robot_of(const TrajectoryReader& recording, nb::handle robot) {
+  const std::int64_t index = whole_from("robot", robot);
+  if (index < 0 || index >= static_cast<std::int64_t>(recording.robots().size()))
+    throw std::out_of_range("robot " + std::to_string(index) + " is out of range, the recording has " +
+                            std::to_string(recording.robots().size()));
+  return static_cast<std::size_t>(index);
+}
+
+// A row per frame.
+using SeriesOfRobot = std::span<const float> (TrajectoryReader::*)(std::size_t, std::size_t);
+nb::object brain_series(TrajectoryReader& recording, nb::handle robot, SeriesOfRobot series) {
+  if (!recording.has_brains())
+    throw InputError(recording.path().string(),
+                     "has no senses and neurons; Recorder(brains=True) and mercury run --brains record them");
+  const std::size_t index = robot_of(recording, robot);
+  std::vector<float> values;
+  std::size_t width = 0;
+  for (std::size_t frame = 0; frame < recording.frames(); ++frame) {
+    const std::span<const float> row = (recording.*series)(index, frame);
+    width = row.size();
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return owned_array(std::move(values), {recording.frames(), width});
+}
+
+nb::object brain_frame(TrajectoryReader& recording, nb::handle robot) {
+  const nb::module_ pandas = nb::module_::import_("pandas");
+  const BrainLayout layout = brain_layout(recording.robots()[robot_of(recording, robot)].robot);
+  const nb::object index =
+      pandas.attr("Index")(per_frame<double>(recording, &TrajectoryReader::time), nb::arg("name") = "time");
+  nb::dict parts;
+  const auto add = [&](const char* name, const std::vector<std::string>& names, SeriesOfRobot series) {
+    nb::list columns;
+    for (const std::string& column : names) columns.append(column);
+    parts[name] = pandas.attr("DataFrame")(brain_series(recording, robot, series), nb::arg("index") = index,
+                                           nb::arg("columns") = columns);
+  };
+  add("senses", layout.senses, &TrajectoryReader::senses_of);
+  add("neurons", layout.neurons, &TrajectoryReader::neurons_of);
+  return pandas.attr("concat")(parts, nb::arg("axis") = 1);
+}
+
 // Records a batch that Python steps.
 class BatchRecorder {
  public:
   BatchRecorder(nb::object batch, const std::filesystem::path& path, std::optional<std::int64_t> every,
-                std::optional<double> fps)
+                std::optional<double> fps, bool brains)
       : batch_(std::move(batch)), every_(every) {
     if (every.has_value() == fps.has_value())
       throw ParameterError("every, fps", "give one of them: steps per frame, or frames per second");
@@ -78,7 +121,7 @@ class BatchRecorder {
     of_batch().use([&](const Simulation& simulation) {
       robots_ = simulation.size();
       if (fps) require_frame_rate("fps", *fps, simulation.configuration().dt);
-      recorder_.emplace(simulation, path, RecordingOptions{.every = every.value_or(1), .rate = fps});
+      recorder_.emplace(simulation, path, RecordingOptions{.every = every.value_or(1), .rate = fps, .brains = brains});
     });
   }
 
@@ -146,6 +189,7 @@ constexpr const char* recorder_description =
     "Give `every` (steps per frame) or `fps` (frames per second, exactly; interpolated where they fall between two "
     "steps). The first frame is the batch as it is when the recording begins. step() steps the batch and takes all "
     "frames on the way; with `every`, a program may also step the batch itself and call frame() at each frame's step. "
+    "With `brains`, frames also have the senses and neurons of robots with brains. "
     "The file is there once the recorder is closed, and replaces one of that name. Raises InputError for frames at "
     "other steps, and after robots came or went.";
 
@@ -153,16 +197,18 @@ void bind_recorder(nb::module_& module) {
   nb::class_<BatchRecorder>(module, "Recorder", recorder_description)
       .def(
           "__init__",
-          [](BatchRecorder* self, nb::handle_t<Batch> batch, nb::handle path, nb::handle every, nb::handle fps) {
+          [](BatchRecorder* self, nb::handle_t<Batch> batch, nb::handle path, nb::handle every, nb::handle fps,
+             bool brains) {
             std::optional<std::int64_t> steps;
             std::optional<double> rate;
             if (!every.is_none()) steps = whole_from("every", every, 1);
             if (!fps.is_none()) rate = number_from("fps", fps);
-            new (self) BatchRecorder(nb::borrow(batch), path_from("path", path), steps, rate);
+            new (self) BatchRecorder(nb::borrow(batch), path_from("path", path), steps, rate, brains);
           },
           nb::arg("batch"), nb::arg("path"), nb::arg("every") = nb::none(), nb::arg("fps") = nb::none(),
+          nb::arg("brains") = false,
           nb::sig("def __init__(self, batch: Batch, path: str | os.PathLike[str], every: int | None = None, "
-                  "fps: float | None = None) -> None"))
+                  "fps: float | None = None, brains: bool = False) -> None"))
       .def(
           "step", [](BatchRecorder& self, nb::handle n) { self.step(whole_from("n", n, 0)); }, nb::arg("n") = 1,
           nb::sig("def step(self, n: int = 1) -> None"),
@@ -218,6 +264,28 @@ void bind_recording(nb::module_& module) {
           [](TrajectoryReader& self, nb::handle frame) { return masses_of(self.velocities(frame_of(self, frame))); },
           nb::arg("frame"), nb::sig("def velocities(self, frame: int) -> numpy.typing.NDArray[numpy.float32]"),
           "Velocities of all masses in a frame, (masses, 3) [m/s]; -1 = the last frame. Raises IndexError.")
+      .def(
+          "senses",
+          [](TrajectoryReader& self, nb::handle robot) {
+            return brain_series(self, robot, &TrajectoryReader::senses_of);
+          },
+          nb::arg("robot"), nb::sig("def senses(self, robot: int) -> numpy.typing.NDArray[numpy.float32]"),
+          "What a robot's brain sampled last in each frame, (frames, senses), named in Robot.brain_layout; no columns "
+          "without a brain. Raises InputError if the recording has none (brains=True, mercury run --brains).")
+      .def(
+          "neurons",
+          [](TrajectoryReader& self, nb::handle robot) {
+            return brain_series(self, robot, &TrajectoryReader::neurons_of);
+          },
+          nb::arg("robot"), nb::sig("def neurons(self, robot: int) -> numpy.typing.NDArray[numpy.float32]"),
+          "Its neurons, (frames, neurons), as senses().")
+      .def("brain_frame", &brain_frame, nb::arg("robot"), nb::sig("def brain_frame(self, robot: int) -> typing.Any"),
+           "senses() and neurons() as a DataFrame of pandas, with the time as its index and columns such as "
+           "(\"neurons\", "
+           "\"motor 0\").")
+      .def_prop_ro(
+          "has_brains", [](const TrajectoryReader& self) { return self.has_brains(); },
+          "Whether it has senses and neurons.")
       .def_prop_ro(
           "program", [](const TrajectoryReader& self) { return self.program(); }, "What wrote it: \"mercury 0.2.0\".")
       .def_prop_ro(

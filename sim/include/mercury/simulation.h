@@ -169,6 +169,10 @@ class Simulation {
   bool has_brains() const;
   BrainState brain_state(std::size_t robot) const;  // empty without a brain
   std::vector<BrainState> brain_states() const;     // of all robots
+  // The senses as they were sampled last, and the neurons, robot after robot in the order of BrainLayout: a copy of
+  // less than the states. Each span has as many elements as the brains of all robots together, otherwise it throws
+  // std::invalid_argument.
+  void read_brains(std::span<float> senses, std::span<float> neurons) const;
   // Weights and states of all brains as shared arrays, which a program may also write: the weights of a population are
   // replaced, and its senses read, without leaving the device. Throws InputError unless all robots have brains with as
   // many weights, neurons and senses.

@@ -64,6 +64,8 @@ class Checkpoint : public FolderTest {
       EXPECT_EQ(first.time(i), second.time(i));
       EXPECT_TRUE(std::ranges::equal(first.positions(i), second.positions(i))) << "frame " << i;
       EXPECT_TRUE(std::ranges::equal(first.velocities(i), second.velocities(i))) << "frame " << i;
+      EXPECT_TRUE(std::ranges::equal(first.senses(i), second.senses(i))) << "frame " << i;
+      EXPECT_TRUE(std::ranges::equal(first.neurons(i), second.neurons(i))) << "frame " << i;
     }
   }
 };
@@ -157,6 +159,18 @@ TEST_F(Checkpoint, ARecordingBetweenStepsIsContinued) {
   robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
   expect_same(path("a.h5"), path("whole.h5"));
   EXPECT_EQ(TrajectoryReader(path("a.h5")).frame_rate(), 700);
+}
+
+TEST_F(Checkpoint, ARecordingWithBrainsIsContinued) {
+  const Arguments brains{"sample:hunter", "--target", "1,2,0", "--physics", "real", "--brains", "--every", "7"};
+  robots_of(mercury(run_ + Arguments{"--record", path("whole.h5")} + brains));
+  kill(Arguments{"--record", path("a.h5")} + brains);
+  EXPECT_THAT(refused(resume_ + Arguments{"--record", path("a.h5"), "--brains"}).messages,
+              HasSubstr("--brains: is that of " + path("c.h5") + " in a resumed run; leave it out"));
+  robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
+  expect_same(path("a.h5"), path("whole.h5"));
+  EXPECT_TRUE(TrajectoryReader(path("a.h5")).has_brains());
+  EXPECT_EQ(mercury({"verify", path("a.h5"), "--quiet"}).status, 0);
 }
 
 TEST_F(Checkpoint, ARecordingThatIsNotThereIsReported) {

@@ -47,6 +47,21 @@ inline Robot own_points(const std::string& name) {
   return robot;
 }
 
+// Its muscle follows a recurrent net of a clock, the depth and its own strain, 0.004 s at a time.
+inline Robot thinking_pair(const std::string& name) {
+  Robot robot = pair(name);
+  robot.actuators = {{"muscle", {1}}};
+  robot.sensors = {{.kind = SensorKind::clock, .frequency = 30, .phase = 0.3f},
+                   {.kind = SensorKind::depth},
+                   {.kind = SensorKind::strain, .actuator = "muscle", .gain = 20}};
+  NeuronLayer hidden{.name = "hidden", .neurons = 2, .alpha = {0.4f}, .bias = {0.1f, -0.2f}, .inputs = {}};
+  hidden.inputs = {{"senses", {0.5f, -1, 2, 3, 1, 0.2f, -2, 1}, {}, 0}, {"hidden", {0.1f, -0.7f, 0.8f, 0.2f}, {}, 0}};
+  NeuronLayer motor{.name = "motor", .neurons = 1, .alpha = {}, .bias = {}, .inputs = {}};
+  motor.inputs = {{"hidden", {1, -0.6f}, {}, 0}};
+  robot.brain = Brain{.period = 0.004f, .layers = {hidden, motor}};
+  return robot;
+}
+
 inline Configuration on_cpu() {
   Configuration configuration;
   configuration.device.kind = DeviceKind::cpu;

@@ -34,8 +34,9 @@ class RecordingFuzz : public FolderTest {
  protected:
   RecordingFuzz() {
     Robot robot = small_voxel_robot(0);
-    Simulation simulation(on_cpu(), std::vector{robot, own_materials("own"), own_points("points")});
-    record(simulation, path("sound.h5"), 8, 1, {.seed = 3});
+    Simulation simulation(on_cpu(),
+                          std::vector{robot, own_materials("own"), own_points("points"), thinking_pair("thinker")});
+    record(simulation, path("sound.h5"), 8, 1, {.seed = 3, .brains = true});
     sound_ = read("sound.h5");
   }
 
@@ -48,6 +49,9 @@ class RecordingFuzz : public FolderTest {
       for (std::size_t frame = 0; frame < reader.frames(); ++frame) {
         reader.positions(frame);
         reader.velocities(frame);
+        reader.senses(frame);
+        reader.neurons(frame);
+        reader.state(frame);
       }
       return "";
     } catch (const InputError& error) {
@@ -178,11 +182,11 @@ void put_announced(hid_t file, const std::string& name, hid_t type, const hdf5::
 }
 
 // Whether the reader needs the dataset. The rest is for other programs: the tables under /connectivity, and the time
-// axis of each element, which is a link.
+// axis of each element, which is a link, and the names of senses and neurons.
 bool is_read(const std::string& name) {
   const std::string last = name.substr(name.rfind('/') + 1);
   if (last == "step" || last == "time") return name.starts_with("/parameters/");
-  return name.starts_with("/particles/");
+  return name.starts_with("/particles/") || (name.starts_with("/observables/") && last == "value");
 }
 
 TEST_F(RecordingChanged, AParameterThatAnOlderProgramDidNotRecordHasItsDefault) {
@@ -367,6 +371,22 @@ TEST_F(RecordingChanged, HalfWavesMayBeNumbers) {
   const Handle text(H5Tcopy(H5T_C_S1)), wrong(H5Tcopy(without));
   checked(H5Tinsert(wrong, "half_wave", offsetof(Row, half_wave), text));
   EXPECT_NE(with(wrong, rows), "");
+}
+
+TEST_F(RecordingChanged, SensesAndNeuronsOfOtherNumbersAreNamed) {
+  const std::string place = path("changed.h5") + ": /observables/thinker: ";
+  EXPECT_EQ(refusal_after([](hid_t file) {
+              put_dataset(file, "/observables/thinker/senses/value", H5T_NATIVE_FLOAT, {9, 5});
+            }),
+            place + "senses/value has another shape than its robot and the file's frames");
+  EXPECT_EQ(refusal_after([](hid_t file) { remove(file, "/observables/thinker/neurons"); }),
+            place + "the group \"neurons\" is missing");
+  EXPECT_EQ(refusal_after([](hid_t file) { remove(file, "/observables/thinker/senses/name"); }), "");
+}
+
+TEST_F(RecordingChanged, ARecordingOfAnOlderProgramHasNoSensesAndNeurons) {
+  EXPECT_EQ(refusal_after([](hid_t file) { remove(file, "/observables"); }), "");
+  EXPECT_FALSE(TrajectoryReader(path("changed.h5")).has_brains());
 }
 
 TEST_F(RecordingChanged, ARecordingOfAnOlderProgramHasNoActuators) {

@@ -115,6 +115,24 @@ class Recording(unittest.TestCase):
             self.assertLess(robot["springs"][()].max(), masses)
             np.testing.assert_array_equal(robot["position/value"][0], robot["rest_position"])
 
+    def test_senses_and_neurons_are_observables_with_names(self):
+        hunter = ["sample:hunter", "--target", "1,2,0"]
+        file = self.record("a.h5", "--every", 10, "--brains", robots=hunter)
+        self.assertEqual(list(file["observables"]), list(file["particles"]))
+        (robot,) = file["observables"].values()
+        body = json.loads(mercury("info", "sample:hunter", "--json"))["robots"][0]["brain"]
+        for element in ("senses", "neurons"):
+            series = robot[element]
+            self.assertEqual([text(name) for name in series["name"]], body[element])
+            self.assertEqual(series["value"].shape, (31, len(body[element])))
+            self.assertEqual(series["value"].dtype, np.float32)
+            self.assertEqual(series["step"], file["parameters/step"])
+            self.assertEqual(series["time"][()].tolist(), file["parameters/time"][()].tolist())
+            self.assertGreater(np.ptp(series["value"], axis=0).max(), 0.1)
+        without = self.record("b.h5", "--every", 10, robots=hunter)
+        self.assertNotIn("observables", without)
+        self.assert_same_frames(file, without)
+
     def test_velocities_are_those_of_the_positions(self):
         # v = zeta (x' - x) / dt with zeta = exp(-damping dt); positions are rounded to float.
         file = self.record("a.h5", "--every", 1, "--damping", "0.5")

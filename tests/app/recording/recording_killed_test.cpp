@@ -39,6 +39,9 @@ class Source {
  public:
   explicit Source(int robots) {
     for (int i = 0; i < robots; ++i) robots_.push_back(small_voxel_robot(static_cast<std::uint64_t>(i)));
+    robots_.back().sensors = thinking_pair("").sensors;
+    robots_.back().actuators = {{"muscle", {1}}};
+    robots_.back().brain = thinking_pair("").brain;
     for (const Robot& robot : robots_) {
       pointers_.push_back(&robot);
       std::vector<Material> table(materials_of(robot).begin(), materials_of(robot).end());
@@ -50,6 +53,7 @@ class Source {
   TrajectoryWriter writer(const std::string& path, TrajectoryHeader header) const {
     header.configuration = on_cpu();
     header.clock = own_clock;
+    header.brains = true;
     return TrajectoryWriter(path, header, pointers_, materials_, "--record");
   }
 
@@ -62,6 +66,8 @@ class Source {
         frame.positions[i] = value(number, i, 1);
         frame.velocities[i] = value(number, i, -1);
       }
+      for (std::size_t i = 0; i < frame.senses.size(); ++i) frame.senses[i] = value(number, i, 1).z;
+      for (std::size_t i = 0; i < frame.neurons.size(); ++i) frame.neurons[i] = value(number, i, -1).x;
       now += seconds;
       writer.commit();
     }
@@ -96,6 +102,8 @@ std::size_t expect_frames(TrajectoryReader& reader) {
     EXPECT_EQ(reader.time(i), 0.01 * static_cast<double>(number));
     EXPECT_TRUE(same(reader.positions(i), number, 1)) << "positions of frame " << i;
     EXPECT_TRUE(same(reader.velocities(i), number, -1)) << "velocities of frame " << i;
+    EXPECT_THAT(reader.senses(i), testing::AllOf(testing::SizeIs(4), testing::Each(value(number, 0, 1).z)));
+    EXPECT_THAT(reader.neurons(i), testing::AllOf(testing::SizeIs(3), testing::Each(value(number, 0, -1).x)));
   }
   return reader.frames();
 }
