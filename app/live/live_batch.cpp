@@ -177,6 +177,7 @@ std::shared_ptr<Snapshot> LiveBatch::snapshot(bool with_velocities) {
   for (const LivePerturbation& perturbation : perturbations_)
     if (!population_.perturbations_of({&perturbation, 1}).empty()) next->perturbations.push_back(perturbation);
   next->brain.reset();
+  next->brain_history.reset();
   next->second.reset();
   next->ghosts.reset();
   next->timeline = {};

@@ -583,7 +583,9 @@ void PhysicsThread::Parts::publish_snapshot() {
   const bool with_velocities = !stepping.playing() || velocities_wanted || exchange.is_awaited();
   std::shared_ptr<Snapshot> next = batch.snapshot(with_velocities);
   next->timeline = timeline.state();
-  if (!recording.is_open() && watched_brain != 0) next->brain = batch.brain_of(watched_brain);
+  if (watched_brain != 0 && (!recording.is_open() || recording.has_brain_of(watched_brain)))
+    next->brain = batch.brain_of(watched_brain);
+  next->brain_history = next->brain && recording.is_open() ? recording.history_of(watched_brain) : nullptr;
   if (recording.is_open()) {
     next->timeline.viewing = next->timeline.recording = true;
     next->timeline.begin = recording.begin();

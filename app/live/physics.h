@@ -109,7 +109,7 @@ class PhysicsThread {
   // have them, too.
   void watch_velocities(bool watch);
 
-  // Snapshots have the activity of this robot's brain, unless a recording is played; 0 = of none.
+  // Snapshots have the activity of this robot's brain, in a recording if it has that; 0 = of none.
   void watch_brain(RobotId robot);
 
   // Returns the newest snapshot, never null, and requests the next one.

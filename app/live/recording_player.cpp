@@ -22,6 +22,7 @@ std::vector<LivePerturbation> live_perturbations(RobotId robot, const std::vecto
 
 void RecordingPlayer::open(std::shared_ptr<TrajectoryReader> recording) {
   recording_ = std::move(recording);
+  history_.reset();
   batch_.perturb({});
   stepping_.drop();
   show(begin());
@@ -43,6 +44,25 @@ void RecordingPlayer::show(double time) {
   batch_.restore(state, time < time_);
   time_ = time;
   batch_.measure();
+}
+
+bool RecordingPlayer::has_brain_of(RobotId robot) const {
+  const auto index = batch_.robots()->index_of(robot);
+  return index && recording_->has_brains(*index);
+}
+
+std::shared_ptr<const BrainHistory> RecordingPlayer::history_of(RobotId robot) {
+  if (history_ && history_->robot == robot) return history_;
+  constexpr std::size_t most = 2000;
+  auto history = std::make_shared<BrainHistory>();
+  history->robot = robot;
+  const std::size_t index = *batch_.robots()->index_of(robot), stride = (recording_->frames() - 1) / most + 1;
+  for (std::size_t frame = 0; frame < recording_->frames(); frame += stride) {
+    const auto senses = recording_->senses_of(index, frame), neurons = recording_->neurons_of(index, frame);
+    history->times.push_back(recording_->time(frame));
+    history->activity.push_back({robot, {senses.begin(), senses.end()}, {neurons.begin(), neurons.end()}});
+  }
+  return history_ = std::move(history);
 }
 
 double RecordingPlayer::previous() const {
@@ -74,7 +94,7 @@ bool RecordingPlayer::advance(const std::optional<std::pair<double, double>>& lo
 
 void RecordingPlayer::leave() {
   batch_.restore(recording_->state(recording_->frame_at(time_)));
-  recording_.reset();
+  close();
 }
 
 void ReproPlayer::begin() {

@@ -21,7 +21,10 @@ class RecordingPlayer {
 
   bool is_open() const { return recording_ != nullptr; }
   void open(std::shared_ptr<TrajectoryReader> recording);  // shows its first frame
-  void close() { recording_.reset(); }
+  void close() {
+    recording_.reset();
+    history_.reset();
+  }
   // Puts the batch into the frame at or before the moment that is shown, and closes.
   void leave();
 
@@ -29,6 +32,10 @@ class RecordingPlayer {
   double end() const { return recording_->time(recording_->frames() - 1); }
   bool is_at_end() const { return time_ >= end(); }
   void show(double time);
+  // Whether the recording has the senses and neurons of a robot; the batch has those of the moment then.
+  bool has_brain_of(RobotId robot) const;
+  // All of them, or some thousand evenly spread. It is read at the first call for a robot.
+  std::shared_ptr<const BrainHistory> history_of(RobotId robot);
   double previous() const;  // the frame before the moment that is shown
   // Shows the next moment that is due, in a loop from `loop_begin` to `loop_end`. Returns whether there is one.
   bool advance(const std::optional<std::pair<double, double>>& loop);
@@ -37,6 +44,7 @@ class RecordingPlayer {
   LiveBatch& batch_;
   Stepping& stepping_;
   std::shared_ptr<TrajectoryReader> recording_;  // or nothing
+  std::shared_ptr<const BrainHistory> history_;  // that was asked for last
   double time_ = 0;                              // the moment that is shown [s]
 };
 

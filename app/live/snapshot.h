@@ -131,6 +131,13 @@ struct BrainActivity {
   std::vector<float> senses, neurons;
 };
 
+// The same at moments of a recording, from its start to its end.
+struct BrainHistory {
+  RobotId robot = 0;
+  std::vector<double> times;  // [s]
+  std::vector<BrainActivity> activity;
+};
+
 struct Snapshot {
   std::shared_ptr<const LiveRobots> robots;
   Configuration configuration;
@@ -143,7 +150,9 @@ struct Snapshot {
   SnapshotPositions positions;       // [m], of all masses; robot i starts at robots->mass_offsets[i]; in its own frame
   std::vector<Vec3> velocities;      // [m/s], as many; empty while robots play, unless requested
   std::vector<Telemetry> telemetry;  // per robot
-  std::optional<BrainActivity> brain;  // of the robot that is watched (PhysicsThread::watch_brain())
+  // Of the robot that is watched (PhysicsThread::watch_brain()). Of a recording, if it has them; its history then, too.
+  std::optional<BrainActivity> brain;
+  std::shared_ptr<const BrainHistory> brain_history;
   SceneDetails details;
   const ColorQuantity* color = &material_color();  // the quantity in details.values
   std::vector<LivePerturbation> perturbations;

@@ -61,6 +61,7 @@ class BrainPanel : public Panel {
   std::set<std::size_t> plotted_;  // nodes
   std::size_t menu_of_ = 0;        // the neuron whose menu is open
   std::deque<std::pair<double, std::vector<float>>> history_;
+  std::shared_ptr<const BrainHistory> recorded_;  // that history_ is from, or nothing
   PlotView view_;
 };
 
@@ -145,22 +146,34 @@ float BrainPanel::value_of(const BrainActivity& now, std::size_t node) const {
   return std::clamp(now.neurons[graph_.outputs[node - graph_.senses - graph_.neurons]], -1.0f, 1.0f);
 }
 
-// Keeps the last values, from the moment the robot was chosen or time went back.
+// Keeps the last values, from the moment the robot was chosen or time went back; of a recording, all.
 void BrainPanel::follow(const Snapshot& snapshot, RobotId robot) {
   const std::shared_ptr<const Robot>& body = snapshot.robots->robots[*snapshot.robots->index_of(robot)].robot;
   if (body != body_) {
     body_ = body;
     graph_ = graph_of(*body);
     history_.clear();
+    recorded_.reset();
     plotted_.clear();
     for (std::size_t i = 0; i < std::min<std::size_t>(graph_.outputs.size(), 3); ++i)
       plotted_.insert(graph_.senses + graph_.neurons + i);
   }
+  const auto add = [&](double time, const BrainActivity& activity) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < graph_.nodes.size(); ++i) values.push_back(value_of(activity, i));
+    history_.emplace_back(time, std::move(values));
+  };
+  if (const auto& recorded = snapshot.brain_history) {
+    if (recorded == recorded_) return;
+    recorded_ = recorded;
+    history_.clear();
+    for (std::size_t i = 0; i < recorded->times.size(); ++i) add(recorded->times[i], recorded->activity[i]);
+    return;
+  }
+  recorded_.reset();
   while (!history_.empty() && history_.back().first > snapshot.time) history_.pop_back();
   if (!history_.empty() && history_.back().first == snapshot.time) return;
-  std::vector<float> values;
-  for (std::size_t i = 0; i < graph_.nodes.size(); ++i) values.push_back(value_of(*snapshot.brain, i));
-  history_.emplace_back(snapshot.time, std::move(values));
+  add(snapshot.time, *snapshot.brain);
   if (history_.size() > max_history) history_.pop_front();
 }
 
@@ -177,7 +190,8 @@ void BrainPanel::draw(PanelContext& context) {
   const Snapshot& snapshot = context.scene.snapshot();
   heading(name_of_robot(context.scene, *robot).c_str());
   if (!snapshot.brain || snapshot.brain->robot != *robot || !snapshot.robots->index_of(*robot)) {
-    note(snapshot.timeline.recording ? "A recording has no activity of brains." : "...");
+    note(snapshot.timeline.recording ? "This recording has no senses and neurons: mercury run --brains records them."
+                                     : "...");
     return;
   }
   follow(snapshot, *robot);

@@ -432,6 +432,49 @@ TEST_P(PlayedRecording, GoesOnFromAFrameAsTheRobotsDid) {
   EXPECT_EQ(scene.snapshot().steps, 40) << "the live run has a timeline of its own";
 }
 
+TEST_P(PlayedRecording, ShowsTheSensesAndNeuronsOfTheWatchedRobotAndGoesOnWithThem) {
+  const std::vector robots{robots_[0], test::thinking_pair("thinker")};
+  const Configuration configuration{.environment = OceanSimple{.flow = {0, 0, -1}}, .device = {.kind = GetParam()}};
+  Simulation simulation(configuration, robots);
+  test::record(simulation, path("think.h5"), 100, 10, {.brains = true});
+  LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
+  scene.open({path("think.h5")});
+  scene.wait_until_done();
+  const std::vector<RobotId> ids = test::ids_of(scene);
+  scene.watch_brain(ids[0]);  // it has none
+  scene.wait_until_done();
+  EXPECT_FALSE(scene.snapshot().brain || scene.snapshot().brain_history);
+  scene.watch_brain(ids[1]);
+
+  TrajectoryReader reader(path("think.h5"));
+  for (const std::size_t frame : {3u, 10u, 0u, 7u}) {
+    scene.seek(reader.time(frame) + (frame == 3 ? 0.004 : 0));  // until the next frame
+    scene.wait_until_done();
+    ASSERT_TRUE(scene.snapshot().brain);
+    EXPECT_EQ(scene.snapshot().brain->robot, ids[1]);
+    EXPECT_TRUE(std::ranges::equal(scene.snapshot().brain->senses, reader.senses_of(1, frame))) << frame;
+    EXPECT_TRUE(std::ranges::equal(scene.snapshot().brain->neurons, reader.neurons_of(1, frame))) << frame;
+  }
+  const std::shared_ptr<const BrainHistory> history = scene.snapshot().brain_history;
+  ASSERT_TRUE(history);
+  ASSERT_EQ(history->times.size(), 11u);
+  for (std::size_t frame = 0; frame < 11; ++frame) {
+    EXPECT_EQ(history->times[frame], reader.time(frame));
+    EXPECT_TRUE(std::ranges::equal(history->activity[frame].senses, reader.senses_of(1, frame)));
+    EXPECT_TRUE(std::ranges::equal(history->activity[frame].neurons, reader.neurons_of(1, frame)));
+  }
+
+  scene.seek(0.05);
+  scene.go_on();
+  make_steps(scene, 100);
+  EXPECT_FALSE(scene.snapshot().brain_history);
+  simulation.step(50);
+  EXPECT_EQ(scene.snapshot().brain->neurons, simulation.brain_state(1).neurons) << "as if it had not been recorded";
+  std::vector<Vec3> positions(simulation.mass_count());
+  simulation.read_positions(positions);
+  EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), positions));
+}
+
 TEST_P(PlayedRecording, UndoBringsBackTheSceneAndItsClock) {
   const LiveSceneOptions options{.configuration = {.device = {.kind = GetParam()}}};
   LiveScene scene(options), uninterrupted(options);

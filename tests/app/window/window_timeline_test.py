@@ -2,7 +2,7 @@
 """The timeline in the real window: window_timeline_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
 import subprocess
 
-from window_case import PROGRAM, SAMPLES, WindowCase, main
+from window_case import PROGRAM, SAMPLES, WindowCase, main, numpy
 from window_driver import scratch
 
 
@@ -140,6 +140,31 @@ class TimelineTest(WindowCase):
         self.assertEqual(gone["steps"] % 33, 0)  # a frame
         window.key("space")
         window.frame(lambda frame: frame["time"] > 1.2)
+        self.finish(window)
+
+    def test_a_recording_shows_what_brains_did(self):
+        folder = scratch()
+        recording, silent = folder / "hunt.h5", folder / "silent.h5"
+        for path, more in ((recording, ["--brains"]), (silent, [])):
+            subprocess.run([PROGRAM, "run", "sample:hunter", "--target", "-2,3,0", "--seconds", "1", "--device", "cpu",
+                            "--quiet", "--record", str(path), *more], check=True, stdout=subprocess.DEVNULL)
+        window = self.open(str(recording), "--paused")
+        window.frame(lambda frame: frame["timeline"]["recording"])
+        window.open("Brain")
+        window.place("brain.graph")
+        window.place("brain.plot")
+        plot = window.items["brain.plot"]
+        left, top = int(plot["x"] - plot["width"] / 2), int(plot["y"] - plot["height"] / 2)
+        curves = window.screenshot()[top:top + int(plot["height"]), left:left + int(plot["width"])]
+        colored = numpy.ptp(curves, axis=2) > 0.3
+        later = colored[:, colored.shape[1] // 2:colored.shape[1] * 9 // 10]
+        self.assertGreater(later.any(axis=0).mean(), 0.8, "the plot has the whole recording at its start")
+        self.finish(window)
+        window = self.open(str(silent), "--paused")
+        window.frame(lambda frame: frame["timeline"]["recording"])
+        window.open("Brain")
+        window.frame()
+        self.assertNotIn("brain.graph", window.items)
         self.finish(window)
 
 
