@@ -40,6 +40,10 @@ class RecordedMotion {
   // positions, and few formats have them.
   Pose pose(std::size_t frame);
   Pose pose_with_velocities(std::size_t frame);
+  // Whether it has the senses and neurons of the robot's brain, and those of a frame; nothing if it has not.
+  bool has_brain() const { return recording_->has_brains(robot_); }
+  std::span<const float> senses(std::size_t frame) { return recording_->senses_of(robot_, recorded_frame(frame)); }
+  std::span<const float> neurons(std::size_t frame) { return recording_->neurons_of(robot_, recorded_frame(frame)); }
   const std::string& problem() const { return problem_; }  // empty = none
 
   // Where the frames are in the file, for formats that refer to it.

@@ -23,7 +23,8 @@ SimulatedMotion record_motion(Simulation& simulation, double seconds, const std:
                               std::optional<std::uint64_t> seed, const std::function<void(std::int64_t)>& watch,
                               double rate) {
   const std::int64_t last = simulation.steps() + std::llround(seconds / simulation.configuration().dt);
-  Recorder recorder(simulation, path, {.rate = rate, .last_step = last, .seed = seed}, "-o");
+  Recorder recorder(simulation, path,
+                    {.rate = rate, .last_step = last, .seed = seed, .brains = simulation.has_brains()}, "-o");
   watch(recorder.frames());
   while (simulation.steps() < last) {
     simulation.step(std::min(recorder.next_step(), last) - simulation.steps());

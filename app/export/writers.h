@@ -86,6 +86,10 @@ void write_pc2(const ExportedRobot& robot, RecordedMotion& motion, const std::fi
                const ExportChoices& choices);
 std::vector<std::filesystem::path> beside_pc2(const std::filesystem::path& pc2);
 
+// A table with a line per frame.
+void write_csv(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
+               const ExportChoices& choices);
+
 void write_usda(const ExportedRobot& robot, const Pose& pose, const std::filesystem::path& path,
                 const ExportChoices& choices);
 void write_usda_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <sstream>
 
 #include "app/export/export.h"
+#include "mercury/csv.h"
 #include "mercury/error.h"
 #include "mercury/file_links.h"
 #include "tests/app/export/export_bodies.h"
@@ -54,6 +56,43 @@ TEST_F(ExportMotion, PointCacheHasItsHeaderAndEveryFrame) {
       place += 12;
     }
   }
+}
+
+TEST_F(ExportMotion, TableHasTheCenterOfMassAndWhatTheBrainSensedAndDid) {
+  Robot thinker = thinking_pair("thinker");
+  thinker.mass = {1, 3};
+  thinker.sensors[2] = {.kind = SensorKind::depth, .masses = {1}};  // a second depth
+  Simulation simulation(on_cpu(), std::vector{small_voxel_robot(0), thinker});
+  record(simulation, path("think.h5"), 100, 10, {.brains = true});
+  const auto recording = std::make_shared<TrajectoryReader>(path("think.h5"));
+  RecordedMotion moves(recording, 1);
+  write_csv(moves.robot(), moves, path("think.csv"), {});
+  std::istringstream table(read("think.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line,
+            "time [s],x [m],y [m],z [m],velocity x [m/s],velocity y [m/s],velocity z [m/s],sense clock sine,"
+            "sense clock cosine,sense depth,sense depth 2,neuron hidden 0,neuron hidden 1,neuron motor 0");
+  for (std::size_t frame = 0; frame < 11; ++frame) {
+    ASSERT_TRUE(std::getline(table, line));
+    std::vector<double> numbers;
+    for (const std::string& field : csv_fields(line)) numbers.push_back(std::stod(field));
+    ASSERT_EQ(numbers.size(), 14u);
+    EXPECT_EQ(numbers[0], recording->time(frame));
+    const auto positions = recording->positions_of(1, frame), velocities = recording->velocities_of(1, frame);
+    EXPECT_NEAR(numbers[1], (positions[0].x + 3 * positions[1].x) / 4, 1e-7);
+    EXPECT_NEAR(numbers[4], (velocities[0].x + 3 * velocities[1].x) / 4, 1e-7);
+    for (std::size_t i = 0; i < 4; ++i)
+      EXPECT_EQ(static_cast<float>(numbers[7 + i]), recording->senses_of(1, frame)[i]);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(static_cast<float>(numbers[11 + i]), recording->neurons_of(1, frame)[i]);
+  }
+  EXPECT_FALSE(std::getline(table, line));
+
+  RecordedMotion other(recording, 0, {.every = 5});
+  write_csv(other.robot(), other, path("other.csv"), {});
+  EXPECT_EQ(std::ranges::count(read("other.csv"), '\n'), 4);
+  EXPECT_EQ(std::ranges::count(read("other.csv"), ','), 4 * 6) << "a robot without a brain";
 }
 
 TEST_F(ExportMotion, MeshBesideAPointCacheHasTheVerticesOfItsFirstFrame) {
