@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "evolution/selection/islands.h"
+#include "evolution/selection/ranking.h"
 #include "mercury/error.h"
 #include "mercury/parallel.h"
 #include "mercury/random.h"
@@ -65,8 +66,14 @@ GenomePointer start_of_search(const GenomeSpace& space, std::uint64_t seed) {
 
 void validate(const EvolutionSettings& settings, const GenomeSpace& space) {
   const AlgorithmDescription& algorithm = algorithm_named(settings.algorithm.name);
-  if (!algorithm.of_numbers) return;
+  if (!algorithm.of_numbers && !algorithm.of_species) return;
   const std::string name(algorithm.name);
+  if (algorithm.of_species) {
+    const GenomePointer start = start_of_search(space, settings.seed);
+    if (!start->distance(*start))
+      throw ParameterError("algorithm", name + " divides robots into species by brains that grow; let brains grow");
+    return;
+  }
   if (space.founders() > 1)
     throw ParameterError("algorithm",
                          name + " begins with one robot, and there are " + std::to_string(space.founders()));
@@ -183,7 +190,9 @@ class Breeding {
     if (plans_[i].is_migrant) return living_[parents[0]].genome;
     const double strength = settings_.mutation * (1 + attempt / 4.0);  // each further try changes a little more
     GenomePointer genome = living_[parents[0]].genome;
-    if (parents.size() > 1) genome = genome->cross(*living_[parents[1]].genome, seed_of(seed, 0));
+    if (parents.size() > 1)
+      genome = genome->cross_by_fitness(*living_[parents[1]].genome,
+                                        compare_fitness(living_[parents[0]], living_[parents[1]]), seed_of(seed, 0));
     return genome->mutate(strength, seed);
   }
 

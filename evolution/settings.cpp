@@ -44,7 +44,7 @@ void validate_islands(const AlgorithmSettings& settings) {
   const AlgorithmDescription& algorithm = algorithm_named(settings.name);
   require(!algorithm.learns && !algorithm.has_map, "islands",
           settings.name + (algorithm.has_map ? " keeps one map" : " learns from all robots") +
-              "; give 1, or --algorithm ga, afpo, alps, nsga2 or random");
+              "; give 1, or --algorithm ga, afpo, alps, nsga2, neat or random");
   require(settings.islands <= settings.population, "islands",
           std::to_string(settings.islands) + " are more than the population of " + std::to_string(settings.population));
   const std::size_t smallest = settings.population / settings.islands;

@@ -111,6 +111,13 @@ void give_brain_per_actuator(Robot& robot, float clock_frequency) {
   brain.layers = {layer("hidden", hidden, "senses", senses), layer("motor", 1, "hidden", hidden)};
 }
 
+void give_layer_of_outputs(Robot& robot) {
+  NeuronLayer& layer = robot.brain.emplace().layers.emplace_back();
+  layer.name = "motor";
+  layer.neurons = static_cast<std::uint32_t>(actuators_of(robot).size());
+  layer.bias.assign(layer.neurons, 0);
+}
+
 BrainGenes random_brain_genes(const Brain& brain, std::uint64_t seed) {
   Random random(seed);
   BrainGenes genes{.weights = weights_of(brain)};

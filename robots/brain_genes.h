@@ -41,6 +41,8 @@ bool same_brain_structure(const Robot& a, const Robot& b);
 // Each copy senses the strain of its muscle, the outputs of its neighbors, a clock and the direction of the target. All
 // weights are 0.
 void give_brain_per_actuator(Robot& robot, float clock_frequency);
+// The brain of a robot that has sensors and no brain: a neuron per actuator, which reads nothing yet.
+void give_layer_of_outputs(Robot& robot);
 // Normal random numbers in place of the weights, with the standard deviation 1.
 BrainGenes random_brain_genes(const Brain& brain, std::uint64_t seed);
 

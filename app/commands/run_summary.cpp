@@ -55,6 +55,7 @@ std::string genome_text(const GenomeSpaceRequest& space) {
   for (const Genes gene : {Genes::body, Genes::muscles, Genes::brain})
     if (contains(space.genes, gene)) genes.push_back(name_of(gene));
   text += "; what changes: " + list_of(genes, " and ");
+  if (space.growth.brain_growth) text += "; brains grow";
   if (space.muscles.muscle_adaptation) text += "; steps of muscles adapt themselves";
   if (space.muscles.muscle_tail > 0)
     text += fmt::format("; steps of muscles from Student's t, {} degrees of freedom", space.muscles.muscle_tail);

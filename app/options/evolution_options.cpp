@@ -103,6 +103,7 @@ void EvolutionOptions::add_to(const Command& command) {
   given_.confirm = true;
   add_parameters(command, given_, search_group);
   add_parameters(command, muscles_, search_group);
+  add_parameters(command, growth_, search_group);
   for (const char* name : {"--population", "--generations"}) command.find_option(name)->on_first_screen();
   add_trial_options(command, given_.trials);
   add_evolution_trial_options(command, given_.trials);
@@ -117,7 +118,8 @@ void EvolutionOptions::set_size(GenomeSpaceRequest& space, const std::string& si
 
 // Paths are what is not a kind of robot.
 GenomeSpaceRequest EvolutionOptions::space(std::vector<std::string>& paths) const {
-  GenomeSpaceRequest space{.values = generators_.values(), .genes = genes_named(genes_), .muscles = muscles_};
+  GenomeSpaceRequest space{
+      .values = generators_.values(), .genes = genes_named(genes_), .muscles = muscles_, .growth = growth_};
   bool has_kind = false;
   for (const std::string& from : from_) {
     const std::string kind = from.substr(0, from.find(':'));

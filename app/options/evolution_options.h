@@ -49,6 +49,7 @@ class EvolutionOptions {
   std::vector<std::string> objectives_, axes_;
   EvolutionSettings given_;  // what needs no further reading
   MuscleMutation muscles_;
+  BrainGrowth growth_;
 };
 
 }  // namespace mercury

@@ -240,6 +240,20 @@ Physics physics_of(const GenomeSpaceRequest& request) {
 
 namespace {
 
+// Throws ParameterError for settings of the growth of brains that do not grow, or that do not change at all.
+void require_growth(const GenomeSpaceRequest& request) {
+  check_parameters(request.growth);
+  const bool changes = contains(request.genes, Genes::brain);
+  if (request.growth.brain_growth && !changes)
+    throw ParameterError("brain_growth", "brains do not change; give brain among the genes");
+  if (request.growth.brain_growth) return;
+  BrainGrowth usual;
+  for_each_parameter(usual, [&](const auto& parameter, const auto& value) {
+    if (request.growth.*parameter.member != value)
+      throw ParameterError(std::string(parameter.name), "goes with brain growth alone");
+  });
+}
+
 // Of bodies and muscles, as far as these change.
 std::unique_ptr<GenomeSpace> make_body_space(const GenomeSpaceRequest& request) {
   const bool bodies_stay = !contains(request.genes, Genes::body),
@@ -264,6 +278,7 @@ std::unique_ptr<GenomeSpace> make_genome_space(const GenomeSpaceRequest& request
   if (request.muscles != MuscleMutation{} && !contains(request.genes, Genes::muscles))
     throw ParameterError(request.muscles.muscle_adaptation ? "muscle_adaptation" : "muscle_tail",
                          "the muscles do not change; give muscles among the genes");
+  require_growth(request);
   if (request.founders.empty() && is_custom(request.kind)) return std::make_unique<CustomSpace>(request.kind);
   require_brains(request);
   std::unique_ptr<GenomeSpace> bodies = make_body_space(request);

@@ -72,11 +72,15 @@ std::size_t islands_of(const RunHistory& run) {
   return islands > 1 ? islands : 0;
 }
 
+}  // namespace
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) fail(folder, error.value());
 }
+
+namespace {
 
 // Whether file_name() gives that name to a robot of the run.
 bool is_file_of(const RunHistory& run, const std::string& name) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <string_view>
 
 #include "mercury/robot.h"
@@ -55,5 +56,8 @@ void write_first_parents(const RunHistory& run);
 
 // generations.csv: one line per generation. All columns but the last three are the same in every repetition.
 void write_generations(const RunHistory& run);
+
+// With those above it. Throws InputError.
+void make_folder(const std::filesystem::path& folder);
 
 }  // namespace mercury

@@ -63,12 +63,6 @@ std::optional<JournalWriter> lock_of(const fs::path& folder) {
   return JournalWriter::open(folder / journal_name);
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) fail(folder, error.value());
-}
-
 void write_settings(const fs::path& folder, const RunFileTexts& texts) {
   if (!texts.founders.empty()) make_folder(folder / founders_name);
   for (std::size_t i = 0; i < texts.founders.size(); ++i)

@@ -74,6 +74,7 @@ void describe(File& file, Run& run) {
     table.value("environment", space.environment);
     table.value("founders", run.founder_files, "in founders/");
     describe_parameters(table, space.muscles);
+    describe_parameters(table, space.growth);
     table.generator_values("values", space.kind, space.values);
   });
 }

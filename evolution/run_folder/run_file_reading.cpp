@@ -283,6 +283,7 @@ void check_values(const std::filesystem::path& path, const RunSettings& settings
   try {
     validate(settings.evolution);
     check_parameters(settings.space.muscles);
+    check_parameters(settings.space.growth);
   } catch (const ParameterError& error) {
     auto found = lines.find(error.parameter());
     if (found == lines.end()) found = lines.find(error.parameter() + "s");

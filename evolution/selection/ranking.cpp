@@ -8,6 +8,19 @@
 
 namespace mercury {
 
+std::partial_ordering compare_fitness(const Individual& a, const Individual& b) {
+  const std::vector<double>&x = a.assessment.scores, &y = b.assessment.scores;
+  bool a_is_better = false, b_is_better = false;
+  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+    a_is_better |= comparable(x[i]) > comparable(y[i]);
+    b_is_better |= comparable(y[i]) > comparable(x[i]);
+  }
+  if (a_is_better && b_is_better) return std::partial_ordering::unordered;
+  return a_is_better   ? std::partial_ordering::greater
+         : b_is_better ? std::partial_ordering::less
+                       : std::partial_ordering::equivalent;
+}
+
 std::vector<std::size_t> best_first(std::span<const Individual> individuals) {
   std::vector<std::size_t> order(individuals.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -22,6 +23,10 @@ inline bool better(const Individual& a, const Individual& b) {
   const double v = a.assessment.violation, w = b.assessment.violation;
   return v != w ? v < w : a.id < b.id;
 }
+
+// Which of two individuals is fitter: the one that is as good in every objective and better in one; `unordered` if
+// each is better in one.
+std::partial_ordering compare_fitness(const Individual& a, const Individual& b);
 
 // Indices of the individuals, the best first.
 std::vector<std::size_t> best_first(std::span<const Individual> individuals);

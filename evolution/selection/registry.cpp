@@ -12,8 +12,8 @@
 namespace mercury {
 
 std::span<const AlgorithmDescription> algorithms() {
-  static const std::array all{ga(),     afpo(),       alps(),   nsga2(),        map_elites(), novelty_search(),
-                              cma_es(), sep_cma_es(), cma_me(), random_search()};
+  static const std::array all{ga(),   afpo(),   alps(),       nsga2(),  map_elites(),   novelty_search(),
+                              neat(), cma_es(), sep_cma_es(), cma_me(), random_search()};
   return all;
 }
 

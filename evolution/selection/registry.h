@@ -13,6 +13,7 @@ AlgorithmDescription ga();
 AlgorithmDescription afpo();
 AlgorithmDescription alps();
 AlgorithmDescription nsga2();
+AlgorithmDescription neat();
 AlgorithmDescription map_elites();
 AlgorithmDescription novelty_search();
 AlgorithmDescription cma_es();

@@ -44,7 +44,7 @@ class Settings(TypedDict, total=False):
     # Formulas of quantities, or functions of them (docs/python.md), more is better; default "distance". "python:NAME" is
     # an objective whose scores come by tell().
     objective: str | Function | Sequence[str | Function]
-    # "afpo" (default), "ga", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es", "cma-me", "random"; an
+    # "afpo" (default), "ga", "alps", "nsga2", "map-elites", "novelty", "neat", "cma-es", "sep-cma-es", "cma-me", "random"; an
     # object, a class or a function (docs/python.md); "python:NAME" for an optimizer that gives its genomes.
     algorithm: str | object
     # Of map-elites, novelty, cma-me, and of algorithms in Python that keep a map.
@@ -55,6 +55,11 @@ class Settings(TypedDict, total=False):
     mutation: float  # strength of mutations
     muscle_adaptation: bool  # each robot has a step of its own for its muscles, which adapts itself
     muscle_tail: int  # steps of muscles are of Student's t with that many degrees of freedom; 1 = Cauchy, 0 = normal
+    brain_growth: bool  # neurons and connections come and go (NEAT); else weights alone change
+    new_neurons: float  # share of the mutations that split a connection by a neuron, where brains grow
+    new_connections: float  # share of the mutations that add a connection
+    recurrence: float  # share of these that feed back
+    first_connections: float  # share of the senses to which each output of a minimal brain is connected
     tournament: int  # robots among which the best becomes a parent
     elites: float  # ga: share that lives on unconditionally
     crossover: float  # share of the children with two parents
@@ -63,9 +68,12 @@ class Settings(TypedDict, total=False):
     archived: int  # novelty: robots of each generation that come into the archive
     age_layers: int  # alps
     age_gap: int  # alps: generations below which robots are in the lowest layer
-    islands: int  # ga, afpo, alps, nsga2, random: into which the population is split
+    islands: int  # ga, afpo, alps, nsga2, neat, random: into which the population is split
     migration_interval: int  # generations from one migration between islands to the next; 0 = none
     migrants: int  # best robots of each island whose copies replace the worst of the next one
+    species_distance: float  # neat: distance of brains below which robots are of one species
+    species: int  # neat: at most
+    stagnation: int  # neat: generations without a better robot after which a species dies out; 0 = none does
     seed: int
     seconds: float  # of a trial, settling included [s]
     settle: float  # at its start; nothing is measured before [s]

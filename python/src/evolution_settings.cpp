@@ -95,7 +95,7 @@ EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space
   const auto collect = [&](auto& table) {
     for_each_parameter(table, [&](const auto& parameter, auto&) { names.emplace_back(parameter.name); });
   };
-  collect(settings), collect(algorithm), collect(settings.trials), collect(space.muscles);
+  collect(settings), collect(algorithm), collect(settings.trials), collect(space.muscles), collect(space.growth);
   for (const auto [key, value] : given) {
     const std::string name = text_from("settings", key);
     if (name == "objective") {
@@ -118,7 +118,8 @@ EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space
     } else if (name == "threads") {
       set(name, threads, value);
     } else if (!read_table(settings, name, value) && !read_table(algorithm, name, value) &&
-               !read_table(settings.trials, name, value) && !read_table(space.muscles, name, value)) {
+               !read_table(settings.trials, name, value) && !read_table(space.muscles, name, value) &&
+               !read_table(space.growth, name, value)) {
       throw nb::type_error(("there is no setting " + name + suggestion(name, names)).c_str());
     }
     has_trials = has_trials || name == "trials";

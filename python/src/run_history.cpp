@@ -125,7 +125,7 @@ nb::dict settings_of(const RunHistory& self) {
       values[std::string(parameter.name).c_str()] = nb::cast(value);
     });
   };
-  add(evolution), add(evolution.algorithm), add(evolution.trials), add(run.space.muscles);
+  add(evolution), add(evolution.algorithm), add(evolution.trials), add(run.space.muscles), add(run.space.growth);
   values["environment"] = object_of(evolution.configuration.environment);
   values["solver"] = std::string(name_of(evolution.configuration.solver));
   values["dt"] = evolution.configuration.dt;

@@ -138,6 +138,17 @@ def test_steps_of_muscles_are_settings(tmp_path):
         evolution.start(tmp_path / "body", "voxel", SIZE, **settings)
 
 
+def test_growth_of_brains_is_a_setting(tmp_path):
+    settings = {**SETTINGS, "generations": 3, "algorithm": "neat", "brain_growth": True, "new_neurons": 0.5}
+    run = evolution.start(tmp_path / "grown", "voxel", SIZE, genes="body,brain", **settings).go_on()
+    assert run.settings["brain_growth"] is True and run.settings["new_neurons"] == 0.5
+    assert run.settings["species"] == 12
+    layers = [len(run.robot(id).brain["layers"]) for id in range(len(run)) if run.robot(id).brain]
+    assert min(layers) == 1 and max(layers) > 1
+    with pytest.raises(mercurysim.InputError, match="brain_growth: brains do not change"):
+        evolution.start(tmp_path / "body", "voxel", SIZE, **{**settings, "algorithm": "ga"})
+
+
 def test_robots_that_are_given_are_the_first(tmp_path):
     founders = mercurysim.random_voxel(2, seed=5, voxels=(4, 3, 2))
     run = evolution.start(tmp_path / "swim", founders, genes="muscles", **{**SETTINGS, "generations": 0}).go_on()

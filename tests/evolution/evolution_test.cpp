@@ -57,14 +57,14 @@ std::string suite_name(const testing::TestParamInfo<std::string_view>& test) {
   return name;
 }
 INSTANTIATE_TEST_SUITE_P(Algorithms, AnyEvolution,
-                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es",
-                                         "cma-me", "random"),
+                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "novelty", "neat", "cma-es",
+                                         "sep-cma-es", "cma-me", "random"),
                          suite_name);
 
 // Algorithms whose children have parents.
 class Inheritance : public testing::TestWithParam<std::string_view> {};
 INSTANTIATE_TEST_SUITE_P(Algorithms, Inheritance,
-                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "cma-es", "sep-cma-es"),
+                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "neat", "cma-es", "sep-cma-es"),
                          suite_name);
 
 // The squared distance to the optimum that is left is less than half of what random search leaves.
@@ -142,8 +142,8 @@ class Pipelined : public testing::TestWithParam<std::string_view> {
     return settings;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Algorithms, Pipelined, testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "random"),
-                         suite_name);
+INSTANTIATE_TEST_SUITE_P(Algorithms, Pipelined,
+                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "neat", "random"), suite_name);
 
 TEST_P(Pipelined, ParentsAreThoseWhoLivedAfterTheGenerationBeforeTheLast) {
   const std::vector<Generation> generations = run(settings());

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -32,6 +34,12 @@ class VectorGenome : public Genome {
     std::vector<double> scaled(numbers.begin(), numbers.end());
     for (double& x : scaled) x *= step;
     return std::make_shared<VectorGenome>(scaled);
+  }
+  std::optional<double> distance(const Genome& other) const override {
+    double sum = 0;
+    for (std::size_t i = 0; i < numbers_.size(); ++i)
+      sum += std::abs(numbers_[i] - dynamic_cast<const VectorGenome&>(other).numbers_[i]);
+    return sum;
   }
   const std::vector<double>& values() const { return numbers_; }
 

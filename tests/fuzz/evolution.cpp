@@ -80,7 +80,7 @@ void check_run_file(std::string_view input) {
 
 std::vector<std::string> run_file_seeds() {
   std::vector<std::string> seeds;
-  for (const char* algorithm : {"afpo", "nsga2", "map-elites", "novelty", "alps"})
+  for (const char* algorithm : {"afpo", "nsga2", "map-elites", "novelty", "alps", "neat"})
     seeds.push_back(run_file_texts(settings(algorithm)).run);
   RunSettings land = settings("ga");
   land.evolution.configuration.environment = Land{};
@@ -125,6 +125,10 @@ std::vector<std::string> journal_seeds() {
 
 // Its genomes have a step.
 const GenomeSpaceRequest adaptive{.genes = Genes::muscles, .muscles = {.muscle_adaptation = true, .muscle_tail = 1}};
+// Its brains have neurons and connections.
+const GenomeSpaceRequest growing{.kind = "tapered",
+                                 .genes = Genes::muscles | Genes::brain,
+                                 .growth = {.brain_growth = true, .new_neurons = 0.5, .new_connections = 0.5}};
 
 // The first byte chooses the kind.
 void check_genome(std::string_view input) {
@@ -133,6 +137,7 @@ void check_genome(std::string_view input) {
     for (const char* kind : {"voxel", "cppn", "nn", "shell", "tapered"})
       made.push_back(make_genome_space({.kind = kind}));
     made.push_back(make_genome_space(adaptive));
+    made.push_back(make_genome_space(growing));
     return made;
   }();
   if (input.empty()) return;
@@ -144,6 +149,7 @@ void check_genome(std::string_view input) {
   require(again->identity() == genome->identity(), "a genome has another identity when it is read again");
   genome->mutate(1, 1);
   genome->cross(*again, 1);
+  genome->distance(*again);
 }
 
 std::vector<std::string> genome_seeds() {
@@ -153,7 +159,10 @@ std::vector<std::string> genome_seeds() {
     const auto space = make_genome_space({.kind = kind});
     seeds.push_back(choice++ + space->random(1, 0)->encode());
   }
-  seeds.push_back(choice + make_genome_space(adaptive)->random(1, 0)->mutate(1, 1)->encode());
+  seeds.push_back(choice++ + make_genome_space(adaptive)->random(1, 0)->mutate(1, 1)->encode());
+  GenomePointer grown = make_genome_space(growing)->random(1, 0);
+  for (std::uint64_t seed = 0; seed < 6; ++seed) grown = grown->mutate(1, seed);
+  seeds.push_back(choice + grown->encode());
   return seeds;
 }
 

@@ -43,6 +43,9 @@ struct AlgorithmSettings {
   std::size_t islands = 1;       // into which the population is split; 1 = it is not (selection/islands.h)
   int migration_interval = 10;   // islands: generations; 0 = nobody migrates
   std::size_t migrants = 2;      // islands: robots of each island
+  double species_distance = 3;   // neat: from the oldest robot of a species to the others
+  std::size_t species = 12;      // neat: at most; if there are more, species_distance grows
+  int stagnation = 15;           // neat: generations without a better robot, after which a species dies out; 0 = never
 
   static constexpr std::tuple parameters{
       Parameter("population", &AlgorithmSettings::population, "", Accepts::between(1, 1e6), {1, 4096, true},
@@ -67,13 +70,20 @@ struct AlgorithmSettings {
       Parameter(
           "age_gap", &AlgorithmSettings::age_gap, "", Accepts::between(1, 10000), {1, 20},
           "alps: generations below which robots are in the lowest layer; above it, 2, 4, 9, 16, ... times as many"),
-      Parameter("islands", &AlgorithmSettings::islands, "", Accepts::between(1, 1000), {1, 16},
-                "ga, afpo, alps, nsga2, random: islands into which the population is split, each with parents of its "
-                "own"),
+      Parameter(
+          "islands", &AlgorithmSettings::islands, "", Accepts::between(1, 1000), {1, 16},
+          "ga, afpo, alps, nsga2, neat, random: islands into which the population is split, each with parents of its "
+          "own"),
       Parameter("migration_interval", &AlgorithmSettings::migration_interval, "", Accepts::between(0, 1e6), {0, 50},
                 "islands: generations from one migration to the next; 0 = none"),
       Parameter("migrants", &AlgorithmSettings::migrants, "", Accepts::between(1, 1e6), {1, 16},
-                "islands: best robots of each island whose copies replace the worst of the next one")};
+                "islands: best robots of each island whose copies replace the worst of the next one"),
+      Parameter("species_distance", &AlgorithmSettings::species_distance, "", Accepts::above_zero, {0.1f, 10},
+                "neat: distance of brains below which robots are of one species"),
+      Parameter("species", &AlgorithmSettings::species, "", Accepts::between(1, 10000), {1, 50},
+                "neat: species at most; where there would be more, their distance grows"),
+      Parameter("stagnation", &AlgorithmSettings::stagnation, "", Accepts::between(0, 1e6), {0, 50},
+                "neat: generations without a better robot after which a species dies out; 0 = none does")};
 };
 
 // What a child is made from: indices of its parents among the living. None = a new random genome. Algorithms that
@@ -110,11 +120,12 @@ struct AlgorithmDescription {
   bool many_objectives = false;  // whether it takes more than one
   bool of_numbers = false;       // whether it searches among numbers: its genomes need Genome::numbers()
   bool of_behavior = false;      // whether it needs axes
+  bool of_species = false;       // whether its genomes need Genome::distance()
   bool has_map = false;          // whether the best of each cell of a map live on
   bool learns = false;           // whether it knows more than the living
   std::unique_ptr<Algorithm> (*make)(const AlgorithmSettings& settings) = nullptr;
 };
-// ga, afpo, alps, nsga2, map-elites, novelty, cma-es, sep-cma-es, cma-me, random.
+// ga, afpo, alps, nsga2, map-elites, novelty, neat, cma-es, sep-cma-es, cma-me, random.
 std::span<const AlgorithmDescription> algorithms();
 // Throws ParameterError("algorithm", ...) for an unknown name. Custom ones (mercury/custom.h) have one description.
 const AlgorithmDescription& algorithm_named(std::string_view name);

@@ -265,6 +265,32 @@ TEST_F(EvolveCommand, StepsOfMusclesAreSettingsOfARun) {
   EXPECT_THAT(numbers.messages, testing::HasSubstr("--muscle-adaptation: does not go with --algorithm cma-es"));
 }
 
+TEST_F(EvolveCommand, GrowthOfBrainsIsASettingOfARun) {
+  ASSERT_EQ(evolve("whole", growing("4")).status, 0);
+  ASSERT_EQ(evolve("parts", growing("2")).status, 0);
+  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  EXPECT_EQ(lineage("parts"), lineage("whole"));
+  const std::string settings = read("whole/run.toml");
+  EXPECT_THAT(settings, testing::HasSubstr("\nbrain_growth = true"));
+  EXPECT_THAT(settings, testing::HasSubstr("\nnew_neurons = 0.3"));
+  EXPECT_THAT(settings, testing::HasSubstr("\nname = \"neat\""));
+  EXPECT_THAT(settings, testing::HasSubstr("\nspecies_distance = 3.0"));
+  EXPECT_THAT(mercury({"info", path("whole")}).output, testing::HasSubstr("; brains grow"));
+  const auto refused = [&](const Arguments& options, const std::string& message) {
+    const Outcome outcome = evolve("refused", joined(small("1"), options));
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.messages, "mercury: " + message + "\n");
+  };
+  refused({"--brain-growth"}, "--brain-growth: brains do not change; give brain among the genes");
+  refused({"--genes", "body,brain", "--new-neurons", "0.1"}, "--new-neurons: goes with brain growth alone");
+  refused({"--genes", "body,brain", "--brain-growth", "--recurrence", "2"},
+          "--recurrence: 2 is not accepted; give 0 to 1");
+  refused({"--genes", "body,brain", "--algorithm", "neat"},
+          "--algorithm: neat divides robots into species by brains that grow; let brains grow");
+  refused({"--genes", "body,brain", "--brain-growth", "--algorithm", "neat", "--species", "0"},
+          "--species: 0 is not accepted; give 1 to 10000");
+}
+
 TEST_F(EvolveCommand, NoveltyAgesIslandsAndEmittersGoOnBitForBit) {
   const Arguments axes{"--axis", "speed_x:-0.1:0.1", "--axis", "speed_y:-0.1:0.1"};
   for (const Arguments& algorithm : {joined({"--algorithm", "novelty"}, axes),

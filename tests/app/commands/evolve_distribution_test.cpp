@@ -77,6 +77,31 @@ TEST_F(EvolveCommand, IslandsAreTheSameInShards) {
   EXPECT_EQ(lineage("run"), lineage("whole"));
 }
 
+TEST_F(EvolveCommand, GrowingBrainsAreTheSameInShards) {
+  ASSERT_EQ(evolve("whole", growing("3")).status, 0);
+  ASSERT_EQ(evolve("run", joined(growing("3"), {"--prepare"})).status, 0);
+  for (int generation = 0; generation <= 3; ++generation) {
+    for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(evolve("run", {"--shard", shard, "--quiet"}).status, 0);
+    ASSERT_EQ(evolve("run", {"--merge"}).status, 0);
+  }
+  EXPECT_EQ(lineage("run"), lineage("whole"));
+}
+
+// Wherever it is at that moment.
+TEST_F(EvolveCommand, KilledRunsOfGrowingBrainsEndInTheSameLineage) {
+  ASSERT_EQ(evolve("whole", growing("12")).status, 0);
+  Arguments command = joined({"evolve", path("run")}, growing("12"));
+  for (std::size_t target : {1, 4, 8}) {
+    ChildProcess child(MERCURY_PROGRAM, command);
+    wait_for_generations("run", target);
+    child.kill();
+    outcome_of(child);
+    command = {"evolve", path("run"), "--resume", "--quiet"};
+  }
+  ASSERT_EQ(mercury(command).status, 0);
+  EXPECT_EQ(lineage("run"), lineage("whole"));
+}
+
 TEST_F(EvolveCommand, RunsWhoseFolderWasRemovedEndWithALine) {
   for (const bool moved : {false, true}) {
     ChildProcess child(MERCURY_PROGRAM, joined({"evolve", path("run")}, small("100000")));
@@ -157,6 +182,13 @@ TEST_F(EvolveByMpi, IslandsAreTheSameOnAllRanks) {
   const Arguments islands = joined(small("3"), {"--islands", "2", "--migration-interval", "2", "--migrants", "1"});
   ASSERT_EQ(evolve("whole", islands).status, 0);
   const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, islands)));
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_EQ(lineage("run"), lineage("whole"));
+}
+
+TEST_F(EvolveByMpi, GrowingBrainsAreTheSameOnAllRanks) {
+  ASSERT_EQ(evolve("whole", growing("3")).status, 0);
+  const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, growing("3"))));
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(lineage("run"), lineage("whole"));
 }

@@ -30,6 +30,12 @@ class EvolveCommand : public FolderTest {
     return {"--from", "voxel:3x2x2", "--population", "8",   "--generations", generations, "--seconds",
             "0.3",    "--quiet",     "--device",     "cpu", "--seed",        "5"};
   }
+  // Brains that grow in changing bodies, and their species.
+  static Arguments growing(const std::string& generations) {
+    return joined(small(generations), {"--genes", "body,brain", "--brain-growth", "--new-neurons", "0.3",
+                                       "--new-connections", "0.3", "--algorithm", "neat", "--crossover", "0.75",
+                                       "--target", "1,0.5,0", "--objective", "target_approach"});
+  }
   Outcome evolve(const std::string& name, const Arguments& options) const {
     return mercury(joined({"evolve", path(name)}, options));
   }

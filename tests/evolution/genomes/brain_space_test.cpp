@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Evolution of brains: what changes, what stays, and that it finds a target. genome_space_test.cpp has what holds for
 // genomes of all kinds.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "mercury/error.h"
 #include "mercury/evolution.h"
@@ -130,6 +132,103 @@ TEST(BrainSpaces, RefuseWhatHasNothingToChange) {
             "robot " + robot.name + ": its brain has no weights that could change");
 }
 
+BrainGrowth growth() { return {.brain_growth = true, .new_neurons = 0.2, .new_connections = 0.2}; }
+
+// Of a file with sensors and actuators, its senses drive all actuators; of robots without, each actuator has a brain.
+TEST(GrowingBrainSpaces, BeginWithoutHiddenNeurons) {
+  Robot founder = thinking_robot();
+  founder.brain.reset();
+  founder.sensors = {{.kind = SensorKind::clock, .frequency = 3}, {.kind = SensorKind::target_direction}};
+  for (const Genes genes : {Genes::brain, Genes::muscles | Genes::brain, Genes::body | Genes::brain}) {
+    const auto space = make_genome_space({.genes = genes, .founders = {founder}, .growth = growth()});
+    const Robot first = space->random(1, 0)->grow("first"), second = space->random(1, 1)->grow("second");
+    ASSERT_TRUE(first.brain) << name_of(genes);
+    EXPECT_EQ(first.sensors, founder.sensors);
+    ASSERT_EQ(first.brain->layers.size(), 1u);
+    EXPECT_EQ(first.brain->layers[0].neurons, actuators_of(founder).size());
+    EXPECT_EQ(first.brain->layers[0].inputs.at(0).weights.size(), 5 * actuators_of(founder).size());
+    EXPECT_NE(weights_of(*first.brain), weights_of(*second.brain));
+  }
+  const auto space = make_genome_space({.kind = "voxel", .genes = Genes::body | Genes::brain, .growth = growth()});
+  const Robot random = space->random(1, 0)->grow("random");
+  ASSERT_TRUE(random.brain && random.brain->per_actuator);
+  ASSERT_EQ(random.brain->layers.size(), 1u);
+  EXPECT_EQ(random.brain->layers[0].neurons, 1u);
+  EXPECT_EQ(random.brain->layers[0].inputs.at(0).weights.size(), 8u);
+}
+
+// Bodies change under them, brains cross, and whatever comes of it is a robot.
+TEST(GrowingBrainSpaces, ChildrenOfChangedBodiesKeepWhatTheyGrew) {
+  for (const bool given : {false, true}) {
+    GenomeSpaceRequest request{.kind = "voxel", .genes = Genes::both | Genes::brain, .growth = growth()};
+    if (given) request.founders = {thinking_robot(3), thinking_robot(4)};
+    const auto space = make_genome_space(request);
+    std::vector<GenomePointer> living;
+    for (std::uint64_t index = 0; index < 6; ++index) living.push_back(space->random(1, index));
+    std::size_t most = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+      Random random(seed);
+      const GenomePointer &a = living[random.below(6)], &b = living[random.below(6)];
+      GenomePointer child = a;
+      if (random.chance(0.5)) child = a->cross_by_fitness(*b, std::partial_ordering::greater, seed);
+      child = child->mutate(1, seed);
+      const Robot robot = child->grow("child");
+      ASSERT_NO_THROW(validate(robot)) << seed;
+      ASSERT_EQ(robot.brain.has_value(), !actuators_of(robot).empty()) << seed;
+      if (robot.brain) most = std::max(most, robot.brain->layers.size());
+      EXPECT_EQ(child->distance(*a), a->distance(*child));
+      EXPECT_EQ(child->distance(*child), 0);
+      living[random.below(6)] = child;
+    }
+    EXPECT_GT(most, 2u);
+  }
+}
+
+// Brains of other senses or layers have no common markings; they are of different species.
+TEST(GrowingBrainSpaces, BrainsOfOtherFramesAreNotMixed) {
+  const Robot a = thinking_robot(3), b = thinking_robot(3, 5), c = thinking_robot(4);
+  const auto space = make_genome_space({.genes = Genes::brain, .founders = {a, b, c}, .growth = growth()});
+  const GenomePointer first = space->random(1, 0), second = space->random(1, 1), third = space->random(1, 2);
+  EXPECT_EQ(first->grow("a").brain, a.brain);  // founders are as they are
+  EXPECT_EQ(first->distance(*second), std::numeric_limits<double>::infinity());
+  EXPECT_LT(*first->distance(*third), 2);  // only weights differ
+  EXPECT_EQ(first->cross(*second, 1)->grow("a").brain, a.brain);
+  EXPECT_NE(first->cross(*third, 1)->grow("a").brain, a.brain);
+}
+
+TEST(GrowingBrainSpaces, RefuseWhatCannotGrow) {
+  const auto refused = [](const GenomeSpaceRequest& request) { return refusal([&] { make_genome_space(request); }); };
+  Robot robot = thinking_robot(), brainless = robot, learning = robot;
+  brainless.brain.reset();
+  brainless.sensors.clear();
+  learning.brain->per_actuator = false;
+  learning.sensors = {{.kind = SensorKind::clock}};
+  give_layer_of_outputs(learning);
+  NeuronLayer& layer = learning.brain->layers[0];
+  layer.inputs.push_back({.from = "senses", .weights = std::vector<float>(2 * layer.neurons), .rate = 0.5f});
+  EXPECT_EQ(refused({.growth = growth()}), "brain_growth: brains do not change; give brain among the genes");
+  EXPECT_EQ(refused({.genes = Genes::brain, .founders = {robot}, .growth = {.recurrence = 0}}),
+            "recurrence: goes with brain growth alone");
+  EXPECT_EQ(refused({.genes = Genes::brain, .founders = {robot}, .growth = {.brain_growth = true, .new_neurons = 2}}),
+            "new_neurons: 2 is not accepted; give 0 to 1");
+  EXPECT_EQ(refused({.genes = Genes::brain, .founders = {brainless}, .growth = growth()}),
+            "genes: brain alone needs robots that have one or sensors, and robot " + robot.name +
+                " has none; start from sample:hunter or a file with a brain, or give body,brain or muscles,brain");
+  EXPECT_EQ(refused({.genes = Genes::brain, .founders = {learning}, .growth = growth()}),
+            "robot " + robot.name + ": /brain/layers/0: learns while the robot lives, which brains that grow do not");
+  EvolutionSettings settings;
+  settings.algorithm.name = "neat";
+  for (const Genes genes : {Genes::brain, Genes::body})
+    EXPECT_EQ(refusal([&] { validate(settings, *make_genome_space({.genes = genes, .founders = {robot}})); }),
+              "algorithm: neat divides robots into species by brains that grow; let brains grow");
+  settings.algorithm.name = "cma-es";
+  EXPECT_THAT(refusal([&] {
+                validate(settings,
+                         *make_genome_space({.genes = Genes::brain, .founders = {robot}, .growth = growth()}));
+              }),
+              testing::StartsWith("algorithm: cma-es needs genomes that are a fixed list of numbers"));
+}
+
 // A flat body of 10 x 2 voxels, whose sides have four muscles each. Its neurons know the time and where the target is,
 // and do not move it yet.
 Robot eel_without_skills() {
@@ -199,35 +298,43 @@ TEST(BrainEvolution, BringsARobotNearerToItsTarget) {
 }
 
 // From the bytes of the living, which is all that a run folder keeps.
+void expect_to_go_on(const GenomeSpaceRequest& request, const std::string& algorithm) {
+  const auto space = make_genome_space(request);
+  EvolutionSettings settings = search_for_a_target();
+  settings.algorithm.name = algorithm;
+  settings.generations = 4;
+  settings.trials.seconds = 0.4;
+  settings.algorithm.crossover = 0.5;
+  const auto assessor = make_assessor(settings);
+  Evolution whole(settings, *space), stopped(settings, *space);
+  std::vector<Individual> born;
+  for (int i = 0; i < 2; ++i) {
+    whole.advance(*assessor);
+    std::ranges::move(stopped.advance(*assessor)->born, std::back_inserter(born));
+  }
+  const auto again = make_genome_space(request);
+  std::vector<Individual> living = stopped.living();
+  for (Individual& individual : living) individual.genome = again->decode(individual.genome->encode());
+  Evolution resumed(settings, *again);
+  resumed.restore(1, std::move(living), born);
+  while (!whole.is_over()) {
+    const std::optional<Generation> expected = whole.advance(*assessor), got = resumed.advance(*assessor);
+    EXPECT_EQ(got->living, expected->living);
+    ASSERT_EQ(got->born.size(), expected->born.size());
+    for (std::size_t i = 0; i < got->born.size(); ++i) {
+      ASSERT_EQ(got->born[i].genome->encode(), expected->born[i].genome->encode());
+      ASSERT_EQ(got->born[i].parents, expected->born[i].parents);
+      ASSERT_EQ(got->born[i].assessment.hash, expected->born[i].assessment.hash);  // of the final states
+    }
+  }
+}
+
 TEST(BrainEvolution, GoesOnBitForBitAfterItWasStopped) {
   for (const Genes genes : {Genes::brain, Genes::both | Genes::brain}) {
-    const auto space = make_genome_space({.genes = genes, .founders = {thinking_robot(3), thinking_robot(4)}});
-    EvolutionSettings settings = search_for_a_target();
-    settings.generations = 4;
-    settings.trials.seconds = 0.4;
-    settings.algorithm.crossover = 0.5;
-    const auto assessor = make_assessor(settings);
-    Evolution whole(settings, *space), stopped(settings, *space);
-    std::vector<Individual> born;
-    for (int i = 0; i < 2; ++i) {
-      whole.advance(*assessor);
-      std::ranges::move(stopped.advance(*assessor)->born, std::back_inserter(born));
-    }
-    const auto again = make_genome_space({.genes = genes, .founders = {thinking_robot(3), thinking_robot(4)}});
-    std::vector<Individual> living = stopped.living();
-    for (Individual& individual : living) individual.genome = again->decode(individual.genome->encode());
-    Evolution resumed(settings, *again);
-    resumed.restore(1, std::move(living), born);
-    while (!whole.is_over()) {
-      const std::optional<Generation> expected = whole.advance(*assessor), got = resumed.advance(*assessor);
-      EXPECT_EQ(got->living, expected->living);
-      ASSERT_EQ(got->born.size(), expected->born.size());
-      for (std::size_t i = 0; i < got->born.size(); ++i) {
-        ASSERT_EQ(got->born[i].genome->encode(), expected->born[i].genome->encode());
-        ASSERT_EQ(got->born[i].parents, expected->born[i].parents);
-        ASSERT_EQ(got->born[i].assessment.hash, expected->born[i].assessment.hash);  // of the final states
-      }
-    }
+    GenomeSpaceRequest request{.genes = genes, .founders = {thinking_robot(3), thinking_robot(4)}};
+    expect_to_go_on(request, "ga");
+    request.growth = growth();
+    for (const char* algorithm : {"neat", "ga"}) expect_to_go_on(request, algorithm);
   }
 }
 

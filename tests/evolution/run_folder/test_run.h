@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,6 +48,12 @@ class ByteGenome : public Genome {
   }
   std::uint64_t identity() const override { return std::hash<std::string>{}(bytes_); }
   std::string encode() const override { return bytes_; }
+  std::optional<double> distance(const Genome& other) const override {
+    const std::string bytes = other.encode();
+    double differing = 0;
+    for (std::size_t i = 0; i < bytes.size(); ++i) differing += bytes[i] != bytes_[i];
+    return differing / 10;
+  }
   std::vector<double> numbers() const override {
     std::vector<double> numbers;
     for (const char byte : bytes_) numbers.push_back(static_cast<unsigned char>(byte) / step);

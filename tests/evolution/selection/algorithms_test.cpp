@@ -13,6 +13,7 @@
 #include "mercury/algorithm.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
+#include "tests/evolution/vector_genome.h"
 
 namespace mercury {
 namespace {
@@ -90,8 +91,8 @@ std::string algorithm_name(const testing::TestParamInfo<std::string_view>& test)
   return name;
 }
 INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithm,
-                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "novelty", "cma-es", "sep-cma-es",
-                                         "cma-me", "random"),
+                         testing::Values("ga", "afpo", "alps", "nsga2", "map-elites", "novelty", "neat", "cma-es",
+                                         "sep-cma-es", "cma-me", "random"),
                          algorithm_name);
 
 TEST_P(EveryAlgorithm, SurvivorsAreDifferentMembersOfThePoolTheBestFirst) {
@@ -504,6 +505,72 @@ TEST(Alps, ParentsAreOfTheLayerOfTheChildOrTheOneBelowAndSomeChildrenAreNew) {
   EXPECT_EQ(fresh, 2u);  // 4 robots of the lowest layer are replaced within 2 generations
 }
 
+// Robots whose distance is that of two numbers.
+struct Placed {
+  double place, score;
+  int generation = 0;
+};
+std::vector<Individual> placed(const std::vector<Placed>& robots) {
+  std::vector<Individual> pool;
+  for (const Placed& robot : robots) {
+    pool.push_back(individual(pool.size(), {robot.score}));
+    pool.back().generation = robot.generation;
+    pool.back().genome = std::make_shared<VectorGenome>(std::vector{robot.place});
+  }
+  return pool;
+}
+// How many of 600 children have each robot as a parent.
+std::vector<std::size_t> children_of(const std::vector<Placed>& robots, AlgorithmSettings settings = {}) {
+  settings.name = "neat";
+  settings.crossover = 0;
+  Random random(1);
+  std::vector<std::size_t> children(robots.size());
+  for (const ChildPlan& plan : make_algorithm(settings)->plan(placed(robots), 600, random))
+    ++children[plan.parents.at(0)];
+  return children;
+}
+
+// The paper's equation 2: a score counts divided by the number of robots of the species. One fifth of them are parents.
+TEST(Neat, SpeciesHaveChildrenInProportionToTheMeanOfTheirScores) {
+  EXPECT_THAT(children_of({{0, 6}, {1, 7}, {1, 5}, {2, 6}, {10, 3}, {20, 2}, {20, 4}}),
+              ElementsAre(0, 300, 0, 0, 150, 0, 150));
+  // Below 0, scores count from the lowest one; robots that came to grief count nothing.
+  EXPECT_THAT(children_of({{0, -1}, {10, -3}, {10, -7}, {20, -7}, {20, worst_score}}), ElementsAre(450, 150, 0, 0, 0));
+  EXPECT_THAT(children_of({{0, 0}, {10, 0}, {20, worst_score}}), ElementsAre(200, 200, 200));
+  // Of shares that are no whole numbers, the largest remainders get the rest: 600 / 7 = 85.7.
+  EXPECT_THAT(children_of({{0, 1}, {10, 5}, {20, 1}}), ElementsAre(86, 428, 86));
+}
+
+TEST(Neat, RobotsAreOfTheFirstSpeciesWhoseOldestMemberIsNear) {
+  // 4 is near to 2, but not to 0, with whom 2 is; 6.9 is near to 4.
+  EXPECT_THAT(children_of({{0, 1}, {2, 1}, {4, 2}, {6.9, 4}}), ElementsAre(150, 0, 0, 450));
+  EXPECT_THAT(children_of({{0, 1}, {2, 1}, {4, 2}, {6.9, 4}}, {.species_distance = 2.5}), ElementsAre(86, 0, 171, 343));
+  // Of 0, 10 and 20 there may be two: at 3 * 1.25^6 = 11.4, 10 joins 0.
+  EXPECT_THAT(children_of({{0, 1}, {10, 3}, {20, 6}}, {.species = 2}), ElementsAre(0, 150, 450));
+  EXPECT_THAT(children_of({{0, 1}, {1e30, 3}, {2e30, 6}}, {.species = 1}), ElementsAre(0, 0, 600));
+}
+
+TEST(Neat, SpeciesThatDoNotImproveDieOutButForTheBest) {
+  const AlgorithmSettings settings{.stagnation = 15};
+  // 20 generations after, the best of the first species is 16 old, that of the second one 15, that of the third 20.
+  const std::vector<Placed> robots{{0, 4, 4}, {10, 2, 5}, {20, 6, 0}, {1, 1, 20}, {11, 2, 20}, {21, 6, 20}};
+  EXPECT_THAT(children_of(robots, settings), ElementsAre(0, 150, 450, 0, 0, 0));
+  EXPECT_THAT(children_of(robots, {.stagnation = 0}), ElementsAre(143, 114, 343, 0, 0, 0));
+  const auto algorithm = make_algorithm({.name = "neat", .population = 6, .stagnation = 15});
+  EXPECT_THAT(algorithm->survivors(placed(robots), 3), ElementsAre(2, 5, 0, 1, 4, 3));  // there is room for all
+  // Where the best of all is older than 20, the two best species go on alone.
+  const std::vector<Placed> old{{0, 4, 0}, {10, 2, 21}, {20, 6, 0}, {30, 3, 21}};
+  EXPECT_THAT(children_of(old, settings), ElementsAre(240, 0, 360, 0));
+}
+
+TEST(Neat, TheBestOfEachSpeciesLivesOnWithTheChildrenLessTheWorstOfTheLargest) {
+  const auto algorithm = make_algorithm({.name = "neat", .population = 5});
+  // 0 is the best of its species, 1 is not, 2 was surpassed by its child 4.
+  const std::vector<Placed> robots{{0, 9, 0},  {0, 8, 0}, {10, 2, 0}, {1, 4, 1},
+                                   {10, 3, 1}, {1, 5, 1}, {1, 6, 1},  {9, 1, 1}};
+  EXPECT_THAT(algorithm->survivors(placed(robots), 3), ElementsAre(0, 6, 5, 4, 7));
+}
+
 TEST(RandomSearch, KeepsTheBestAndMakesRandomChildren) {
   const auto algorithm = make_algorithm({.name = "random", .population = 2});
   const std::vector<Individual> pool{individual(4, {1}), individual(3, {5}), individual(2, {5}), individual(1, {0})};
@@ -537,6 +604,9 @@ TEST(Algorithms, SettingsOutOfRangeAreNamed) {
   EXPECT_EQ(parameter_of({.neighbors = 0}), "neighbors");
   EXPECT_EQ(parameter_of({.age_layers = 0}), "age_layers");
   EXPECT_EQ(parameter_of({.age_gap = 0}), "age_gap");
+  EXPECT_EQ(parameter_of({.species_distance = 0}), "species_distance");
+  EXPECT_EQ(parameter_of({.species = 0}), "species");
+  EXPECT_EQ(parameter_of({.stagnation = -1}), "stagnation");
   EXPECT_EQ(parameter_of({.axes = {{.quantity = "beauty"}}}), "axes");
   EXPECT_EQ(parameter_of({.axes = {{.quantity = "size", .lowest = 1, .highest = 1}}}), "axes");
   EXPECT_EQ(parameter_of({.axes = {{.quantity = "size", .lowest = 0, .highest = infinite}}}), "axes");
@@ -550,7 +620,7 @@ TEST(Algorithms, AnUnknownNameListsAll) {
     FAIL();
   } catch (const ParameterError& error) {
     EXPECT_THAT(error.problem(),
-                HasSubstr("ga, afpo, alps, nsga2, map-elites, novelty, cma-es, sep-cma-es, cma-me, random"));
+                HasSubstr("ga, afpo, alps, nsga2, map-elites, novelty, neat, cma-es, sep-cma-es, cma-me, random"));
   }
 }
 

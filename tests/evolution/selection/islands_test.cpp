@@ -38,7 +38,8 @@ class IslandModel : public testing::TestWithParam<std::string_view> {
 };
 
 std::string suite_name(const testing::TestParamInfo<std::string_view>& test) { return std::string(test.param); }
-INSTANTIATE_TEST_SUITE_P(Algorithms, IslandModel, testing::Values("ga", "afpo", "alps", "nsga2", "random"), suite_name);
+INSTANTIATE_TEST_SUITE_P(Algorithms, IslandModel, testing::Values("ga", "afpo", "alps", "nsga2", "neat", "random"),
+                         suite_name);
 
 std::vector<Generation> run(const EvolutionSettings& settings, Assessor& assessor) {
   const VectorSpace space;
@@ -292,9 +293,9 @@ TEST(Islands, SettingsThatDoNotGoTogetherAreRefused) {
   };
   const std::vector<MapAxis> axes{{.quantity = "size"}};
   EXPECT_EQ(refusal({.name = "cma-es", .islands = 2}),
-            "islands: cma-es learns from all robots; give 1, or --algorithm ga, afpo, alps, nsga2 or random");
+            "islands: cma-es learns from all robots; give 1, or --algorithm ga, afpo, alps, nsga2, neat or random");
   EXPECT_EQ(refusal({.name = "map-elites", .axes = axes, .islands = 2}),
-            "islands: map-elites keeps one map; give 1, or --algorithm ga, afpo, alps, nsga2 or random");
+            "islands: map-elites keeps one map; give 1, or --algorithm ga, afpo, alps, nsga2, neat or random");
   EXPECT_THAT(refusal({.name = "novelty", .axes = axes, .islands = 2}), testing::StartsWith("islands: "));
   EXPECT_EQ(refusal({.population = 4, .islands = 5}), "islands: 5 are more than the population of 4");
   EXPECT_EQ(refusal({.population = 8, .islands = 4}),
