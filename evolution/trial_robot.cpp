@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "mercury/cppn.h"
 #include "mercury/error.h"
@@ -19,8 +22,24 @@ constexpr double two_pi = 6.283185307179586;
 
 VoxelGrid grid_of(const Robot& robot) {
   if (std::optional<VoxelGrid> grid = voxel_grid_of(robot)) return *std::move(grid);
-  if (const std::optional<CppnGenome> genome = cppn_genome_of(robot)) return paint(*genome);
+  if (const std::optional<CppnGenome> genome = cppn_genome_of(robot)) return largest_body(paint(*genome));
   throw InputError("damage", "only robots of voxels can lose some");
+}
+
+// "muscle 3" of "muscle 3, 2 x edge", as real bodies name the materials that they make of one.
+std::string made_of(const std::string& name) { return name.substr(0, name.rfind(", ")); }
+
+// The actuators of a real body for another one of the same materials, whose table has other numbers.
+std::vector<Actuator> actuators_for(const Robot& other, const Robot& robot) {
+  std::vector<Actuator> actuators = robot.actuators;
+  for (Actuator& actuator : actuators) {
+    std::set<std::string> driven;
+    for (const MaterialId id : actuator.materials) driven.insert(made_of(robot.material_names[id]));
+    actuator.materials.clear();
+    for (std::size_t id = 1; id < other.materials.size(); ++id)
+      if (driven.contains(made_of(other.material_names[id]))) actuator.materials.push_back(static_cast<MaterialId>(id));
+  }
+  return actuators;
 }
 
 Robot without_some_voxels(const Robot& robot, double share, Random& random) {
@@ -29,9 +48,17 @@ Robot without_some_voxels(const Robot& robot, double share, Random& random) {
   for (MaterialId& cell : damaged.cells)
     if (random.chance(share)) cell = air;
   if (std::ranges::all_of(damaged.cells, [](MaterialId cell) { return cell == air; })) damaged = whole;
-  Robot changed = make_voxel_robot(damaged, {.name = robot.name, .materials = without_real_body(robot).materials});
-  if (const std::optional<RealMaterial> material = real_material_of(robot))
+  const Robot paper = without_real_body(robot);
+  const std::optional<CppnGenome> genome = cppn_genome_of(paper);
+  Robot changed = genome ? grow_part(*genome, damaged, robot.name) : make_voxel_robot(damaged, {.name = robot.name});
+  changed.materials = paper.materials;
+  changed.material_names = paper.material_names;
+  if (const std::optional<RealMaterial> material = real_material_of(robot)) {
     changed = with_real_body(changed, *material);
+    changed.actuators = actuators_for(changed, robot);
+  } else {
+    changed.actuators = robot.actuators;
+  }
   carry_points(robot, changed);
   return changed;
 }
@@ -58,13 +85,10 @@ Robot trial_robot(const Robot& robot, const TrialSettings& settings, std::uint64
   Random random(seed_of(seed, static_cast<std::uint64_t>(trial)));
   const double delay = trial == 0 ? 0 : random.uniform(0, settings.delay);
   Robot changed = settings.damage > 0 ? without_some_voxels(robot, settings.damage, random) : robot;
-  const std::span<const Material> materials = materials_of(robot);
-  changed.materials.assign(materials.begin(), materials.end());
-  changed.material_names = robot.material_names;
+  if (changed.materials.empty()) changed.materials.assign(default_materials().begin(), default_materials().end());
   if (robot.materials.empty() && robot.brain)  // whose sensors may name muscles of the default table
-    for (std::size_t id = 0; id < materials.size(); ++id)
+    for (std::size_t id = 0; id < changed.materials.size(); ++id)
       changed.material_names.push_back(default_material_name(static_cast<MaterialId>(id)));
-  changed.actuators = robot.actuators;
   carry_brain(robot, changed);
   if (delay > 0) delay_muscles(changed, delay);
   if (settings.noise > 0) disturb_materials(changed, settings.noise, random);

@@ -11,6 +11,9 @@ struct SineCosine {
 };
 SineCosine wave(double turns);
 
+// The angle of a point, from 0 to below 1 turn; 0 at the origin. The error is at most 1e-15.
+double turns_of(const SineCosine& point);
+
 // e^x for x up to 700; 0 for x below -700, where it is under 1e-304. The error is at most 4 units in the last place.
 double portable_exp(double x);
 

@@ -22,19 +22,20 @@ double kept_in_range(double value) { return std::clamp(value, -largest_value, la
 // Numbers of nodes in the order of their places: inputs, hidden nodes, outputs.
 class Numbers {
  public:
-  explicit Numbers(const Cppn& network) : hidden_(network.nodes.size()) {
+  explicit Numbers(const Cppn& network) : hidden_(network.nodes.size()), outputs_(network.outputs) {
     for (std::size_t i = 0; i < hidden_; ++i) of_hidden_.emplace(network.nodes[i].id, cppn_inputs + i);
   }
   // SIZE_MAX if there is no such node.
   std::size_t of(std::uint32_t id) const {
     if (is_input(id)) return id;
-    if (!is_hidden(id)) return hidden_ + id;
+    if (!is_hidden(id)) return output_of(id) < outputs_ ? cppn_inputs + hidden_ + output_of(id) : SIZE_MAX;
     const auto found = of_hidden_.find(id);
     return found == of_hidden_.end() ? SIZE_MAX : found->second;
   }
 
  private:
   std::size_t hidden_;
+  std::uint32_t outputs_;
   std::unordered_map<std::uint32_t, std::size_t> of_hidden_;
 };
 
@@ -48,7 +49,7 @@ void validate_nodes(const std::vector<CppnNode>& nodes) {
                                    std::to_string(max_cppn_nodes));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto& [id, place, function] = nodes[i];
-    if (!is_hidden(id)) refuse("nodes", i, "id " + std::to_string(id) + " is taken; give at least 9");
+    if (!is_hidden(id)) refuse("nodes", i, "id " + std::to_string(id) + " is taken; give 9 to 4294967293");
     if (place < 1 || place >= output_place)
       refuse("nodes", i, "place " + std::to_string(place) + " is not accepted; give 1 to 1073741823");
     if (static_cast<std::size_t>(function) >= cppn_function_names.size()) refuse("nodes", i, "has no known function");
@@ -106,14 +107,16 @@ double value_of(CppnFunction function, double x) {
 }
 
 void validate(const Cppn& network) {
+  if (network.outputs != cppn_phase_outputs && network.outputs != cppn_outputs)
+    throw InputError("/outputs", std::to_string(network.outputs) + " is not accepted; give 4 or 6");
   validate_nodes(network.nodes);
   validate_edges(network);
 }
 
-CppnEvaluator::CppnEvaluator(const Cppn& network) {
+CppnEvaluator::CppnEvaluator(const Cppn& network) : outputs_(network.outputs) {
   const Numbers numbers(network);
   for (const CppnNode& node : network.nodes) nodes_.push_back({node.function, 0});
-  nodes_.resize(nodes_.size() + cppn_outputs, {CppnFunction::linear, 0});
+  nodes_.resize(nodes_.size() + outputs_, {CppnFunction::linear, 0});
   for (const CppnEdge& edge : network.edges) {
     edges_.push_back({numbers.of(edge.from), static_cast<double>(edge.weight)});
     ++nodes_[numbers.of(edge.to) - cppn_inputs].edges;
@@ -139,8 +142,8 @@ void CppnEvaluator::operator()(std::span<const Point> points, std::span<Outputs>
     for (std::size_t i = 0; i < count; ++i)
       sums[i] = kept_in_range(value_of(nodes_[node].function, kept_in_range(sums[i])));
   }
-  for (std::size_t output = 0; output < cppn_outputs; ++output)
-    for (std::size_t i = 0; i < count; ++i) outputs[i][output] = values_[values_.size() - cppn_outputs + output][i];
+  for (std::size_t output = 0; output < outputs_; ++output)
+    for (std::size_t i = 0; i < count; ++i) outputs[i][output] = values_[values_.size() - outputs_ + output][i];
 }
 
 std::array<double, cppn_outputs> evaluate(const Cppn& network, const std::array<double, cppn_inputs - 1>& point) {
@@ -158,12 +161,12 @@ using Key = std::pair<std::uint32_t, std::uint32_t>;  // place and id, by which 
 // Places by id.
 class Places {
  public:
-  explicit Places(const Cppn& network) {
+  explicit Places(const Cppn& network) : outputs_(network.outputs) {
     for (const CppnNode& node : network.nodes) hidden_.emplace(node.id, node.place);
   }
   std::optional<std::uint32_t> of(std::uint32_t id) const {
     if (is_input(id)) return 0;
-    if (!is_hidden(id)) return output_place;
+    if (!is_hidden(id)) return output_of(id) < outputs_ ? std::optional(output_place) : std::nullopt;
     const auto found = hidden_.find(id);
     return found == hidden_.end() ? std::nullopt : std::optional(found->second);
   }
@@ -174,6 +177,7 @@ class Places {
   }
 
  private:
+  std::uint32_t outputs_;
   std::unordered_map<std::uint32_t, std::uint32_t> hidden_;
 };
 
@@ -201,7 +205,7 @@ std::uint32_t new_id(const Cppn& network, const CppnEdge& split) {
 
 std::optional<std::uint32_t> place_of(const Cppn& network, std::uint32_t id) {
   if (is_input(id)) return 0;
-  if (!is_hidden(id)) return output_place;
+  if (!is_hidden(id)) return output_of(id) < network.outputs ? std::optional(output_place) : std::nullopt;
   const auto found = std::ranges::find(network.nodes, id, &CppnNode::id);
   return found == network.nodes.end() ? std::nullopt : std::optional(found->place);
 }
@@ -251,13 +255,14 @@ bool add_random_edge(Cppn& network, float weight, Random& random) {
   if (network.edges.size() >= max_cppn_edges) return false;
   const std::size_t hidden = network.nodes.size();
   // Inputs and hidden nodes, or hidden nodes and outputs.
-  const auto draw = [&](std::uint32_t others, std::uint32_t first) {
+  const auto draw = [&](std::uint32_t others, auto id_of_other) {
     const auto chosen = static_cast<std::size_t>(random.below(hidden + others));
-    return chosen < hidden ? network.nodes[chosen].id : first + static_cast<std::uint32_t>(chosen - hidden);
+    return chosen < hidden ? network.nodes[chosen].id : id_of_other(static_cast<std::uint32_t>(chosen - hidden));
   };
   constexpr int tries = 20;
   for (int i = 0; i < tries; ++i) {
-    const std::uint32_t from = draw(cppn_inputs, 0), to = draw(cppn_outputs, cppn_inputs);
+    const std::uint32_t from = draw(cppn_inputs, [](std::uint32_t input) { return input; });
+    const std::uint32_t to = draw(network.outputs, id_of);
     if (*place_of(network, from) >= *place_of(network, to) || find_edge(network, from, to)) continue;
     weight_of(network, from, to) = weight;
     return true;

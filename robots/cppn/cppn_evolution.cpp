@@ -7,10 +7,8 @@
 
 #include "mercury/cppn.h"
 #include "mercury/error.h"
-#include "mercury/muscle_laws.h"
 #include "mercury/random.h"
 #include "robots/cppn/cppn_graph.h"
-#include "robots/mutation_step.h"
 
 namespace mercury {
 namespace {
@@ -18,24 +16,14 @@ namespace {
 constexpr std::uint64_t tries = 50;           // of a child with a body of its own
 constexpr std::size_t most_grown_nodes = 64;  // mutation adds none beyond
 
-VoxelGrid body_of(const CppnGenome& genome) { return largest_body(paint(genome)); }
-
-bool is_empty(const VoxelGrid& body) {
-  return std::ranges::all_of(body.cells, [](MaterialId cell) { return cell == air; });
-}
-
-void require_strength(double strength) {
-  if (!(std::isfinite(strength) && strength >= 0)) throw ParameterError("strength", "give a number of at least 0");
-}
-
 // The first of make(0), make(1), ... that has a body, and one unlike those of its parents.
 template <class Make>
-CppnGenome first_of_its_own(const CppnGenome& parent, const std::vector<VoxelGrid>& parents, Make make) {
+CppnGenome first_of_its_own(const CppnGenome& parent, const std::vector<PaintedBody>& parents, Make make) {
   CppnGenome last = parent;
   for (std::uint64_t attempt = 0; attempt < tries; ++attempt) {
     CppnGenome child = make(attempt);
-    const VoxelGrid body = body_of(child);
-    if (is_empty(body)) continue;
+    const PaintedBody body = painted_body(child);
+    if (body.is_empty()) continue;
     if (std::ranges::find(parents, body) == parents.end()) return child;
     last = std::move(child);
   }
@@ -106,7 +94,8 @@ class Inheritance {
   Inheritance(const Cppn& a, const Cppn& b, Random& random) : a_(a), b_(b), random_(random) {}
 
   Cppn child() {
-    for (std::uint32_t id = cppn_inputs; id < first_hidden_id; ++id) inherit(id);
+    child_.outputs = a_.outputs;
+    for (std::uint32_t output = 0; output < child_.outputs; ++output) inherit(id_of(output));
     while (!wanted_.empty()) {
       const auto highest = std::prev(wanted_.end());
       const std::uint32_t id = highest->second;
@@ -126,7 +115,8 @@ class Inheritance {
 
   void inherit(std::uint32_t id) {
     const CppnNode *of_a = find(a_, id), *of_b = find(b_, id);
-    const bool from_b = !is_hidden(id) || (of_a && of_b) ? random_.chance(0.5) : !of_a;
+    const bool both = is_hidden(id) ? of_a && of_b : output_of(id) < b_.outputs;
+    const bool from_b = both ? random_.chance(0.5) : is_hidden(id) && !of_a;
     if (is_hidden(id)) {
       if (child_.nodes.size() >= max_cppn_nodes) return;
       child_.nodes.push_back(from_b ? *of_b : *of_a);
@@ -155,8 +145,8 @@ CppnGenome cppn_genome_in(const Robot& robot) {
 }
 
 CppnGenome mutate(const CppnGenome& genome, double strength, std::uint64_t seed) {
-  require_strength(strength);
-  const VoxelGrid body = body_of(genome);
+  if (!(std::isfinite(strength) && strength >= 0)) throw ParameterError("strength", "give a number of at least 0");
+  const PaintedBody body = painted_body(genome);
   if (strength == 0) return genome;
   return first_of_its_own(genome, {body}, [&](std::uint64_t attempt) {
     Random random(seed_of(seed, attempt));
@@ -168,20 +158,9 @@ CppnGenome mutate(const CppnGenome& genome, double strength, std::uint64_t seed)
 }
 
 CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64_t seed, int tail) {
-  require_strength(strength);
   validate(genome);
-  if (strength == 0) return genome;
-  Random random(seed);
   CppnGenome child = genome;
-  const auto move = [&](float& value, double size, float highest) {
-    const double moved = value + std::min(strength, 1e6) * size * step_number(random, tail);
-    value = static_cast<float>(tail == 0 ? std::clamp(std::abs(moved), 0., static_cast<double>(highest))
-                                         : reflected(moved, 0, static_cast<double>(highest)));
-  };
-  const std::uint64_t choice = random.below(3);
-  if (choice != 0) move(child.frequency, 0.5, max_muscle_frequency);
-  if (choice != 1) move(child.amplitude, 0.02, max_muscle_amplitude);
-  if (child == genome) child.amplitude = std::nextafter(child.amplitude, max_muscle_amplitude / 2);
+  move_muscles(child.frequency, child.amplitude, strength, seed, tail);
   return child;
 }
 
@@ -190,7 +169,7 @@ CppnGenome crossover(const CppnGenome& a, const CppnGenome& b, std::uint64_t see
   CppnGenome of_a = a;
   if (random.chance(0.5)) of_a.frequency = b.frequency;
   if (random.chance(0.5)) of_a.amplitude = b.amplitude;
-  const std::vector<VoxelGrid> bodies{body_of(a), body_of(b)};
+  const std::vector<PaintedBody> bodies{painted_body(a), painted_body(b)};
   if (a.network == b.network) return of_a;
   return first_of_its_own(of_a, bodies, [&](std::uint64_t attempt) {
     Random drawn(seed_of(seed, attempt));

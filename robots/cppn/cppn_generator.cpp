@@ -27,6 +27,7 @@ class RandomNetwork {
 
   void draw() {
     network_ = {};
+    if (options_.muscles == PaintedMuscles::fields) network_.outputs = cppn_outputs;
     add_edges();
     add_nodes();
     prune(network_);
@@ -36,20 +37,23 @@ class RandomNetwork {
     fit(kind_output, {.above_zero = muscle, .range = random_.uniform(0.5, 3)});
     fit(phase_output, {.above_zero = random_.uniform(), .range = random_.uniform(0.3, 1.3)});
     fit(frequency_output, {.above_zero = random_.uniform(0.3, 0.7), .range = random_.uniform(1, 3)});
+    if (!has_fields(network_)) return;
+    fit(amplitude_output, {.above_zero = random_.uniform(0.5, 1), .range = random_.uniform(0.3, 2)});
+    fit(stiffness_output, {.above_zero = random_.uniform(0.3, 0.7), .range = random_.uniform(0.3, 2)});
   }
 
  private:
   float normal() { return static_cast<float>(random_.normal()); }
 
   void add_edges() {
-    for (std::uint32_t output = cppn_inputs; output < first_hidden_id; ++output)
+    for (std::uint32_t output = 0; output < network_.outputs; ++output)
       for (std::uint32_t input = 0; input < cppn_inputs; ++input) {
         const float weight = normal();
         const bool joined = random_.chance(0.7) || input == bias_input;
-        if (input == distance_input && output == id_of(presence_output))
-          weight_of(network_, input, output) = -1.5f * std::abs(weight);  // less is there far from the middle
+        if (input == distance_input && output == presence_output)
+          weight_of(network_, input, id_of(output)) = -1.5f * std::abs(weight);  // less is there far from the middle
         else if (joined)
-          weight_of(network_, input, output) = weight;
+          weight_of(network_, input, id_of(output)) = weight;
       }
   }
   void add_nodes() {
@@ -130,7 +134,7 @@ CppnGenome random_cppn_genome(const CppnOptions& options, std::uint64_t seed, st
   double largest = -1;
   for (int i = 0; i < tries; ++i) {
     RandomNetwork(options, genome, random).draw();
-    const Contents body = contents_of(largest_body(paint(genome)));
+    const Contents body = contents_of(painted_body(genome).grid);
     if (body.filled >= 0.7 * options.filled && body.muscle >= 0.4) return genome;
     if (body.filled > largest) {
       largest = body.filled;
@@ -170,8 +174,12 @@ const ParameterTable<CppnOptions>& table() {
                                    .words = {"none", "x", "y", "z"}}),
       parameter(&Options::hidden,
                 {.name = "nodes", .help = "Hidden nodes that a network begins with", .highest = 60, .advanced = true}),
+      parameter(&Options::muscles, {.name = "painted_muscles",
+                                    .help = "What of muscles is painted: phases alone, or amplitude and stiffness too",
+                                    .words = {"phases", "fields"},
+                                    .advanced = true}),
       parameter(&Options::frequencies, {.name = "muscle_frequencies",
-                                        .help = "Muscle frequencies in one robot",
+                                        .help = "Muscle frequencies in one robot; 1 or 2 with fields",
                                         .lowest = 1,
                                         .highest = voxel_frequencies,
                                         .advanced = true}),
@@ -184,6 +192,9 @@ const ParameterTable<CppnOptions>& table() {
 
 void validate(const CppnOptions& options) {
   check_each(table(), options);
+  if (options.muscles == PaintedMuscles::fields && options.frequencies > max_field_frequencies)
+    throw ParameterError("muscle_frequencies",
+                         std::to_string(options.frequencies) + " is not accepted with fields; give 1 or 2");
   std::uint64_t cells = 1;
   for (const int n : options.largest) {
     cells *= static_cast<std::uint64_t>(n);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+
 #include "mercury/cppn.h"
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "robots/cppn/cppn_graph.h"
 #include "robots/genes.h"
 
 namespace mercury {
@@ -10,6 +13,7 @@ namespace {
 // A robot's phases are part of its body. Its muscles have one amplitude, and frequencies that follow from one.
 struct CppnGenes {
   static constexpr std::uint8_t tag = 2;
+  static constexpr unsigned fields_bit = 0x80;  // beside the mirror
   CppnGenome genome;
 
   static CppnGenes of(const Robot& robot) {
@@ -48,7 +52,8 @@ struct CppnGenes {
   void write(ByteWriter& writer) const {
     for (const int n : {genome.nx, genome.ny, genome.nz}) writer.add(static_cast<std::uint32_t>(n));
     writer.add(genome.edge);
-    writer.add(static_cast<std::uint8_t>(genome.mirror));
+    writer.add(static_cast<std::uint8_t>(static_cast<unsigned>(genome.mirror) |
+                                         (has_fields(genome.network) ? fields_bit : 0u)));
     writer.add(static_cast<std::uint8_t>(genome.frequencies));
     writer.add(genome.frequency);
     writer.add(genome.amplitude);
@@ -72,7 +77,9 @@ struct CppnGenes {
     for (int* n : {&genome.nx, &genome.ny, &genome.nz})
       *n = static_cast<int>(std::min<std::uint32_t>(reader.read<std::uint32_t>(), INT32_MAX));
     genome.edge = reader.read<float>();
-    genome.mirror = static_cast<Mirror>(reader.read<std::uint8_t>());
+    const unsigned mirror = reader.read<std::uint8_t>();
+    genome.mirror = static_cast<Mirror>(mirror & ~fields_bit);
+    if (mirror & fields_bit) genome.network.outputs = cppn_outputs;
     genome.frequencies = reader.read<std::uint8_t>();
     genome.frequency = reader.read<float>();
     genome.amplitude = reader.read<float>();
@@ -96,10 +103,13 @@ struct CppnGenes {
   }
 
   void add_identity(IdentityHash& hash) const {
-    const VoxelGrid body = largest_body(paint(genome));
+    const auto [body, laws] = painted_body(genome);
     for (const int n : {body.nx, body.ny, body.nz}) hash.add(static_cast<std::uint32_t>(n));
     hash.add(body.edge);
     hash.add(body.cells);
+    for (const MuscleLaw& law : laws)
+      for (const double value : {law.stiffness, law.cosine, law.sine, static_cast<double>(law.frequency)})
+        hash.add(std::bit_cast<std::uint64_t>(value));
     hash.add(static_cast<std::uint8_t>(genome.frequencies));
     hash.add(genome.frequency);
     hash.add(genome.amplitude);

@@ -13,15 +13,29 @@
 #include "mercury/cppn.h"
 #include "mercury/generator.h"
 #include "mercury/random.h"
+#include "robots/muscle_fields.h"
 
 namespace mercury {
 
-enum CppnOutput : std::uint32_t { presence_output, kind_output, phase_output, frequency_output };
+enum CppnOutput : std::uint32_t {
+  presence_output,
+  kind_output,
+  phase_output,
+  frequency_output,
+  amplitude_output,
+  stiffness_output
+};
 inline constexpr std::uint32_t distance_input = 3, bias_input = 4;
 
-constexpr std::uint32_t id_of(CppnOutput output) { return cppn_inputs + output; }
+constexpr std::uint32_t id_of(std::uint32_t output) {
+  return output < cppn_phase_outputs ? cppn_inputs + output : last_hidden_id + 1 + (output - cppn_phase_outputs);
+}
 constexpr bool is_input(std::uint32_t id) { return id < cppn_inputs; }
-constexpr bool is_hidden(std::uint32_t id) { return id >= first_hidden_id; }
+constexpr bool is_hidden(std::uint32_t id) { return id >= first_hidden_id && id <= last_hidden_id; }
+// Of an id that is neither an input's nor a hidden node's.
+constexpr std::uint32_t output_of(std::uint32_t id) {
+  return id < first_hidden_id ? id - cppn_inputs : id - last_hidden_id - 1 + cppn_phase_outputs;
+}
 
 // The node's place; none if there is no such node.
 std::optional<std::uint32_t> place_of(const Cppn& network, std::uint32_t id);
@@ -69,11 +83,23 @@ class CppnEvaluator {
   };
   std::vector<Node> nodes_;  // hidden ones, then outputs
   std::vector<Edge> edges_;
+  std::size_t outputs_;
   std::vector<std::array<double, group>> values_;  // of inputs, hidden nodes and outputs
 };
 
 // The outputs for all voxels of the genome's grid, x fastest.
 std::vector<CppnEvaluator::Outputs> outputs_of(const CppnGenome& genome);
+
+constexpr bool has_fields(const Cppn& network) { return network.outputs == cppn_outputs; }
+
+// The largest connected body of what the network paints.
+struct PaintedBody {
+  VoxelGrid grid;
+  std::vector<MuscleLaw> laws;  // of each cell, with fields
+  bool is_empty() const;
+  friend bool operator==(const PaintedBody&, const PaintedBody&) = default;
+};
+PaintedBody painted_body(const CppnGenome& genome);
 
 // Mutation and crossover of painted voxel robots, as the registry of generators has them.
 

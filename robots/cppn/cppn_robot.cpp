@@ -5,15 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/names.h"
 #include "robots/cppn/cppn_graph.h"
 #include "robots/file/document.h"
+#include "robots/muscle_fields.h"
 #include "robots/origin_json.h"
 #include "robots/portable_math.h"
+#include "robots/voxel/spring_cells.h"
 
 namespace mercury {
 namespace {
@@ -37,10 +41,18 @@ std::vector<CppnEvaluator::Point> points_of(const CppnGenome& genome) {
   return points;
 }
 
-MaterialId material_of(const CppnEvaluator::Outputs& outputs, int frequencies) {
+constexpr MaterialId first_muscle = 1;
+
+MaterialId kind_of(const CppnEvaluator::Outputs& outputs) {
   if (!(outputs[presence_output] > 0)) return air;
   if (!(outputs[kind_output] > -1)) return bone;
   if (!(outputs[kind_output] > 0)) return tissue;
+  return first_muscle;
+}
+
+MaterialId material_of(const CppnEvaluator::Outputs& outputs, int frequencies) {
+  const MaterialId kind = kind_of(outputs);
+  if (kind != first_muscle) return kind;
   const int phases = muscle_count / frequencies;
   const double turns = outputs[phase_output] - std::floor(outputs[phase_output]);
   const int phase = static_cast<int>(std::floor(turns * phases + 0.5)) % phases;
@@ -86,7 +98,9 @@ void validate(const CppnGenome& genome) {
   }
   require(genome.edge >= min_rest_length && genome.edge <= 1, "/edge", "give 0.001 to 1 m");
   require(genome.mirror >= Mirror::none && genome.mirror <= Mirror::z, "/mirror", "give none, x, y or z");
-  require(genome.frequencies >= 1 && genome.frequencies <= voxel_frequencies, "/frequencies", "give 1 to 5");
+  const bool fields = has_fields(genome.network);
+  require(genome.frequencies >= 1 && genome.frequencies <= (fields ? max_field_frequencies : voxel_frequencies),
+          "/frequencies", fields ? "give 1 or 2 with fields" : "give 1 to 5");
   require(genome.frequency >= 0 && genome.frequency <= max_muscle_frequency, "/frequency", "give 0 to 20 rad/s");
   require(genome.amplitude >= 0 && genome.amplitude <= max_muscle_amplitude, "/amplitude", "give 0 to 0.4");
 }
@@ -102,14 +116,45 @@ std::vector<CppnEvaluator::Outputs> outputs_of(const CppnGenome& genome) {
   return outputs;
 }
 
-VoxelGrid paint(const CppnGenome& genome) {
-  validate(genome);
+namespace {
+
+VoxelGrid grid_of(const CppnGenome& genome, std::span<const CppnEvaluator::Outputs> outputs) {
   VoxelGrid grid(genome.nx, genome.ny, genome.nz);
   grid.edge = genome.edge;
-  std::ranges::transform(outputs_of(genome), grid.cells.begin(), [&](const CppnEvaluator::Outputs& outputs) {
-    return material_of(outputs, genome.frequencies);
+  std::ranges::transform(outputs, grid.cells.begin(), [&](const CppnEvaluator::Outputs& of_voxel) {
+    return has_fields(genome.network) ? kind_of(of_voxel) : material_of(of_voxel, genome.frequencies);
   });
   return grid;
+}
+
+FieldMuscles muscles_of(const CppnGenome& genome) { return {genome.frequencies, genome.frequency, genome.amplitude}; }
+
+}  // namespace
+
+VoxelGrid paint(const CppnGenome& genome) {
+  validate(genome);
+  return grid_of(genome, outputs_of(genome));
+}
+
+bool PaintedBody::is_empty() const {
+  return std::ranges::all_of(grid.cells, [](MaterialId cell) { return cell == air; });
+}
+
+PaintedBody painted_body(const CppnGenome& genome) {
+  validate(genome);
+  const std::vector<CppnEvaluator::Outputs> outputs = outputs_of(genome);
+  PaintedBody body{.grid = largest_body(grid_of(genome, outputs)), .laws = {}};
+  if (!has_fields(genome.network)) return body;
+  body.laws.resize(outputs.size());
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    if (body.grid.cells[i] != air)
+      body.laws[i] = law_of(body.grid.cells[i],
+                            {.phase = outputs[i][phase_output],
+                             .frequency = outputs[i][frequency_output],
+                             .amplitude = outputs[i][amplitude_output],
+                             .stiffness = outputs[i][stiffness_output]},
+                            muscles_of(genome));
+  return body;
 }
 
 std::vector<Material> cppn_materials(int frequencies, float frequency, float amplitude) {
@@ -131,7 +176,122 @@ std::vector<Material> cppn_materials(int frequencies, float frequency, float amp
   return table;
 }
 
+namespace {
+
+// A real body (real_body.h) needs up to seven materials per material of its voxels: springs along edges of one to four
+// voxels, across sides of one or two, and through the middle of one.
+constexpr std::size_t most_voxel_laws = (max_materials - 1) / 7;
+
+// Voxels that are alike share a law. So do springs between different voxels, in the room that is left of the table.
+class FieldSprings {
+ public:
+  explicit FieldSprings(const PaintedBody& body) : grid_(body.grid), of_voxel_(body.grid.cells.size(), none) {
+    std::vector<std::size_t> voxels;
+    std::vector<MuscleLaw> laws;
+    for (std::size_t i = 0; i < body.laws.size(); ++i) {
+      if (body.grid.cells[i] == air) continue;
+      voxels.push_back(i);
+      laws.push_back(body.laws[i]);
+    }
+    LawPalette palette = palette_of(laws, most_voxel_laws);
+    for (std::size_t i = 0; i < voxels.size(); ++i) of_voxel_[voxels[i]] = palette.of[i];
+    laws_ = std::move(palette.laws);
+  }
+
+  MaterialId material_of_voxel(std::size_t cell) const {
+    return of_voxel_[cell] == none ? air : static_cast<MaterialId>(of_voxel_[cell] + 1);
+  }
+
+  // Sets the table of a robot of this grid and the materials of its springs.
+  void set(Robot& robot, const FieldMuscles& muscles) {
+    const std::size_t pure = laws_.size();
+    const SpringCells cells(robot, {grid_.nx, grid_.ny, grid_.nz}, grid_.edge);
+    std::vector<std::size_t> of_spring;  // a law of voxels, or after these a mixture
+    for (const Spring& spring : robot.springs) of_spring.push_back(law_of_cells(cells.of(spring)));
+    std::vector<MuscleLaw> mixed;
+    for (const Mixture& mixture : mixtures_) mixed.push_back(mean_of(mixture));
+    const LawPalette palette = palette_of(mixed, max_materials - 1 - pure);
+    for (std::size_t s = 0; s < robot.springs.size(); ++s) {
+      const std::size_t law = of_spring[s] < pure ? of_spring[s] : pure + palette.of[of_spring[s] - pure];
+      robot.springs[s].material = static_cast<MaterialId>(law + 1);
+    }
+    laws_.insert(laws_.end(), palette.laws.begin(), palette.laws.end());
+    FieldTable table = table_of(laws_, muscles);
+    robot.materials = std::move(table.materials);
+    robot.material_names = std::move(table.names);
+  }
+
+ private:
+  static constexpr std::uint8_t none = 255;
+  using Mixture = std::array<std::uint8_t, 4>;  // laws in their order, then none
+
+  std::size_t law_of_cells(const std::vector<std::size_t>& cells) {
+    Mixture mixture;
+    mixture.fill(none);
+    for (std::size_t i = 0; i < cells.size(); ++i) mixture[i] = of_voxel_[cells[i]];
+    std::ranges::sort(mixture);
+    const auto voxels = static_cast<std::size_t>(std::ranges::find(mixture, none) - mixture.begin());
+    if (mixture[0] == mixture[voxels - 1]) return mixture[0];
+    const auto [entry, is_new] = numbers_.try_emplace(mixture, laws_.size() + mixtures_.size());
+    if (is_new) mixtures_.push_back(mixture);
+    return entry->second;
+  }
+
+  MuscleLaw mean_of(const Mixture& mixture) const {
+    std::vector<MuscleLaw> laws;
+    for (const std::uint8_t law : mixture)
+      if (law != none) laws.push_back(laws_[law]);
+    return mean_law(laws);
+  }
+
+  const VoxelGrid& grid_;
+  std::vector<std::uint8_t> of_voxel_;
+  std::vector<MuscleLaw> laws_;
+  std::vector<Mixture> mixtures_;
+  std::map<Mixture, std::size_t> numbers_;
+};
+
+Robot grow_with_fields(const CppnGenome& genome, const std::string& name) {
+  const PaintedBody body = painted_body(genome);
+  Robot robot = make_voxel_robot(body.grid, {.name = name});
+  FieldSprings(body).set(robot, muscles_of(genome));
+  robot.origin = to_origin(genome);
+  return robot;
+}
+
+}  // namespace
+
+VoxelGrid painted_voxels(const CppnGenome& genome) {
+  const PaintedBody body = painted_body(genome);
+  VoxelGrid voxels = body.grid;
+  if (!has_fields(genome.network)) return voxels;
+  const FieldSprings springs(body);
+  for (std::size_t i = 0; i < voxels.cells.size(); ++i) voxels.cells[i] = springs.material_of_voxel(i);
+  return voxels;
+}
+
+Robot grow_part(const CppnGenome& genome, const VoxelGrid& part, const std::string& name) {
+  const Robot whole = grow(genome, name);
+  Robot robot = make_voxel_robot(part, {.name = name});
+  robot.materials = whole.materials;
+  robot.material_names = whole.material_names;
+  if (!has_fields(genome.network)) return robot;
+  const std::array<int, 3> size{part.nx, part.ny, part.nz};
+  const SpringCells of_whole(whole, size, part.edge), of_part(robot, size, part.edge);
+  using Ends = std::pair<std::array<int, 3>, std::array<int, 3>>;
+  std::map<Ends, MaterialId> materials;
+  for (const Spring& spring : whole.springs)
+    materials.emplace(Ends(of_whole.corner(spring.a), of_whole.corner(spring.b)), spring.material);
+  for (Spring& spring : robot.springs) {
+    const auto found = materials.find(Ends(of_part.corner(spring.a), of_part.corner(spring.b)));
+    if (found == materials.end()) throw InputError("voxel grid", "holds a voxel that the body lacks");
+    spring.material = found->second;
+  }
+  return robot;
+}
+
 Robot grow(const CppnGenome& genome, const std::string& name) {
+  if (has_fields(genome.network)) return grow_with_fields(genome, name);
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
     for (int id = 0; id < default_material_count; ++id)
@@ -215,6 +375,8 @@ CppnGenome read_genome(const OriginJson& origin) {
   genome.frequency = number(origin_member(origin, "frequency"), "/frequency");
   genome.amplitude = number(origin_member(origin, "amplitude"), "/amplitude");
   genome.network = read_network(origin);
+  if (const auto outputs = origin.find("outputs"); outputs != origin.end())
+    genome.network.outputs = natural(*outputs, "/outputs");
   return genome;
 }
 
@@ -230,6 +392,7 @@ std::string to_origin(const CppnGenome& genome) {
   out += ",\"amplitude\":";
   write(out, genome.amplitude);
   if (!genome.environment.empty()) out += ",\"environment\":" + json_text(genome.environment);
+  if (has_fields(genome.network)) out += ",\"outputs\":" + std::to_string(genome.network.outputs);
   out += ",\"nodes\":[";
   const auto begin_item = [&] { out += out.back() == '[' ? "[" : ",["; };
   for (const auto& [id, place, function] : genome.network.nodes) {

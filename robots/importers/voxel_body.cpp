@@ -278,34 +278,12 @@ Robot bare_robot(const VoxelBody& body, const std::string& name) {
   return robot;
 }
 
-SpringVoxels::SpringVoxels(const Robot& robot, const VoxelBody& body) : robot_(robot), body_(body), edge_(edge) {}
-
-std::array<int, 3> SpringVoxels::corner(std::uint16_t mass) const {
-  const Vec3& at = robot_.masses[mass];
-  const auto number = [&](float place, int voxels) {
-    return static_cast<int>(std::lround(place / edge_ + voxels / 2.0));
-  };
-  return {number(at.x, body_.nx), number(at.y, body_.ny), number(at.z, body_.nz)};
-}
-
-std::array<int, 3> SpringVoxels::direction(const Spring& spring) const {
-  const auto a = corner(spring.a), b = corner(spring.b);
-  return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-}
+SpringVoxels::SpringVoxels(const Robot& robot, const VoxelBody& body)
+    : SpringCells(robot, {body.nx, body.ny, body.nz}, edge), body_(body) {}
 
 std::vector<std::size_t> SpringVoxels::of(const Spring& spring) const {
-  const auto a = corner(spring.a), b = corner(spring.b);
-  const std::array size{body_.nx, body_.ny, body_.nz};
-  std::array<int, 3> first, last;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    first[axis] = std::max(0, a[axis] == b[axis] ? a[axis] - 1 : std::min(a[axis], b[axis]));
-    last[axis] = std::min(size[axis] - 1, std::min(a[axis], b[axis]));
-  }
-  std::vector<std::size_t> voxels;
-  for (int z = first[2]; z <= last[2]; ++z)
-    for (int y = first[1]; y <= last[1]; ++y)
-      for (int x = first[0]; x <= last[0]; ++x)
-        if (const std::size_t cell = body_.index(x, y, z); body_.cells[cell] != 0) voxels.push_back(cell);
+  std::vector<std::size_t> voxels = SpringCells::of(spring);
+  std::erase_if(voxels, [&](std::size_t cell) { return body_.cells[cell] == 0; });
   return voxels;
 }
 
@@ -385,7 +363,7 @@ std::optional<VoxelBody> voxel_body_of(const Robot& robot) {
   if (robot.origin.empty()) return std::nullopt;
   if (const std::optional<VoxelGrid> grid = voxel_grid_of(robot)) return body_of_grid(*grid, robot);
   if (const std::optional<CppnGenome> genome = cppn_genome_of(robot))
-    return body_of_grid(largest_body(paint(*genome)), robot);
+    return body_of_grid(painted_voxels(*genome), robot);
   if (kind_of(robot) != "import") return std::nullopt;
   return body_of_import(Json::parse(robot.origin));
 }

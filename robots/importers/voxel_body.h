@@ -2,7 +2,6 @@
 // A body of voxels with substances of their own, turned into a robot.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "mercury/robot.h"
 #include "robots/importers/substances.h"
+#include "robots/voxel/spring_cells.h"
 
 namespace mercury {
 
@@ -56,19 +56,14 @@ Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Pro
 // robots of other kinds. Throws InputError("/origin: ...") for an origin that breaks a rule.
 std::optional<VoxelBody> voxel_body_of(const Robot& robot);
 
-// The voxels that share a spring of a voxel robot, as indices of cells; four at most.
-class SpringVoxels {
+// The voxels that share a spring of the body's robot; four at most.
+class SpringVoxels : public SpringCells {
  public:
   SpringVoxels(const Robot& robot, const VoxelBody& body);
   std::vector<std::size_t> of(const Spring& spring) const;
-  // Between which corners of the grid it runs, as a step: (1, 0, 0) along x.
-  std::array<int, 3> direction(const Spring& spring) const;
-  std::array<int, 3> corner(std::uint16_t mass) const;  // of the grid
 
  private:
-  const Robot& robot_;
   const VoxelBody& body_;
-  float edge_;
 };
 
 // The corners of held voxels become fixed masses of the body's robot.

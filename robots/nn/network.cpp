@@ -54,8 +54,9 @@ void validate(const Network& network, const std::string& where) {
                 std::to_string(layer.biases.size()) + " biases");
     inputs = layer.outputs;
   }
-  require(inputs == network_outputs,
-          "the last layer gives 25 numbers (a place and 22 scores), not " + std::to_string(inputs));
+  require(inputs == network_outputs || inputs == network_field_outputs,
+          "the last layer gives 25 numbers (a place and 22 scores) or 29 (four fields as well), not " +
+              std::to_string(inputs));
 }
 
 std::vector<float> evaluate(const Network& network, std::span<const float> points) {

@@ -8,6 +8,7 @@
 #include "mercury/muscle_laws.h"
 #include "mercury/random.h"
 #include "robots/make_all.h"
+#include "robots/muscle_fields.h"
 #include "robots/parameter_table.h"
 
 namespace mercury {
@@ -41,7 +42,21 @@ const ParameterTable<NnOptions>& table() {
                  .help = "Least distance of two points, by their mean spacing; nearer ones are thinned or pushed apart",
                  .highest = 1}),
       parameter(&Options::mirrored,
-                {.name = "mirrored", .help = "Share of the robots that have a left and a right", .highest = 1})};
+                {.name = "mirrored", .help = "Share of the robots that have a left and a right", .highest = 1}),
+      parameter(&Options::muscles, {.name = "network_muscles",
+                                    .help = "Muscles of 20 kinds, or fields: any phase, amplitude and stiffness",
+                                    .words = {"kinds", "fields"},
+                                    .advanced = true}),
+      parameter(&Options::frequencies, {.name = "network_frequencies",
+                                        .help = "Muscle frequencies in one robot with fields",
+                                        .lowest = 1,
+                                        .highest = max_field_frequencies,
+                                        .advanced = true}),
+      parameter(&Options::frequency, {.name = "network_frequency",
+                                      .help = "Highest muscle frequency in robots with fields",
+                                      .unit = "rad/s",
+                                      .highest = max_muscle_frequency,
+                                      .advanced = true})};
   return rows;
 }
 
@@ -53,6 +68,7 @@ NnGenome genome_in(const Robot& robot) {
 
 // The robot of a genome with the materials of another, as its parent or the robot itself.
 Robot grown(const NnGenome& genome, const Robot& owner, const std::string& name) {
+  if (genome.network.has_fields()) return grow(genome, name);
   if (!owner.materials.empty() && owner.materials.size() < default_material_count)
     throw InputError("/materials",
                      "a network robot's table needs the base materials and their pairs, 254 in all, not " +
@@ -67,12 +83,18 @@ Robot regrow(const Robot& robot) { return grown(genome_in(robot), robot, robot.n
 
 Robot mutant(const Robot& parent, const MutationRequest& request, const std::string& name) {
   const double rate = 0.1, size = 0.3 * request.strength;
-  return with_mutated_muscles(grown(mutate(genome_in(parent), rate, size, request.seed), parent, name), request.muscles,
+  const NnGenome genome = genome_in(parent);
+  if (genome.network.has_fields())
+    return grow(mutate_muscles(mutate(genome, rate, size, request.seed), request.muscles, seed_of(request.seed, 0)),
+                name);
+  return with_mutated_muscles(grown(mutate(genome, rate, size, request.seed), parent, name), request.muscles,
                               seed_of(request.seed, 0));
 }
 
 Robot crossed_networks(const Robot& a, const Robot& b, std::uint64_t seed, const std::string& name) {
-  return with_crossed_muscles(grown(crossover(genome_in(a), genome_in(b), seed), a, name), b, seed_of(seed, 0));
+  const NnGenome of_a = genome_in(a), of_b = genome_in(b), child = crossover(of_a, of_b, seed);
+  if (child.network.has_fields()) return grow(cross_muscles(child, of_b, seed_of(seed, 0)), name);
+  return with_crossed_muscles(grown(child, a, name), b, seed_of(seed, 0));
 }
 
 }  // namespace

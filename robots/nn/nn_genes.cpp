@@ -16,6 +16,7 @@ struct NnGenes {
     std::optional<NnGenome> genome = nn_genome_of(robot);
     if (!genome) throw InputError("/origin", "holds no network");
     genome->environment.clear();
+    if (genome->network.has_fields()) return {*std::move(genome), {}};
     if (!robot.materials.empty() && robot.materials.size() < default_material_count)
       throw InputError("/materials", "the base materials and their pairs are needed, 254 in all, not " +
                                          std::to_string(robot.materials.size()));
@@ -27,16 +28,22 @@ struct NnGenes {
     const Changes changes = changes_of(genes, seed);
     constexpr double rate = 0.1, size = 0.3;
     if (changes.body) child.genome = mutate(genome, rate, size * mutation.strength, seed);
-    if (changes.muscles) child.materials = mercury::mutated(materials, mutation, seed_of(seed, 0), {});
+    if (changes.muscles && genome.network.has_fields())
+      child.genome = mutate_muscles(child.genome, mutation.muscles, seed_of(seed, 0), mutation.tail);
+    else if (changes.muscles)
+      child.materials = mercury::mutated(materials, mutation, seed_of(seed, 0), {});
     return child;
   }
 
-  std::size_t muscle_numbers() const { return muscle_numbers_of(materials, {}); }
+  std::size_t muscle_numbers() const { return genome.network.has_fields() ? 2 : muscle_numbers_of(materials, {}); }
 
   NnGenes crossed(const NnGenes& other, Genes genes, std::uint64_t seed) const {
     NnGenes child = *this;
     if (genes != Genes::muscles) child.genome = crossover(genome, other.genome, seed);
-    if (genes != Genes::body) child.materials = mercury::crossed(materials, other.materials, seed_of(seed, 0));
+    if (genes != Genes::body && genome.network.has_fields())
+      child.genome = cross_muscles(child.genome, other.genome, seed_of(seed, 0));
+    else if (genes != Genes::body)
+      child.materials = mercury::crossed(materials, other.materials, seed_of(seed, 0));
     return child;
   }
 
@@ -44,13 +51,13 @@ struct NnGenes {
     NnGenome whole = genome;
     whole.environment = environment;
     Robot robot = grow(whole, name);
-    robot.materials = table_of(materials);
+    if (!genome.network.has_fields()) robot.materials = table_of(materials);
     return robot;
   }
 
   Robot grown_for_trial(const std::string& name) const {
     Robot robot = grow_without_genome(genome, name);
-    robot.materials = table_of(materials);
+    if (!genome.network.has_fields()) robot.materials = table_of(materials);
     return robot;
   }
 
@@ -67,7 +74,10 @@ struct NnGenes {
       for (const float weight : layer.weights) writer.add(weight);
       for (const float bias : layer.biases) writer.add(bias);
     }
-    mercury::write(writer, materials);
+    if (!genome.network.has_fields()) return mercury::write(writer, materials);
+    writer.add(static_cast<std::uint8_t>(genome.frequencies));
+    writer.add(genome.frequency);
+    writer.add(genome.amplitude);
   }
 
   static NnGenes read(ByteReader& reader) {
@@ -93,7 +103,13 @@ struct NnGenes {
       for (float& weight : layer.weights) weight = reader.read<float>();
       for (float& bias : layer.biases) bias = reader.read<float>();
     }
+    if (genome.network.has_fields()) {
+      genome.frequencies = reader.read<std::uint8_t>();
+      genome.frequency = reader.read<float>();
+      genome.amplitude = reader.read<float>();
+    }
     validate(genome);
+    if (genome.network.has_fields()) return genes;
     genes.materials = read_material_genes(reader);
     const std::size_t count = genes.materials.size();
     if (count != 0 && count != base_material_count && count + 1 < default_material_count)
@@ -107,7 +123,7 @@ struct NnGenes {
     NnGenes body{genome, {}};
     body.write(writer);
     hash.add(std::move(writer).take());
-    mercury::add_identity(hash, materials, {});
+    if (!genome.network.has_fields()) mercury::add_identity(hash, materials, {});
   }
 };
 

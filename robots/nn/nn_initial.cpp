@@ -131,25 +131,33 @@ std::array<bool, base_material_count> random_palette(Random& random) {
 
 // Reads the place from the trunk. A score is a slope across the body plus some relief, minus a handicap for materials
 // outside the palette.
-Layer last_layer(const Trunk& trunk, bool mirrored, Random& random) {
+Layer last_layer(const Trunk& trunk, bool mirrored, bool fields, Random& random) {
   const std::size_t inputs = trunk.readout.size();
-  Layer layer{static_cast<int>(inputs), network_outputs, {}, {0, 0, 0}};
+  Layer layer{static_cast<int>(inputs), fields ? network_field_outputs : network_outputs, {}, {0, 0, 0}};
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const Vector& r : trunk.readout) layer.weights.push_back(static_cast<float>(r[axis]));
   const Activity activity = activity_of(trunk);
   const double relief = 0.7 / (activity.size * std::sqrt(static_cast<double>(inputs)));
-  for (const bool chosen : random_palette(random)) {
-    double bias = 0.2 * random.normal() - (chosen ? 0 : 3);
+  const auto add_row = [&](double bias, double slope, double roughness) {
     std::vector<double> weights(inputs);
-    for (double& weight : weights) weight = relief * random.normal();
-    for (std::size_t j = 0; j < std::min(inputs, Trunk::carried); ++j) weights[j] += random.normal();
+    for (double& weight : weights) weight = roughness * relief * random.normal();
+    for (std::size_t j = 0; j < std::min(inputs, Trunk::carried); ++j) weights[j] += slope * random.normal();
     for (std::size_t j = 0; j < inputs; ++j) {
       if (mirrored) weights[j] = weights[std::min(j, trunk.twins[j])];
       bias -= weights[j] * activity.means[j];
       layer.weights.push_back(static_cast<float>(weights[j]));
     }
     layer.biases.push_back(static_cast<float>(bias));
+  };
+  for (const bool chosen : random_palette(random)) {
+    const double handicap = chosen ? 0 : 3;
+    add_row(0.2 * random.normal() - handicap, 1, 1);
   }
+  if (!fields) return layer;
+  // Smooth fields: phases run over some part of a turn, the others over a part of their range.
+  constexpr std::array<double, 4> slopes{0.2, 0.4, 0.3, 0.3};
+  constexpr double roughness = 0.1;
+  for (const double slope : slopes) add_row(0.4 * random.normal(), slope, roughness);
   return layer;
 }
 
@@ -164,9 +172,11 @@ NnGenome random_nn_genome(const NnOptions& options, std::uint64_t seed, std::uin
   genome.alpha = options.alpha;
   genome.spacing = options.spacing;
   genome.environment = options.environment;
+  genome.frequencies = options.frequencies;
+  genome.frequency = options.frequency;
   genome.mirrored = random.chance(options.mirrored);
   Trunk trunk = random_trunk(options.hidden, genome.mirrored, random);
-  Layer last = last_layer(trunk, genome.mirrored, random);
+  Layer last = last_layer(trunk, genome.mirrored, options.muscles == NetworkMuscles::fields, random);
   genome.network.layers = std::move(trunk.layers);
   genome.network.layers.push_back(std::move(last));
   return genome;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The genome of a network robot as the JSON text of its origin.
 
+#include <algorithm>
+#include <cstdint>
+
 #include "mercury/error.h"
 #include "mercury/nn_robot.h"
 #include "robots/file/document.h"
@@ -43,6 +46,12 @@ std::uint64_t natural(const OriginJson& origin, const char* key) {
   const OriginJson& value = origin_member(origin, key);
   if (!value.is_number_unsigned()) refuse_origin(std::string("/") + key, "a whole number >= 0 is expected");
   return value.get<std::uint64_t>();
+}
+
+float number(const OriginJson& origin, const char* key, const char* expected) {
+  const OriginJson& value = origin_member(origin, key);
+  if (!value.is_number()) refuse_origin(std::string("/") + key, expected);
+  return value.get<float>();
 }
 
 void append_numbers(std::vector<float>& numbers, const OriginJson& value, const std::string& place) {
@@ -93,6 +102,12 @@ std::string to_origin(const NnGenome& genome) {
     out += ",\"spacing\":";
     write(out, genome.spacing);
   }
+  if (genome.network.has_fields()) {
+    out += ",\"frequencies\":" + std::to_string(genome.frequencies) + ",\"frequency\":";
+    write(out, genome.frequency);
+    out += ",\"amplitude\":";
+    write(out, genome.amplitude);
+  }
   constexpr std::size_t usual_length = 13;  // of a number and its comma
   std::size_t numbers = 0;
   for (const Layer& layer : genome.network.layers) numbers += layer.weights.size() + layer.biases.size();
@@ -119,9 +134,12 @@ std::optional<NnGenome> nn_genome_of(const Robot& robot) {
   const OriginJson& mirrored = origin_member(origin, "mirrored");
   if (!mirrored.is_boolean()) refuse_origin("/mirrored", "true or false is expected");
   genome.mirrored = mirrored.get<bool>();
-  const OriginJson& alpha = origin_member(origin, "alpha");
-  if (!alpha.is_number()) refuse_origin("/alpha", "a number of meters is expected");
-  genome.alpha = alpha.get<float>();
+  genome.alpha = number(origin, "alpha", "a number of meters is expected");
+  if (genome.network.has_fields()) {
+    genome.frequencies = static_cast<int>(std::min<std::uint64_t>(natural(origin, "frequencies"), INT32_MAX));
+    genome.frequency = number(origin, "frequency", "a number of rad/s is expected");
+    genome.amplitude = number(origin, "amplitude", "a number is expected");
+  }
   if (const auto spacing = origin.find("spacing"); spacing != origin.end()) {  // files before 0.3.0 lack it
     if (!spacing->is_number()) refuse_origin("/spacing", "a share of the mean spacing is expected");
     genome.spacing = spacing->get<float>();

@@ -2,13 +2,16 @@
 #include "mercury/nn_robot.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string_view>
 #include <tuple>
 
 #include "mercury/error.h"
+#include "mercury/muscle_laws.h"
 #include "mercury/random.h"
+#include "robots/muscle_fields.h"
 #include "robots/nn/alpha_body.h"
 #include "robots/nn/cloud_spacing.h"
 
@@ -18,12 +21,15 @@ namespace {
 struct CloudPoint {
   Vec3 place;
   MaterialId material = air;
+  MuscleLaw law{};  // with fields
   std::uint64_t z_order = 0;
 };
 
 void require(bool holds, const char* where, std::string_view what) {
   if (!holds) throw InputError(where, std::string(what));
 }
+
+FieldMuscles muscles_of(const NnGenome& genome) { return {genome.frequencies, genome.frequency, genome.amplitude}; }
 
 // Standard normal points, point after point.
 std::vector<float> normal_points(const NnGenome& genome) {
@@ -97,14 +103,21 @@ void spread_out(std::vector<CloudPoint>& cloud, const NnGenome& genome) {
 std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
   const std::vector<float> outputs = evaluate(genome.network, normal_points(genome));
   std::vector<CloudPoint> cloud(genome.points);
+  const bool fields = genome.network.has_fields();
+  const std::size_t numbers = outputs.size() / genome.points;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const float* output = &outputs[i * network_outputs];
+    const float* output = &outputs[i * numbers];
     const auto is_finite = [](float x) { return std::isfinite(x); };
     require(std::all_of(output, output + 3, is_finite), "cloud", "the network gives places that are not finite");
-    require(std::all_of(output + 3, output + network_outputs, is_finite), "cloud",
+    require(std::all_of(output + 3, output + numbers, is_finite), "cloud",
             "the network gives scores that are not finite");
     cloud[i].place = {output[0], output[1], output[2]};
     cloud[i].material = static_cast<MaterialId>(1 + most_probable({output + 3, base_material_count}));
+    if (!fields) continue;
+    const float* field = output + network_outputs;
+    cloud[i].law = law_of(cloud[i].material,
+                          {.phase = field[0], .frequency = field[1], .amplitude = field[2], .stiffness = field[3]},
+                          muscles_of(genome));
   }
   fit_into_unit_sphere(cloud);
   if (genome.spacing > 0) spread_out(cloud, genome);
@@ -165,6 +178,10 @@ void validate(const NnGenome& genome) {
   require(std::isfinite(genome.alpha) && genome.alpha >= 0, "alpha",
           "give a radius > 0 m, or 0 for the smallest that holds all points");
   require(genome.spacing >= 0 && genome.spacing <= 1, "spacing", "give a share of the mean spacing, 0 to 1");
+  if (!genome.network.has_fields()) return;
+  require(genome.frequencies >= 1 && genome.frequencies <= max_field_frequencies, "frequencies", "give 1 or 2");
+  require(genome.frequency >= 0 && genome.frequency <= max_muscle_frequency, "frequency", "give 0 to 20 rad/s");
+  require(genome.amplitude >= 0 && genome.amplitude <= max_muscle_amplitude, "amplitude", "give 0 to 0.4");
 }
 
 Robot grow_without_genome(const NnGenome& genome, const std::string& name) {
@@ -194,6 +211,16 @@ Robot grow_without_genome(const NnGenome& genome, const std::string& name) {
     robot.springs.push_back(
         {mass_a, mass_b, combine(cloud[a].material, cloud[b].material), rest_distance(robot, mass_a, mass_b)});
   }
+  if (genome.network.has_fields()) {
+    std::vector<MuscleLaw> laws;
+    for (const auto& [a, b] : springs) laws.push_back(mean_law(std::array{cloud[a].law, cloud[b].law}));
+    const LawPalette palette = palette_of(laws, max_materials - 1);
+    for (std::size_t s = 0; s < laws.size(); ++s)
+      robot.springs[s].material = static_cast<MaterialId>(palette.of[s] + 1);
+    FieldTable table = table_of(palette.laws, muscles_of(genome));
+    robot.materials = std::move(table.materials);
+    robot.material_names = std::move(table.names);
+  }
   for (const auto& [a, b, c] : skin) robot.faces.push_back({mass_of[a], mass_of[b], mass_of[c]});
   robot.origin = R"({"kind":"nn"})";
   return robot;
@@ -214,6 +241,20 @@ NnGenome mutate(const NnGenome& genome, double rate, double size, std::uint64_t 
 NnGenome crossover(const NnGenome& a, const NnGenome& b, std::uint64_t seed) {
   NnGenome child = a;
   child.network = crossover(a.network, b.network, seed);
+  return child;
+}
+
+NnGenome mutate_muscles(const NnGenome& genome, double strength, std::uint64_t seed, int tail) {
+  NnGenome child = genome;
+  move_muscles(child.frequency, child.amplitude, strength, seed, tail);
+  return child;
+}
+
+NnGenome cross_muscles(const NnGenome& a, const NnGenome& b, std::uint64_t seed) {
+  Random random(seed);
+  NnGenome child = a;
+  if (random.chance(0.5)) child.frequency = b.frequency;
+  if (random.chance(0.5)) child.amplitude = b.amplitude;
   return child;
 }
 

@@ -4,11 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "mercury/cppn.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
+#include "mercury/real_body.h"
 #include "mercury/shell.h"
 #include "mercury/voxel.h"
 
@@ -83,6 +87,53 @@ TEST(TrialRobot, PaintedRobotsAreDamagedAndKeepTheirMaterials) {
   EXPECT_GT(damaged.springs.size(), painted.springs.size() / 3);
   EXPECT_EQ(damaged.materials, painted.materials);
   EXPECT_EQ(damaged.actuators, painted.actuators);
+}
+
+// By the ends of each spring, as places.
+std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, Material> materials_by_place(const Robot& robot) {
+  std::map<std::pair<std::array<float, 3>, std::array<float, 3>>, Material> materials;
+  const auto place = [&](std::uint16_t mass) {
+    const Vec3 at = robot.masses[mass];
+    return std::array{at.x, at.y, at.z};
+  };
+  for (const Spring& spring : robot.springs)
+    materials.insert_or_assign({place(spring.a), place(spring.b)}, materials_of(robot)[spring.material]);
+  return materials;
+}
+
+TEST(TrialRobot, SpringsOfFieldsKeepTheirMaterialsWhereVoxelsAreLost) {
+  const Robot painted =
+      random_cppn_robot({.smallest = {8, 6, 6}, .largest = {8, 6, 6}, .muscles = PaintedMuscles::fields}, 1);
+  const auto whole = materials_by_place(painted);
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Robot damaged = trial_robot(painted, {.damage = 0.1}, seed, 0);
+    EXPECT_LT(damaged.springs.size(), painted.springs.size());
+    EXPECT_GT(damaged.springs.size(), painted.springs.size() / 3);
+    for (const auto& [place, material] : materials_by_place(damaged)) ASSERT_EQ(material, whole.at(place));
+  }
+}
+
+// A real body has a material per number of voxels that share a spring, so those of a damaged one are others.
+TEST(TrialRobot, DamagedRealBodiesAreThoseOfTheVoxelsThatAreLeft) {
+  Robot paper = make_voxel_robot([] {
+    VoxelGrid grid(6, 4, 4, 3);
+    for (int x = 0; x < 6; ++x) grid.cell(x, 0, 0) = bone;
+    return grid;
+  }());
+  paper.actuators = actuators_of(paper);
+  const RealMaterial material{.modulus = 2e5f};
+  const Robot real = with_real_body(paper, material);
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Robot damaged = trial_robot(real, {.damage = 0.2}, seed, 0);
+    const std::optional<VoxelGrid> grid = voxel_grid_of(damaged);
+    ASSERT_TRUE(grid);
+    Robot left = make_voxel_robot(*grid);
+    left.actuators = paper.actuators;
+    const Robot expected = with_real_body(left, material);
+    EXPECT_EQ(materials_by_place(damaged), materials_by_place(expected));
+    EXPECT_EQ(damaged.actuators, expected.actuators);
+    EXPECT_EQ(damaged.mass, expected.mass);
+  }
 }
 
 TEST(TrialRobot, RobotsWithoutVoxelsCannotBeDamaged) {

@@ -319,7 +319,7 @@ TEST(CppnOrigin, RefusesWhatCannotBeUsedAndSaysWhere) {
   EXPECT_EQ(read(origin("[6,0,4]", "[]", "[]")), "/origin/size: give at least 1 voxel each way");
   EXPECT_EQ(read(origin("[6,4,4]", "[[9,5,\"tan\"]]", "[]")),
             "/origin/nodes/0/2: give linear, sine, cosine, gaussian, sigmoid, absolute, square or root");
-  EXPECT_EQ(read(origin("[6,4,4]", "[[3,5,\"sine\"]]", "[]")), "/origin/nodes/0: id 3 is taken; give at least 9");
+  EXPECT_EQ(read(origin("[6,4,4]", "[[3,5,\"sine\"]]", "[]")), "/origin/nodes/0: id 3 is taken; give 9 to 4294967293");
   EXPECT_EQ(read(origin("[6,4,4]", "[[9,5,\"sine\"],[10,4,\"sine\"]]", "[]")),
             "/origin/nodes/1: nodes must be in the order of place, then id");
   EXPECT_EQ(read(origin("[6,4,4]", "[[9,5,\"sine\"],[9,6,\"sine\"]]", "[]")), "/origin/nodes/1: id 9 stands twice");

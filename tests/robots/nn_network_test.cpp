@@ -136,7 +136,7 @@ TEST(Network, NamesWhatDoesNotFit) {
   EXPECT_EQ(message_of([] {
               validate(random_network({3, 24}, 1), "/origin");
             }),
-            "/origin: the last layer gives 25 numbers (a place and 22 scores), not 24");
+            "/origin: the last layer gives 25 numbers (a place and 22 scores) or 29 (four fields as well), not 24");
   EXPECT_THROW(evaluate(network, random_points(4, 1)), InputError);
 }
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Voxel robots whose grid is painted by a small network: a compositional pattern-producing network (CPPN; Stanley,
 // Genetic Programming and Evolvable Machines 8, 2007). The network sees where a voxel is, and says whether it is there,
-// of what kind it is, and when its muscle works. Neighboring voxels get similar answers, so bodies and the phases of
-// their muscles are smooth: waves that run through a body are what makes it swim.
+// of what kind it is, and when its muscle works; on request also how much it works and how stiff it is. Neighboring
+// voxels get similar answers, so bodies and the phases of their muscles are smooth: waves that run through a body are
+// what makes it swim.
 //
 //     x  y  z  distance  bias         the voxel's center, each coordinate between -1 and 1; bias is 1
 //      \  \ |   /       /
 //      functions of weighted sums     hidden nodes
 //        /    |     |      \          weighted sums
-//   presence kind phase frequency
+//   presence kind phase frequency        and, of fields, amplitude stiffness
 #pragma once
 
 #include <array>
@@ -43,9 +44,11 @@ inline constexpr std::array<std::string_view, 8> cppn_function_names{"linear",  
 double value_of(CppnFunction function, double x);
 
 // Inputs and outputs are nodes as well; their ids and places are fixed and they stand in no list.
-inline constexpr std::uint32_t cppn_inputs = 5;   // ids 0 .. 4: x, y, z, distance, bias
-inline constexpr std::uint32_t cppn_outputs = 4;  // ids 5 .. 8: presence, kind, phase, frequency
-inline constexpr std::uint32_t first_hidden_id = cppn_inputs + cppn_outputs;
+inline constexpr std::uint32_t cppn_inputs = 5;         // ids 0 .. 4: x, y, z, distance, bias
+inline constexpr std::uint32_t cppn_phase_outputs = 4;  // ids 5 .. 8: presence, kind, phase, frequency
+inline constexpr std::uint32_t cppn_outputs = 6;        // and of fields, the two largest ids: amplitude, stiffness
+inline constexpr std::uint32_t first_hidden_id = cppn_inputs + cppn_phase_outputs;
+inline constexpr std::uint32_t last_hidden_id = UINT32_MAX - (cppn_outputs - cppn_phase_outputs);
 inline constexpr std::uint32_t output_place = 1u << 30;  // of all outputs; that of all inputs is 0
 
 inline constexpr std::size_t max_cppn_nodes = 256;  // hidden
@@ -54,7 +57,7 @@ inline constexpr float max_cppn_weight = 1000;
 
 // A hidden node.
 struct CppnNode {
-  std::uint32_t id = 0;     // at least first_hidden_id
+  std::uint32_t id = 0;     // from first_hidden_id to last_hidden_id
   std::uint32_t place = 0;  // between 0 and output_place; edges lead from lower to higher places
   CppnFunction function = CppnFunction::linear;
   friend bool operator==(const CppnNode&, const CppnNode&) = default;
@@ -72,16 +75,17 @@ struct CppnEdge {
 struct Cppn {
   std::vector<CppnNode> nodes;  // by (place, id)
   std::vector<CppnEdge> edges;  // by the order of `to`, then of `from`, where nodes are ordered by (place, id)
+  std::uint32_t outputs = cppn_phase_outputs;  // or cppn_outputs
   friend bool operator==(const Cppn&, const Cppn&) = default;
 };
 
 // Throws InputError("/nodes/3", ...) and so on unless ids differ, places and weights are in their ranges, edges join
-// nodes that exist, from a lower to a higher place, each pair once, both lists are in order, and there are at most
-// max_cppn_nodes and max_cppn_edges of them.
+// nodes that exist, from a lower to a higher place, each pair once, both lists are in order, there are at most
+// max_cppn_nodes and max_cppn_edges of them, and 4 or 6 outputs.
 void validate(const Cppn& network);
 
-// The four outputs for a point: {x, y, z, distance}; the bias is added. Values of nodes are kept between -1e6 and 1e6.
-// The same bits on every machine. Throws InputError as validate.
+// The outputs for a point, 0 for those that the network lacks: {x, y, z, distance}; the bias is added. Values of nodes
+// are kept between -1e6 and 1e6. The same bits on every machine. Throws InputError as validate.
 std::array<double, cppn_outputs> evaluate(const Cppn& network, const std::array<double, cppn_inputs - 1>& point);
 
 // Everything that a robot is grown from.
@@ -90,10 +94,11 @@ struct CppnGenome {
   int nx = 6, ny = 4, nz = 4;  // of the grid [voxels]
   float edge = 0.1f;           // of a voxel [m]
   Mirror mirror = Mirror::y;   // along this axis the network sees |coordinate|, so the halves are alike
-  int frequencies = 1;         // of its muscles, 1 to 5; each has 20 / frequencies phases, evenly over a turn
-  float frequency = 5;         // the highest of them [rad/s], 0 to 20; the others are its 1/n, 2/n, ...
-  float amplitude = 0.14f;     // of its muscles [1], 0 to 0.4
-  std::string environment;     // where the robot belongs ("ocean"), kept in its origin; empty = not recorded
+  // Of its muscles, 1 to 5; each has 20 / frequencies phases, evenly over a turn. With fields 1 or 2, of any phase.
+  int frequencies = 1;
+  float frequency = 5;      // the highest of them [rad/s], 0 to 20; the others are its 1/n, 2/n, ...
+  float amplitude = 0.14f;  // of its muscles [1], 0 to 0.4
+  std::string environment;  // where the robot belongs ("ocean"), kept in its origin; empty = not recorded
   friend bool operator==(const CppnGenome&, const CppnGenome&) = default;
 };
 
@@ -106,7 +111,8 @@ void validate(const CppnGenome& genome);
 // The grid that the network paints. A voxel is there if presence > 0. It is muscle if kind > 0, tissue if -1 < kind <=
 // 0, else bone. The phase counts in turns: rounded to the phases of the table and wrapped, so that a phase that grows
 // over several turns is a traveling wave. The frequency runs from the lowest at -1 to the highest at 1. Muscle number
-// f * (20 / frequencies) + p + 1 has frequency f and phase p. Throws InputError as validate.
+// f * (20 / frequencies) + p + 1 has frequency f and phase p; with fields all muscles are number 1. Throws InputError
+// as validate.
 VoxelGrid paint(const CppnGenome& genome);
 
 // The table of materials of such robots: the 20 muscles as above with the stiffness of the default muscles, tissue,
@@ -116,9 +122,19 @@ VoxelGrid paint(const CppnGenome& genome);
 std::vector<Material> cppn_materials(int frequencies, float frequency, float amplitude = 0.14f);
 
 // The largest connected body of the painted grid as a robot (voxel.h) with its own materials; bit for bit the same on
-// every machine. Its origin keeps the genome. Throws InputError as validate, and for a body that is all air or has more
-// than max_masses masses.
+// every machine. With fields each voxel has a phase, an amplitude from 0 at -1 to the largest at 1, and a stiffness
+// from half that of its kind at -1 to twice that at 1; voxels that are alike share one of 36 materials, and springs
+// between different voxels move by the mean of their waves (robots/muscle_fields.h). Its origin keeps the genome.
+// Throws InputError as validate, and for a body that is all air or has more than max_masses masses.
 Robot grow(const CppnGenome& genome, const std::string& name = {});
+
+// The voxels of that robot: cells are materials of its table, up to 36 with fields.
+VoxelGrid painted_voxels(const CppnGenome& genome);
+
+// The largest body of what is left of the painted grid, after some cells of it were turned to air: with the table of the
+// whole robot, and springs that have the material that they have there, where they may have been shared with voxels
+// that are lost. Throws InputError for voxels that the robot lacks. The origin is that of a voxel robot.
+Robot grow_part(const CppnGenome& genome, const VoxelGrid& part, const std::string& name = {});
 
 // The genome in a robot's origin; none if the robot is of another kind. Throws InputError("/origin/edges/7", ...) if
 // the origin is of kind "cppn" but cannot be used.
@@ -145,6 +161,8 @@ CppnGenome mutate_muscles(const CppnGenome& genome, double strength, std::uint64
 // returned, or a copy of a. Depends on the arguments alone. Throws InputError for a genome that is not valid.
 CppnGenome crossover(const CppnGenome& a, const CppnGenome& b, std::uint64_t seed);
 
+enum class PaintedMuscles : std::uint8_t { phases, fields };
+
 // How random genomes are drawn.
 struct CppnOptions {
   std::array<int, 3> smallest{6, 4, 4}, largest{10, 6, 6};  // [voxels]; each size is drawn between the two
@@ -152,7 +170,8 @@ struct CppnOptions {
   Mirror mirror = Mirror::y;
   double filled = 0.35;  // smallest share of the grid that is painted; the largest is all of it
   int hidden = 8;        // nodes that the network begins with
-  int frequencies = 1;   // as in CppnGenome
+  PaintedMuscles muscles = PaintedMuscles::phases;  // fields: networks paint amplitude and stiffness as well
+  int frequencies = 1;                              // as in CppnGenome
   float frequency = 5;
   std::string environment;
 };

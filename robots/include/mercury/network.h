@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The network that grows a robot (paper, III.B): a multilayer perceptron that takes a random point to a place in space
-// and a score for each base material.
+// and a score for each base material; on request also to how its muscle moves and how stiff it is.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,8 @@
 namespace mercury {
 
 inline constexpr int network_outputs = 3 + 22;  // a place, and a score for each base material
+// And fields: phase, frequency, amplitude, stiffness (nn_robot.h).
+inline constexpr int network_field_outputs = network_outputs + 4;
 inline constexpr int max_network_width = 4096;
 inline constexpr int max_network_layers = 16;
 
@@ -23,9 +25,10 @@ struct Layer {
   friend bool operator==(const Layer&, const Layer&) = default;
 };
 
-// Layers with max(0, .) between them. The last one has 3 + 22 outputs.
+// Layers with max(0, .) between them. The last one has 3 + 22 outputs, or 3 + 22 + 4 with fields.
 struct Network {
   std::vector<Layer> layers;
+  bool has_fields() const { return !layers.empty() && layers.back().outputs == network_field_outputs; }
   friend bool operator==(const Network&, const Network&) = default;
 };
 
@@ -33,13 +36,13 @@ struct Network {
 std::vector<int> sizes_of(const Network& network);
 
 // Throws InputError("<where>...") unless there are 1 to 16 layers of 1 to 4,096 inputs and outputs, each layer takes
-// the outputs of the one before, the last one has 25 outputs, and the weights and biases match these sizes. Does not
-// check their values.
+// the outputs of the one before, the last one has 25 or 29 outputs, and the weights and biases match these sizes. Does
+// not check their values.
 void validate(const Network& network, const std::string& where = "network");
 
 // The network's outputs for some points: `points` holds points x inputs floats, point after point, the result
-// points x 25. Each output is summed in the order bias, input 0, input 1, ... and rounded after each step, so it has
-// the same bits on every machine. Throws InputError if the number of floats is not a multiple of the inputs.
+// points x 25 (or 29). Each output is summed in the order bias, input 0, input 1, ... and rounded after each step, so
+// it has the same bits on every machine. Throws InputError if the number of floats is not a multiple of the inputs.
 std::vector<float> evaluate(const Network& network, std::span<const float> points);
 
 // The same for layers that need not form a whole network. Returns points x outputs of the last layer.
