@@ -154,6 +154,7 @@ class LocalAssessor : public Assessor {
   }
 
   void prepare(std::span<const GenomePointer> candidates, std::span<const double> interim_limits) override {
+    if (!evaluator_) evaluator_ = std::make_unique<Evaluator>(request_, trial_source(source(), settings_, seed_), 0);
     const std::size_t evaluations = candidates.size() * trials();
     auto batch = std::make_shared<Batch>();
     batch->candidates.assign(candidates.begin(), candidates.end());
@@ -162,7 +163,6 @@ class LocalAssessor : public Assessor {
     batch->interim_scores.resize(candidates.size());
     batches_.add(std::move(batch));
     known_ += evaluations;
-    if (!evaluator_) evaluator_ = std::make_unique<Evaluator>(request_, trial_source(source(), settings_, seed_), 0);
     evaluator_->extend(evaluations);
   }
 

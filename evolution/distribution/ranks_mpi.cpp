@@ -3,20 +3,24 @@
 //
 //   rank 0                          the others
 //   work  genomes, limits    ---->
-//   stop                     ---->  (while they work, if the user interrupts)
-//                            <----  result  what became of it, assessments
+//   stop                     ---->  (of all work so far, if the user interrupts)
+//                            <----  result  what became of it, busy time, assessments
 //   end                      ---->
 //
-// Every `work` is answered by one `result`, whatever happens, so nobody waits for a message that does not come. Waiting
-// looks for messages in turns with short sleeps; MPI would keep a core busy.
+// Every `work` is answered by one `result`, whatever happens and in their order, so nobody waits for a message that
+// does not come. Rank 0 may send the next `work` before the last `result`: then generations overlap on all ranks.
+// Waiting looks for messages in turns with short sleeps; MPI would keep a core busy.
 //
 // If a rank is lost, the launcher asks the others to end, and kills them soon after. Rank 0 then waits for answers only
 // as long as ranks need to stop, and the others for a message of rank 0.
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 
+#include <algorithm>
 #include <chrono>
+#include <deque>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -84,57 +88,88 @@ std::string broadcast(const std::string& bytes) {
 
 // --- Rank 0
 
+// Candidates that were dealt out to all ranks, and what came back so far.
+struct Deal {
+  std::vector<GenomePointer> candidates;
+  std::vector<std::string> work;     // per rank, while it is sent
+  std::vector<MPI_Request> sending;  // per rank
+  std::vector<Assessment> all;       // of the candidates
+  std::vector<double> busy_seconds;  // per rank
+  std::exception_ptr failure;        // of another rank
+  std::size_t missing = 0;           // answers of other ranks
+};
+
 class DistributedAssessor : public Assessor {
  public:
   DistributedAssessor(Assessor& local, int ranks, bool& lost)
-      : local_(local), ranks_(static_cast<std::size_t>(ranks)), lost_(lost) {}
+      : local_(local), ranks_(static_cast<std::size_t>(ranks)), lost_(lost), answered_(ranks_) {}
+
+  void prepare(std::span<const GenomePointer> candidates, std::span<const double> interim_limits) override {
+    Deal& deal = deals_.emplace_back();  // a deque does not move its elements, whose bytes are being sent
+    deal.candidates.assign(candidates.begin(), candidates.end());
+    deal.work.resize(ranks_);
+    deal.sending.assign(ranks_, MPI_REQUEST_NULL);
+    deal.all.resize(candidates.size());
+    for (std::size_t rank = 1; rank < ranks_; ++rank) {
+      ByteWriter writer;
+      writer.numbers(std::vector<double>(interim_limits.begin(), interim_limits.end()));
+      writer.count((candidates.size() + ranks_ - 1 - rank) / ranks_);
+      for (std::size_t i = rank; i < candidates.size(); i += ranks_) writer.text(candidates[i]->encode());
+      deal.work[rank] = std::move(writer).take();
+      deal.sending[rank] = send(static_cast<int>(rank), work_tag, deal.work[rank]);
+      ++deal.missing;
+    }
+    local_.prepare(own(candidates), interim_limits);
+  }
 
   std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates,
                                                 std::span<const double> interim_limits, const Watch& watch) override {
-    deal_out(candidates, interim_limits);
-    std::vector<Assessment> all(candidates.size());
+    if (!deals_.empty() && !std::ranges::equal(deals_.front().candidates, candidates)) forget();
+    if (deals_.empty()) prepare(candidates, interim_limits);
+    Deal& deal = deals_.front();
     std::exception_ptr failure;
-    stopped_ = false;
+    stopped_at_.reset();
     const auto go_on = [&](std::size_t done) {
-      if (!stopped_ && watch && !watch(std::min(done, candidates.size()), candidates.size())) stop();
-      return !stopped_;
+      receive_answers();
+      if (deal.failure || (watch && !watch(std::min(done, candidates.size()), candidates.size()))) stop();
+      return !stopped_at_;
     };
     try {
-      std::vector<GenomePointer> mine;
-      for (std::size_t i = 0; i < candidates.size(); i += ranks_) mine.push_back(candidates[i]);
       // The others are expected to be as far.
-      const auto own =
-          local_.assess(mine, interim_limits, [&](std::size_t done, std::size_t) { return go_on(done * ranks_); });
-      if (own) put(all, 0, *own);
+      const auto assessments = local_.assess(own(candidates), interim_limits,
+                                             [&](std::size_t done, std::size_t) { return go_on(done * ranks_); });
+      if (assessments) put(deal, 0, *assessments);
     } catch (...) {
       failure = std::current_exception();
       stop();
     }
-    collect(all, failure, go_on);
+    wait_for_answers(deal, [&] { go_on(candidates.size()); });
+    if (!failure) failure = deal.failure;
+    if (stopped_at_) forget();
     if (failure) std::rethrow_exception(failure);
-    return stopped_ ? std::nullopt : std::optional(std::move(all));
+    if (stopped_at_) return std::nullopt;
+    busy_seconds_ = std::accumulate(deal.busy_seconds.begin(), deal.busy_seconds.end(), 0.);
+    std::vector<Assessment> all = std::move(deal.all);
+    drop_first();
+    return all;
   }
 
   std::string device_name() const override {
     return local_.device_name().empty() ? "" : local_.device_name() + ", " + std::to_string(ranks_) + " ranks";
   }
 
+  double busy_seconds() const override { return (local_.busy_seconds() + busy_seconds_) / static_cast<double>(ranks_); }
+
  private:
-  void deal_out(std::span<const GenomePointer> candidates, std::span<const double> interim_limits) {
-    work_.assign(ranks_, {});
-    sending_.assign(ranks_, MPI_REQUEST_NULL);
-    for (std::size_t rank = 1; rank < ranks_; ++rank) {
-      ByteWriter writer;
-      writer.numbers(std::vector<double>(interim_limits.begin(), interim_limits.end()));
-      writer.count((candidates.size() + ranks_ - 1 - rank) / ranks_);
-      for (std::size_t i = rank; i < candidates.size(); i += ranks_) writer.text(candidates[i]->encode());
-      work_[rank] = std::move(writer).take();
-      sending_[rank] = send(static_cast<int>(rank), work_tag, work_[rank]);
-    }
+  std::vector<GenomePointer> own(std::span<const GenomePointer> candidates) const {
+    std::vector<GenomePointer> mine;
+    for (std::size_t i = 0; i < candidates.size(); i += ranks_) mine.push_back(candidates[i]);
+    return mine;
   }
 
+  // All that was dealt out.
   void stop() {
-    stopped_ = true;
+    if (stopped_at_) return;
     stopped_at_ = std::chrono::steady_clock::now();
     for (std::size_t rank = 1; rank < ranks_; ++rank) {
       MPI_Request request;  // without bytes, so nothing needs to live until it is done
@@ -143,58 +178,77 @@ class DistributedAssessor : public Assessor {
     }
   }
 
+  // Waits for the answers to all that was dealt out, and drops them.
+  void forget() {
+    stop();
+    while (!deals_.empty()) {
+      wait_for_answers(deals_.front(), [&] { receive_answers(); });
+      drop_first();
+    }
+  }
+
+  void drop_first() {
+    // Who has answered has received the work.
+    require(MPI_Waitall(static_cast<int>(ranks_), deals_.front().sending.data(), MPI_STATUSES_IGNORE), "sending");
+    deals_.pop_front();
+    for (std::size_t rank = 1; rank < ranks_; ++rank) --answered_[rank];
+  }
+
   // "rank 3 no longer answers"
-  static std::string loss(const std::vector<bool>& has_answered) {
+  std::string loss() const {
     std::string lost;
     int count = 0;
-    for (std::size_t rank = 1; rank < has_answered.size(); ++rank)
-      if (!has_answered[rank]) lost += (count++ == 0 ? "" : ", ") + std::to_string(rank);
+    for (std::size_t rank = 1; rank < ranks_; ++rank)
+      if (answered_[rank] == 0) lost += (count++ == 0 ? "" : ", ") + std::to_string(rank);
     return (count == 1 ? "rank " : "ranks ") + lost + " no longer " + (count == 1 ? "answers" : "answer") +
            "; the run folder is whole, --resume goes on";
   }
 
-  template <class GoOn>
-  void collect(std::vector<Assessment>& all, std::exception_ptr& failure, const GoOn& go_on) {
-    std::vector<bool> has_answered(ranks_);
-    for (std::size_t missing = ranks_ - 1; missing > 0;) {
-      MPI_Status status;
-      if (!arrived(MPI_ANY_SOURCE, result_tag, status)) {
-        if (!go_on(all.size()) && std::chrono::steady_clock::now() - stopped_at_ > longest_stop) {
-          lost_ = true;
-          throw std::runtime_error(loss(has_answered));
-        }
-        std::this_thread::sleep_for(turn);
-        continue;
+  // `look` looks for them.
+  template <class Look>
+  void wait_for_answers(const Deal& deal, const Look& look) {
+    while (true) {
+      look();
+      if (deal.missing == 0) return;
+      if (stopped_at_ && std::chrono::steady_clock::now() - *stopped_at_ > longest_stop) {
+        lost_ = true;
+        throw std::runtime_error(loss());
       }
-      const std::string bytes = receive(status);
-      const auto rank = static_cast<std::size_t>(status.MPI_SOURCE);
-      --missing;
-      has_answered[rank] = true;
-      ByteReader reader(bytes);
-      const auto outcome = static_cast<Outcome>(reader.read<std::uint8_t>());
-      if (outcome == Outcome::done) put(all, rank, decode_assessments(reader));
-      if (outcome != Outcome::device_failed && outcome != Outcome::failed) continue;
-      const std::string message = "rank " + std::to_string(rank) + ": " + std::string(reader.text());
-      if (!failure)
-        failure = outcome == Outcome::device_failed ? std::make_exception_ptr(DeviceError(message))
-                                                    : std::make_exception_ptr(std::runtime_error(message));
-      if (!stopped_) stop();
+      std::this_thread::sleep_for(turn);
     }
-    // Who has answered has received the work.
-    require(MPI_Waitall(static_cast<int>(ranks_), sending_.data(), MPI_STATUSES_IGNORE), "sending");
   }
 
-  void put(std::vector<Assessment>& all, std::size_t rank, std::vector<Assessment> part) const {
-    for (std::size_t k = 0; k < part.size(); ++k) all.at(rank + k * ranks_) = std::move(part[k]);
+  // Those that are there. Each rank answers in the order in which it was dealt to.
+  void receive_answers() {
+    for (MPI_Status status; arrived(MPI_ANY_SOURCE, result_tag, status);) {
+      const std::string bytes = receive(status);
+      const auto rank = static_cast<std::size_t>(status.MPI_SOURCE);
+      Deal& deal = deals_.at(answered_.at(rank)++);
+      --deal.missing;
+      ByteReader reader(bytes);
+      const auto outcome = static_cast<Outcome>(reader.read<std::uint8_t>());
+      if (outcome == Outcome::done) {
+        deal.busy_seconds.push_back(reader.read<double>());
+        put(deal, rank, decode_assessments(reader));
+      }
+      if (deal.failure || (outcome != Outcome::device_failed && outcome != Outcome::failed)) continue;
+      const std::string message = "rank " + std::to_string(rank) + ": " + std::string(reader.text());
+      deal.failure = outcome == Outcome::device_failed ? std::make_exception_ptr(DeviceError(message))
+                                                       : std::make_exception_ptr(std::runtime_error(message));
+    }
+  }
+
+  void put(Deal& deal, std::size_t rank, std::vector<Assessment> part) const {
+    for (std::size_t k = 0; k < part.size(); ++k) deal.all.at(rank + k * ranks_) = std::move(part[k]);
   }
 
   Assessor& local_;
   const std::size_t ranks_;
   bool& lost_;
-  std::vector<std::string> work_;     // per rank, while it is sent
-  std::vector<MPI_Request> sending_;  // per rank
-  bool stopped_ = false;
-  std::chrono::steady_clock::time_point stopped_at_;
+  std::deque<Deal> deals_;
+  std::vector<std::size_t> answered_;  // per rank, how many of the deals
+  double busy_seconds_ = 0;            // of the other ranks together
+  std::optional<std::chrono::steady_clock::time_point> stopped_at_;
 };
 
 // --- The others
@@ -222,34 +276,102 @@ class Silence {
   std::optional<std::chrono::steady_clock::time_point> since_;
 };
 
-std::string answer(Assessor& assessor, const GenomeSpace& space, const std::string& work, Silence& silence) {
-  ByteReader reader(work);
-  const std::vector<double> limits = reader.numbers<double>();
-  std::vector<GenomePointer> genomes(reader.count(sizeof(std::uint32_t)));
-  for (GenomePointer& genome : genomes) genome = space.decode(reader.text());
-  bool stopped = false;
-  const auto assessments = assessor.assess(genomes, limits, [&](std::size_t, std::size_t) {
-    MPI_Status status;
-    if (!stopped && arrived(0, stop_tag, status)) {
-      receive(status);
-      silence.end();
-      stopped = true;
-    }
-    silence.check();
-    return !stopped;
-  });
-  ByteWriter writer;
-  writer.add(static_cast<std::uint8_t>(assessments ? Outcome::done : Outcome::stopped));
-  if (assessments) encode(writer, *assessments);
-  return writer.bytes();
-}
+// Does what rank 0 sends, in its order. While it tries some candidates, it begins with those that have come since.
+class Server {
+ public:
+  Server(const std::function<std::unique_ptr<Assessor>()>& make_assessor, const GenomeSpace& space,
+         const std::function<bool()>& interrupted)
+      : make_assessor_(make_assessor), space_(space), silence_(interrupted) {}
 
-std::string failed(Outcome outcome, const char* message) {
-  ByteWriter writer;
-  writer.add(static_cast<std::uint8_t>(outcome));
-  writer.text(message);
-  return writer.bytes();
-}
+  void run() {
+    while (true) {
+      read_messages();
+      if (ended_) return;
+      if (jobs_.empty()) {
+        wait();
+        continue;
+      }
+      const std::string result = answer();
+      jobs_.pop_front();
+      for (MPI_Request request = send(0, result_tag, result); !is_sent(request); wait()) read_messages();
+    }
+  }
+
+ private:
+  struct Job {
+    std::vector<GenomePointer> candidates;
+    std::vector<double> interim_limits;
+    bool stopped = false;
+    std::exception_ptr failure;
+  };
+
+  void wait() {
+    silence_.check();
+    std::this_thread::sleep_for(turn);
+  }
+
+  void read_messages() {
+    for (MPI_Status status; !ended_ && arrived(0, MPI_ANY_TAG, status);) {
+      const std::string message = receive(status);
+      silence_.end();
+      if (status.MPI_TAG == end_tag) ended_ = true;
+      if (status.MPI_TAG == stop_tag)
+        for (Job& job : jobs_) job.stopped = true;
+      if (status.MPI_TAG == work_tag) begin(message);
+    }
+  }
+
+  void begin(const std::string& work) {
+    Job& job = jobs_.emplace_back();
+    try {
+      ByteReader reader(work);
+      job.interim_limits = reader.numbers<double>();
+      job.candidates.resize(reader.count(sizeof(std::uint32_t)));
+      for (GenomePointer& genome : job.candidates) genome = space_.decode(reader.text());
+      if (!assessor_) assessor_ = make_assessor_();
+      assessor_->prepare(job.candidates, job.interim_limits);
+    } catch (...) {
+      job.failure = std::current_exception();
+    }
+  }
+
+  // Of the first job.
+  std::string answer() {
+    Job& job = jobs_.front();
+    ByteWriter writer;
+    const auto fail = [&](Outcome outcome, const char* message) {
+      writer.add(static_cast<std::uint8_t>(outcome));
+      writer.text(message);
+    };
+    try {
+      if (job.failure) std::rethrow_exception(job.failure);
+      std::optional<std::vector<Assessment>> assessments;
+      if (!job.stopped)
+        assessments = assessor_->assess(job.candidates, job.interim_limits, [&](std::size_t, std::size_t) {
+          read_messages();
+          silence_.check();
+          return !job.stopped;
+        });
+      writer.add(static_cast<std::uint8_t>(assessments ? Outcome::done : Outcome::stopped));
+      if (assessments) {
+        writer.add(assessor_->busy_seconds());
+        encode(writer, *assessments);
+      }
+    } catch (const DeviceError& error) {
+      fail(Outcome::device_failed, error.what());
+    } catch (const std::exception& error) {
+      fail(Outcome::failed, error.what());
+    }
+    return std::move(writer).take();
+  }
+
+  const std::function<std::unique_ptr<Assessor>()>& make_assessor_;
+  const GenomeSpace& space_;
+  Silence silence_;
+  std::unique_ptr<Assessor> assessor_;
+  std::deque<Job> jobs_;
+  bool ended_ = false;
+};
 
 }  // namespace
 
@@ -312,31 +434,8 @@ std::unique_ptr<Assessor> Ranks::distribute(Assessor& local) {
 
 bool Ranks::serve(const std::function<std::unique_ptr<Assessor>()>& make_assessor, const GenomeSpace& space,
                   const std::function<bool()>& interrupted) try {
-  std::unique_ptr<Assessor> assessor;
-  Silence silence(interrupted);
-  for (;;) {
-    MPI_Status status;
-    if (!arrived(0, MPI_ANY_TAG, status)) {
-      silence.check();
-      std::this_thread::sleep_for(turn);
-      continue;
-    }
-    const std::string message = receive(status);
-    silence.end();
-    if (status.MPI_TAG == end_tag) return true;
-    if (status.MPI_TAG != work_tag) continue;  // a `stop` that came after the result
-    std::string result;
-    try {
-      if (!assessor) assessor = make_assessor();
-      result = answer(*assessor, space, message, silence);
-    } catch (const DeviceError& error) {
-      result = failed(Outcome::device_failed, error.what());
-    } catch (const std::exception& error) {
-      result = failed(Outcome::failed, error.what());
-    }
-    for (MPI_Request request = send(0, result_tag, result); !is_sent(request); std::this_thread::sleep_for(turn))
-      silence.check();
-  }
+  Server(make_assessor, space, interrupted).run();
+  return true;
 } catch (const RankZeroLost&) {
   parts_->lost = true;
   return false;

@@ -178,6 +178,25 @@ TEST_F(EvolveByMpi, RanksEndInTheSameLineage) {
   EXPECT_EQ(lineage("run"), expected_lineage());
 }
 
+TEST_F(EvolveByMpi, PipelinedRunsAreTheSameOnAllRanksAndWhenTheyGoOn) {
+  const Arguments pipelined = joined(small("12"), {"--pipelined"});
+  ASSERT_EQ(evolve("whole", pipelined).status, 0);
+  ASSERT_EQ(run_program("mpirun", three_ranks(joined({path("run")}, pipelined))).status, 0);
+  EXPECT_EQ(lineage("run"), lineage("whole"));
+  // Interrupted with the next generation begun on all ranks.
+  ChildProcess child("mpirun", three_ranks(joined({path("later")}, joined(small("4000"), {"--pipelined"}))));
+  wait_for_generations("later", 3);
+  child.signal(SIGINT);
+  outcome_of(child);
+  const std::size_t before = generations_in("later");
+  ASSERT_EQ(run_program("mpirun", three_ranks({path("later"), "--resume", "--quiet", "--generations",
+                                               std::to_string(before + 3)}))
+                .status,
+            0);
+  ASSERT_EQ(evolve("alone", joined(small(std::to_string(before + 3)), {"--pipelined"})).status, 0);
+  EXPECT_EQ(lineage("later"), lineage("alone"));
+}
+
 TEST_F(EvolveByMpi, IslandsAreTheSameOnAllRanks) {
   const Arguments islands = joined(small("3"), {"--islands", "2", "--migration-interval", "2", "--migrants", "1"});
   ASSERT_EQ(evolve("whole", islands).status, 0);
