@@ -32,6 +32,12 @@ class ByteWriter {
   }
   void add(float value) { add(std::bit_cast<std::uint32_t>(value)); }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(std::span<const float> values) {
+    if constexpr (std::endian::native == std::endian::little)
+      append(std::string_view(reinterpret_cast<const char*>(values.data()), values.size_bytes()));
+    else
+      for (const float value : values) add(value);
+  }
   void append(std::string_view bytes) { bytes_.append(bytes); }
   void append(std::span<const std::uint8_t> bytes) {
     bytes_.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());

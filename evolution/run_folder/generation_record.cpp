@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "robots/bytes.h"
 
@@ -36,6 +37,7 @@ std::string difference_of(std::string_view base, std::string_view target) {
   put(difference, target.size());
   std::size_t done = 0;
   for (std::size_t i = 0; i < target.size(); ++i) {
+    if (i + 8 <= common && std::memcmp(base.data() + i, target.data() + i, 8) == 0) i += 7;
     if (!differs(i)) continue;
     std::size_t end = i + 1;
     for (std::size_t k = end; k < target.size() && k - end < shortest_copy; ++k)

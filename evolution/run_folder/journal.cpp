@@ -90,7 +90,7 @@ JournalReader::JournalReader(const std::filesystem::path& path) : path_(path), f
 void JournalReader::fail(const std::string& problem) const { throw InputError(path_.string(), problem); }
 
 // The head of the record at the end of what was read; nothing if that record is not, or not yet, written to its end.
-std::optional<RecordHead> JournalReader::whole_record(std::uint64_t size) const {
+std::optional<RecordHead> JournalReader::whole_record(std::uint64_t size, Check check) const {
   const std::optional<RecordHead> head = decode_head(file_.read(end_, RecordHead::size));
   const auto damaged = [&] {
     fail("generation " + std::to_string(next_number_) + " is damaged (at byte " + std::to_string(end_) + ")");
@@ -108,7 +108,8 @@ std::optional<RecordHead> JournalReader::whole_record(std::uint64_t size) const 
   };
   // The genomes of earlier records were on the disk before the next record was begun.
   if (matches(index_at, head->index_size, head->index_checksum) &&
-      (!is_last || matches(index_at + head->index_size, head->genomes_size, head->genomes_checksum)))
+      (!is_last || check == Check::index ||
+       matches(index_at + head->index_size, head->genomes_size, head->genomes_checksum)))
     return head;
   if (!is_last) damaged();
   return std::nullopt;
@@ -124,11 +125,11 @@ bool JournalReader::has_sound_head_after(std::uint64_t offset, std::uint64_t siz
   return false;
 }
 
-std::optional<GenerationRecord> JournalReader::next() {
+std::optional<GenerationRecord> JournalReader::next(Check check) {
   const std::uint64_t size = file_.size();
   if (size < end_) fail("is shorter than it was; something else wrote to it");
   if (size - end_ < RecordHead::size) return std::nullopt;
-  const std::optional<RecordHead> head = whole_record(size);
+  const std::optional<RecordHead> head = whole_record(size, check);
   if (!head) return std::nullopt;
   const std::uint64_t genomes_at = end_ + RecordHead::size + head->index_size;
   try {

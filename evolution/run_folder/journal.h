@@ -63,7 +63,9 @@ class JournalReader {
   std::uint64_t fingerprint() const { return fingerprint_; }  // of the run's settings, as given to create()
   // The next generation that is written to its end, with offsets of genomes in the file. Nothing if there is none
   // (yet). Throws InputError if the journal is damaged.
-  std::optional<GenerationRecord> next();
+  // The genomes of the last record may be cut off after a crash; those that this process has just written are not.
+  enum class Check { all, index };
+  std::optional<GenerationRecord> next(Check check = Check::all);
   // Where the records that were read end.
   std::uint64_t end() const { return end_; }
   // Bytes of a genome, checked. Throws InputError.
@@ -73,7 +75,7 @@ class JournalReader {
 
  private:
   [[noreturn]] void fail(const std::string& problem) const;
-  std::optional<RecordHead> whole_record(std::uint64_t size) const;
+  std::optional<RecordHead> whole_record(std::uint64_t size, Check check) const;
   bool has_sound_head_after(std::uint64_t offset, std::uint64_t size) const;
 
   std::filesystem::path path_;

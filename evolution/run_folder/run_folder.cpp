@@ -2,6 +2,7 @@
 #include "mercury/run_folder.h"
 
 #include <algorithm>
+#include <deque>
 #include <future>
 #include <limits>
 #include <utility>
@@ -23,16 +24,20 @@ struct RunFolder::Parts {
   Parts(const std::filesystem::path& folder, JournalWriter locked, GenomeSpaceMaker make_space)
       : writer(std::move(locked)), history(folder, std::move(make_space)) {}
 
-  // Waits for append_later().
-  void settle() {
-    if (later.valid()) later.get();
+  // Waits until at most `most` of the generations of append_later() are not yet written.
+  void settle(std::size_t most = 0) {
+    while (later.size() > most) {
+      const std::shared_future<void> first = later.front();
+      later.pop_front();
+      first.get();
+    }
   }
   void append(const Generation& generation, const GenerationTimes& times);
 
   JournalWriter writer;  // holds the lock, so the history is read after it was taken
   RunHistory history;
   DerivedFiles derived;
-  std::future<void> later;  // last: it uses the others
+  std::deque<std::shared_future<void>> later;  // last: they use the others
 };
 
 namespace {
@@ -136,9 +141,14 @@ void RunFolder::append(const Generation& generation, const GenerationTimes& time
 }
 
 void RunFolder::append_later(Generation generation, GenerationTimes times) {
-  parts_->settle();
-  parts_->later = std::async(std::launch::async, [&parts = *parts_, generation = std::move(generation),
-                                                  times = std::move(times)] { parts.append(generation, times); });
+  constexpr std::size_t most_waiting = 3;
+  parts_->settle(most_waiting);
+  const std::shared_future<void> before = parts_->later.empty() ? std::shared_future<void>() : parts_->later.back();
+  parts_->later.push_back(std::async(std::launch::async, [&parts = *parts_, before, generation = std::move(generation),
+                                                          times = std::move(times)] {
+                            if (before.valid()) before.get();
+                            parts.append(generation, times);
+                          }).share());
 }
 
 void RunFolder::Parts::append(const Generation& generation, const GenerationTimes& times) {
@@ -151,7 +161,7 @@ void RunFolder::Parts::append(const Generation& generation, const GenerationTime
   for (Individual& born : record.generation.born) use_stored_quantities(born.assessment, run.file.quantities);
   run.journal.check_not_replaced();
   writer.append(record, genomes, run.journal.version());
-  run.refresh();
+  run.refresh(JournalReader::Check::index);
   derived.write_now_and_then(history);
 }
 

@@ -157,9 +157,9 @@ RunHistory::Parts::Parts(const std::filesystem::path& run, GenomeSpaceMaker make
   refresh();
 }
 
-bool RunHistory::Parts::refresh() {
+bool RunHistory::Parts::refresh(JournalReader::Check check) {
   const std::size_t before = generations.size();
-  while (std::optional<GenerationRecord> record = journal.next()) add(std::move(*record));
+  while (std::optional<GenerationRecord> record = journal.next(check)) add(std::move(*record));
   if (generations.size() == before) journal.check_not_replaced();
   return generations.size() > before;
 }

@@ -58,7 +58,7 @@ struct RunHistory::Parts {
   Parts(const std::filesystem::path& run, GenomeSpaceMaker maker);
 
   // Takes what is new in the journal.
-  bool refresh();
+  bool refresh(JournalReader::Check check = JournalReader::Check::all);
   const GenomeSpace& space() const;
   GenomePointer genome(std::uint64_t id) const;
   // Throws InputError for an individual that was never born.

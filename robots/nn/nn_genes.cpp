@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+#include <span>
+
 #include "mercury/error.h"
 #include "mercury/nn_robot.h"
 #include "mercury/random.h"
@@ -71,8 +74,8 @@ struct NnGenes {
     for (const Layer& layer : genome.network.layers) {
       writer.add(static_cast<std::uint16_t>(layer.inputs));
       writer.add(static_cast<std::uint16_t>(layer.outputs));
-      for (const float weight : layer.weights) writer.add(weight);
-      for (const float bias : layer.biases) writer.add(bias);
+      writer.add(std::span(layer.weights));
+      writer.add(std::span(layer.biases));
     }
     if (!genome.network.has_fields()) return mercury::write(writer, materials);
     writer.add(static_cast<std::uint8_t>(genome.frequencies));
@@ -119,11 +122,24 @@ struct NnGenes {
 
   // Which weights matter is known only to the one who grows the robot.
   void add_identity(IdentityHash& hash) const {
-    ByteWriter writer;
-    NnGenes body{genome, {}};
-    body.write(writer);
-    hash.add(std::move(writer).take());
-    if (!genome.network.has_fields()) mercury::add_identity(hash, materials, {});
+    const auto add_all = [&](const std::vector<float>& numbers) {
+      for (const float number : numbers) hash.step(std::bit_cast<std::uint32_t>(number));
+    };
+    hash.add(genome.cloud_seed);
+    hash.add(static_cast<std::uint64_t>(genome.points));
+    hash.step(genome.mirrored ? 1 : 0);
+    hash.add(genome.alpha);
+    hash.add(genome.spacing);
+    for (const Layer& layer : genome.network.layers) {
+      hash.step(static_cast<std::uint64_t>(layer.inputs));
+      hash.step(static_cast<std::uint64_t>(layer.outputs));
+      add_all(layer.weights);
+      add_all(layer.biases);
+    }
+    if (!genome.network.has_fields()) return mercury::add_identity(hash, materials, {});
+    hash.step(static_cast<std::uint64_t>(genome.frequencies));
+    hash.add(genome.frequency);
+    hash.add(genome.amplitude);
   }
 };
 

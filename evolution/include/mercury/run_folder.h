@@ -134,8 +134,8 @@ class RunFolder {
   // that they take a small share of the time. If it cannot be written (a full disk), throws InputError, and the journal
   // is as it was.
   void append(const Generation& generation, const GenerationTimes& times);
-  // The same on a thread of its own, while the caller makes the next generation. Whatever is called next waits for it,
-  // and throws what append() would have thrown.
+  // The same on a thread of its own, while the caller makes the next generations. If more than three wait, it waits for
+  // the first of them; all other functions wait for all. They throw what append() would have thrown.
   void append_later(Generation generation, GenerationTimes times);
   // Writes all other files.
   void write_all();
