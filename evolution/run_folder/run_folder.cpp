@@ -37,7 +37,9 @@ struct RunFolder::Parts {
   JournalWriter writer;  // holds the lock, so the history is read after it was taken
   RunHistory history;
   DerivedFiles derived;
-  std::deque<std::shared_future<void>> later;  // last: they use the others
+  ThreadPool few_threads{
+      std::max(1, static_cast<int>(parallel_threads() / 4))};  // the next generation needs the others
+  std::deque<std::shared_future<void>> later;                  // last: they use the others
 };
 
 namespace {
@@ -147,7 +149,7 @@ void RunFolder::append_later(Generation generation, GenerationTimes times) {
   parts_->later.push_back(std::async(std::launch::async, [&parts = *parts_, before, generation = std::move(generation),
                                                           times = std::move(times)] {
                             if (before.valid()) before.get();
-                            parts.append(generation, times);
+                            parts.few_threads.execute([&] { parts.append(generation, times); });
                           }).share());
 }
 

@@ -27,10 +27,9 @@ struct NnGenes {
   }
 
   NnGenes mutated(Genes genes, const GeneMutation& mutation, std::uint64_t seed) const {
-    NnGenes child = *this;
     const Changes changes = changes_of(genes, seed);
     constexpr double rate = 0.1, size = 0.3;
-    if (changes.body) child.genome = mutate(genome, rate, size * mutation.strength, seed);
+    NnGenes child{changes.body ? mutate(genome, rate, size * mutation.strength, seed) : genome, materials};
     if (changes.muscles && genome.network.has_fields())
       child.genome = mutate_muscles(child.genome, mutation.muscles, seed_of(seed, 0), mutation.tail);
     else if (changes.muscles)
@@ -41,8 +40,7 @@ struct NnGenes {
   std::size_t muscle_numbers() const { return genome.network.has_fields() ? 2 : muscle_numbers_of(materials, {}); }
 
   NnGenes crossed(const NnGenes& other, Genes genes, std::uint64_t seed) const {
-    NnGenes child = *this;
-    if (genes != Genes::muscles) child.genome = crossover(genome, other.genome, seed);
+    NnGenes child{genes != Genes::muscles ? crossover(genome, other.genome, seed) : genome, materials};
     if (genes != Genes::body && genome.network.has_fields())
       child.genome = cross_muscles(child.genome, other.genome, seed_of(seed, 0));
     else if (genes != Genes::body)

@@ -155,9 +155,9 @@ Layer last_layer(const Trunk& trunk, bool mirrored, bool fields, Random& random)
   }
   if (!fields) return layer;
   // Smooth fields: phases run over some part of a turn, the others over a part of their range.
-  constexpr std::array<double, 4> slopes{0.2, 0.4, 0.3, 0.3};
-  constexpr double roughness = 0.1;
-  for (const double slope : slopes) add_row(0.4 * random.normal(), slope, roughness);
+  constexpr std::array<double, 4> slopes{0.8, 1.6, 1.2, 1.2};
+  constexpr double roughness = 0.4;
+  for (const double slope : slopes) add_row(1.6 * random.normal(), slope, roughness);
   return layer;
 }
 

@@ -29,6 +29,9 @@ void require(bool holds, const char* where, std::string_view what) {
   if (!holds) throw InputError(where, std::string(what));
 }
 
+// Mutations move all weights alike, and outputs with them, too far for a phase in turns.
+constexpr double field_scale = 0.25;
+
 FieldMuscles muscles_of(const NnGenome& genome) { return {genome.frequencies, genome.frequency, genome.amplitude}; }
 
 // Standard normal points, point after point.
@@ -114,10 +117,11 @@ std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
     cloud[i].place = {output[0], output[1], output[2]};
     cloud[i].material = static_cast<MaterialId>(1 + most_probable({output + 3, base_material_count}));
     if (!fields) continue;
-    const float* field = output + network_outputs;
-    cloud[i].law = law_of(cloud[i].material,
-                          {.phase = field[0], .frequency = field[1], .amplitude = field[2], .stiffness = field[3]},
-                          muscles_of(genome));
+    const auto field = [&](int index) { return field_scale * static_cast<double>(output[network_outputs + index]); };
+    cloud[i].law =
+        law_of(cloud[i].material,
+               {.phase = field(0), .frequency = field(1), .amplitude = 0.5 + field(2), .stiffness = field(3)},
+               muscles_of(genome));
   }
   fit_into_unit_sphere(cloud);
   if (genome.spacing > 0) spread_out(cloud, genome);
@@ -232,16 +236,29 @@ Robot grow(const NnGenome& genome, const std::string& name) {
   return robot;
 }
 
+namespace {
+
+NnGenome with_network(const NnGenome& genome, Network network) {
+  return {.network = std::move(network),
+          .cloud_seed = genome.cloud_seed,
+          .points = genome.points,
+          .mirrored = genome.mirrored,
+          .alpha = genome.alpha,
+          .spacing = genome.spacing,
+          .frequencies = genome.frequencies,
+          .frequency = genome.frequency,
+          .amplitude = genome.amplitude,
+          .environment = genome.environment};
+}
+
+}  // namespace
+
 NnGenome mutate(const NnGenome& genome, double rate, double size, std::uint64_t seed) {
-  NnGenome mutant = genome;
-  mutant.network = mutate(genome.network, rate, size, seed);
-  return mutant;
+  return with_network(genome, mutate(genome.network, rate, size, seed));
 }
 
 NnGenome crossover(const NnGenome& a, const NnGenome& b, std::uint64_t seed) {
-  NnGenome child = a;
-  child.network = crossover(a.network, b.network, seed);
-  return child;
+  return with_network(a, crossover(a.network, b.network, seed));
 }
 
 NnGenome mutate_muscles(const NnGenome& genome, double strength, std::uint64_t seed, int tail) {

@@ -86,7 +86,8 @@ TEST(NetworkFields, ASpringMovesByTheMeanOfItsMasses) {
           continue;
         const float* output = &outputs[i * 29];
         const auto kind = static_cast<MaterialId>(std::max_element(output + 3, output + 25) - output - 3 + 1);
-        return law_of(kind, {output[25], output[26], output[27], output[28]},
+        const auto field = [&](int index) { return 0.25 * static_cast<double>(output[25 + index]); };
+        return law_of(kind, {field(0), field(1), 0.5 + field(2), field(3)},
                       {genome.frequencies, genome.frequency, genome.amplitude});
       }
       ADD_FAILURE() << "no point of mass " << mass;

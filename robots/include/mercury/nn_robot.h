@@ -38,11 +38,12 @@ struct NnGenome {
 // thinned and the others pushed apart a little (robots/nn/cloud_spacing.h says how and why). Masses are the places that
 // the body holds, ordered along a Z-curve so that neighbors in space are near in memory. Springs are the edges of the
 // body's tetrahedra, except those shorter than 0.001 m; their material combines the materials of their two masses.
-// Faces are the skin of the body. With fields the scores choose between muscle, tissue and bone, and each mass has a
-// phase [turns], one of the frequencies, an amplitude from 0 at -1 to the largest at 1, and a stiffness from half that
-// of its kind at -1 to twice that at 1; a spring moves by the mean of its masses' waves, and springs that are alike
-// share one of 255 materials (robots/muscle_fields.h). Throws InputError if the genome is not valid, or if its places
-// are not finite, all the same, in one plane, or hold no body of the given alpha.
+// Faces are the skin of the body. With fields the scores choose between muscle, tissue and bone, and four outputs,
+// each times 1/4, give each mass a phase [turns], one of the frequencies (the higher one above 0), an amplitude from 0
+// at -1.5 to the largest at 0.5, and a stiffness from half that of its kind at -1 to twice that at 1; a spring moves by
+// the mean of its masses' waves, and springs that are alike share one of 255 materials (robots/muscle_fields.h). Throws
+// InputError if the genome is not valid, or if its places are not finite, all the same, in one plane, or hold no body
+// of the given alpha.
 Robot grow(const NnGenome& genome, const std::string& name = {});
 // The same robot, whose origin names its kind alone: writing a network as text takes longer than growing the body.
 Robot grow_without_genome(const NnGenome& genome, const std::string& name = {});
