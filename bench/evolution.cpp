@@ -284,6 +284,7 @@ void measure_throughput(const Options& options) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("bench_evolution-" + std::to_string(getpid()));
   for (const Search& one : searches()) {
+    if (std::ranges::find(options.kinds, one.space.kind) == options.kinds.end()) continue;
     const pid_t child = fork();
     if (child == 0) {
       search(one, options, folder);
