@@ -19,7 +19,7 @@ constexpr int cuda_workers = 4, cpu_workers = 1;
 // long.
 constexpr std::size_t cpu_robots_per_thread = 512;
 // Robots that the maker makes before it hands them on, if a device waits for them and if none does.
-constexpr std::size_t smallest_piece = 128, usual_piece = 512;
+constexpr std::size_t smallest_piece = 256, usual_piece = 512;
 // Robots per portion on CUDA: the first, then twice as many, and so on. If more wait when the device starts, one
 // portion takes them all, or a few share them evenly: stepping begins earlier than if one took more bytes than these.
 constexpr std::size_t first_portion = 512, largest_portion = 8192;
