@@ -18,44 +18,45 @@ namespace {
 
 double bounded(double output) { return std::clamp(output, -1., 1.); }
 
-// A law as a point: distances say how unlike two are. A factor of two in stiffness counts as much as half of the
+// A value as a point: distances say how unlike two are. A factor of two in stiffness counts as much as half of the
 // largest amplitude.
 using Point = std::array<double, 3>;
 
-class LawCloud {
+class ValueCloud {
  public:
-  explicit LawCloud(std::span<const MuscleLaw> laws) {
+  explicit ValueCloud(std::span<const FieldValue> values) {
     double largest = 0;
-    for (const MuscleLaw& law : laws)
-      largest = std::max(largest, std::sqrt(law.cosine * law.cosine + law.sine * law.sine));
+    for (const FieldValue& value : values)
+      largest = std::max(largest, std::sqrt(value.cosine * value.cosine + value.sine * value.sine));
     const double scale = largest > 0 ? 1 / largest : 0;
-    for (const MuscleLaw& law : laws)
-      points_.push_back({scale * law.cosine, scale * law.sine,
-                         0.5 * portable_log(std::max(law.stiffness, 1e-300)) / std::numbers::ln2});
+    for (const FieldValue& value : values)
+      points_.push_back({scale * value.cosine, scale * value.sine,
+                         0.5 * portable_log(std::max(value.stiffness, 1e-300)) / std::numbers::ln2});
   }
-  const Point& operator[](std::uint32_t law) const { return points_[law]; }
+  const Point& operator[](std::uint32_t value) const { return points_[value]; }
 
  private:
   std::vector<Point> points_;
 };
 
-// Laws that share a material.
+// Values that share a material.
 struct Part {
-  std::vector<std::uint32_t> laws;
+  std::vector<std::uint32_t> values;
   double spread = 0;  // sum of squared distances from the mean along the widest axis
   std::size_t axis = 0;
   double mean = 0;  // along that axis
 
-  Part(std::vector<std::uint32_t> members, const LawCloud& cloud) : laws(std::move(members)) {
+  Part(std::vector<std::uint32_t> members, const ValueCloud& cloud) : values(std::move(members)) {
     for (std::size_t along = 0; along < 3; ++along) {
-      double sum = 0, squares = 0, low = cloud[laws.front()][along], high = low;
-      for (const std::uint32_t law : laws) {
-        sum += cloud[law][along];
-        low = std::min(low, cloud[law][along]);
-        high = std::max(high, cloud[law][along]);
+      double sum = 0, squares = 0, low = cloud[values.front()][along], high = low;
+      for (const std::uint32_t value : values) {
+        sum += cloud[value][along];
+        low = std::min(low, cloud[value][along]);
+        high = std::max(high, cloud[value][along]);
       }
-      const double middle = sum / static_cast<double>(laws.size());
-      for (const std::uint32_t law : laws) squares += (cloud[law][along] - middle) * (cloud[law][along] - middle);
+      const double middle = sum / static_cast<double>(values.size());
+      for (const std::uint32_t value : values)
+        squares += (cloud[value][along] - middle) * (cloud[value][along] - middle);
       if (!(low < high) || !(squares > spread)) continue;
       spread = squares;
       axis = along;
@@ -64,14 +65,14 @@ struct Part {
   }
 };
 
-MuscleLaw mean_of(const std::vector<std::uint32_t>& members, std::span<const MuscleLaw> laws) {
-  MuscleLaw mean{.frequency = laws[members.front()].frequency};
-  if (std::ranges::all_of(members, [&](std::uint32_t law) { return laws[law] == laws[members.front()]; }))
-    return laws[members.front()];
-  for (const std::uint32_t law : members) {
-    mean.stiffness += laws[law].stiffness;
-    mean.cosine += laws[law].cosine;
-    mean.sine += laws[law].sine;
+FieldValue mean_of(const std::vector<std::uint32_t>& members, std::span<const FieldValue> values) {
+  FieldValue mean{.frequency = values[members.front()].frequency};
+  if (std::ranges::all_of(members, [&](std::uint32_t value) { return values[value] == values[members.front()]; }))
+    return values[members.front()];
+  for (const std::uint32_t value : members) {
+    mean.stiffness += values[value].stiffness;
+    mean.cosine += values[value].cosine;
+    mean.sine += values[value].sine;
   }
   const auto count = static_cast<double>(members.size());
   mean.stiffness /= count;
@@ -82,44 +83,44 @@ MuscleLaw mean_of(const std::vector<std::uint32_t>& members, std::span<const Mus
 
 }  // namespace
 
-MuscleLaw law_of(MaterialId kind, const FieldOutputs& outputs, const FieldMuscles& muscles) {
+FieldValue field_value(MaterialId kind, const FieldOutputs& outputs, const FieldMuscles& muscles) {
   const Material& base = default_materials()[kind];
-  MuscleLaw law{.stiffness =
-                    static_cast<double>(base.stiffness) * portable_exp(bounded(outputs.stiffness) * std::numbers::ln2)};
-  if (kind > muscle_count) return law;
+  FieldValue value{.stiffness = static_cast<double>(base.stiffness) *
+                                portable_exp(bounded(outputs.stiffness) * std::numbers::ln2)};
+  if (kind > muscle_count) return value;
   const double amplitude = static_cast<double>(muscles.amplitude) * (bounded(outputs.amplitude) + 1) / 2;
   const SineCosine direction = wave(outputs.phase - std::floor(outputs.phase));
-  law.cosine = amplitude * direction.cosine;
-  law.sine = amplitude * direction.sine;
-  if (law.moves() && muscles.frequencies > 1 && outputs.frequency >= 0) law.frequency = 1;
-  return law;
+  value.cosine = amplitude * direction.cosine;
+  value.sine = amplitude * direction.sine;
+  if (value.moves() && muscles.frequencies > 1 && outputs.frequency >= 0) value.frequency = 1;
+  return value;
 }
 
-MuscleLaw mean_law(std::span<const MuscleLaw> laws) {
-  std::array<MuscleLaw, max_field_frequencies> waves{};
+FieldValue mean_value(std::span<const FieldValue> values) {
+  std::array<FieldValue, max_field_frequencies> waves{};
   double stiffness = 0;
-  for (const MuscleLaw& law : laws) {
-    stiffness += law.stiffness;
-    MuscleLaw& wave = waves[static_cast<std::size_t>(law.frequency)];
-    wave.cosine += law.cosine;
-    wave.sine += law.sine;
+  for (const FieldValue& value : values) {
+    stiffness += value.stiffness;
+    FieldValue& wave = waves[static_cast<std::size_t>(value.frequency)];
+    wave.cosine += value.cosine;
+    wave.sine += value.sine;
   }
-  const auto size = [](const MuscleLaw& law) { return law.cosine * law.cosine + law.sine * law.sine; };
+  const auto size = [](const FieldValue& value) { return value.cosine * value.cosine + value.sine * value.sine; };
   const int chosen = size(waves[1]) > size(waves[0]) ? 1 : 0;
-  const MuscleLaw& wave = waves[static_cast<std::size_t>(chosen)];
-  const auto count = static_cast<double>(laws.size());
+  const FieldValue& wave = waves[static_cast<std::size_t>(chosen)];
+  const auto count = static_cast<double>(values.size());
   return {.stiffness = stiffness / count,
           .cosine = wave.cosine / count,
           .sine = wave.sine / count,
           .frequency = wave.moves() ? chosen : 0};
 }
 
-LawPalette palette_of(std::span<const MuscleLaw> laws, std::size_t most) {
-  const LawCloud cloud(laws);
-  // Laws at rest and those of each frequency never share one.
+FieldPalette palette_of(std::span<const FieldValue> values, std::size_t most) {
+  const ValueCloud cloud(values);
+  // Values at rest and those of each frequency never share one.
   std::array<std::vector<std::uint32_t>, 1 + max_field_frequencies> groups;
-  for (std::uint32_t law = 0; law < laws.size(); ++law)
-    groups[laws[law].moves() ? 1 + static_cast<std::size_t>(laws[law].frequency) : 0].push_back(law);
+  for (std::uint32_t value = 0; value < values.size(); ++value)
+    groups[values[value].moves() ? 1 + static_cast<std::size_t>(values[value].frequency) : 0].push_back(value);
   std::vector<Part> parts;
   for (std::vector<std::uint32_t>& group : groups)
     if (!group.empty()) parts.emplace_back(std::move(group), cloud);
@@ -127,31 +128,32 @@ LawPalette palette_of(std::span<const MuscleLaw> laws, std::size_t most) {
     const auto widest = std::ranges::max_element(parts, {}, &Part::spread);
     if (widest->spread == 0) break;
     std::vector<std::uint32_t> low, high;
-    for (const std::uint32_t law : widest->laws) (cloud[law][widest->axis] < widest->mean ? low : high).push_back(law);
+    for (const std::uint32_t value : widest->values)
+      (cloud[value][widest->axis] < widest->mean ? low : high).push_back(value);
     *widest = Part(std::move(low), cloud);
     parts.emplace_back(std::move(high), cloud);
   }
-  LawPalette palette{.laws = {}, .of = std::vector<std::uint8_t>(laws.size())};
+  FieldPalette palette{.values = {}, .of = std::vector<std::uint8_t>(values.size())};
   for (const Part& part : parts) {
-    for (const std::uint32_t law : part.laws) palette.of[law] = static_cast<std::uint8_t>(palette.laws.size());
-    palette.laws.push_back(mean_of(part.laws, laws));
+    for (const std::uint32_t value : part.values) palette.of[value] = static_cast<std::uint8_t>(palette.values.size());
+    palette.values.push_back(mean_of(part.values, values));
   }
   return palette;
 }
 
-FieldTable table_of(std::span<const MuscleLaw> laws, const FieldMuscles& muscles) {
+FieldTable table_of(std::span<const FieldValue> values, const FieldMuscles& muscles) {
   FieldTable table{.materials = {Material{}}, .names = {"air"}};
   int moving = 0, resting = 0;
-  for (const MuscleLaw& law : laws) {
-    Material material{.stiffness = static_cast<float>(law.stiffness)};
-    if (law.moves()) {
-      const int of = muscles.frequencies - law.frequency;  // 1 for the highest
-      material.amplitude = static_cast<float>(std::sqrt(law.cosine * law.cosine + law.sine * law.sine));
+  for (const FieldValue& value : values) {
+    Material material{.stiffness = static_cast<float>(value.stiffness)};
+    if (value.moves()) {
+      const int of = muscles.frequencies - value.frequency;  // 1 for the highest
+      material.amplitude = static_cast<float>(std::sqrt(value.cosine * value.cosine + value.sine * value.sine));
       material.frequency = muscles.frequency / static_cast<float>(of);
-      material.phase = static_cast<float>(2 * std::numbers::pi * turns_of({law.sine, law.cosine}));
+      material.phase = static_cast<float>(2 * std::numbers::pi * turns_of({value.sine, value.cosine}));
     }
     table.materials.push_back(material);
-    table.names.push_back(law.moves() ? "muscle " + std::to_string(++moving) : "tissue " + std::to_string(++resting));
+    table.names.push_back(value.moves() ? "muscle " + std::to_string(++moving) : "tissue " + std::to_string(++resting));
   }
   return table;
 }

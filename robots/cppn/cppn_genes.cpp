@@ -103,13 +103,13 @@ struct CppnGenes {
   }
 
   void add_identity(IdentityHash& hash) const {
-    const auto [body, laws] = painted_body(genome);
+    const auto [body, values] = painted_body(genome);
     for (const int n : {body.nx, body.ny, body.nz}) hash.add(static_cast<std::uint32_t>(n));
     hash.add(body.edge);
     hash.add(body.cells);
-    for (const MuscleLaw& law : laws)
-      for (const double value : {law.stiffness, law.cosine, law.sine, static_cast<double>(law.frequency)})
-        hash.add(std::bit_cast<std::uint64_t>(value));
+    for (const FieldValue& value : values)
+      for (const double number : {value.stiffness, value.cosine, value.sine, static_cast<double>(value.frequency)})
+        hash.add(std::bit_cast<std::uint64_t>(number));
     hash.add(static_cast<std::uint8_t>(genome.frequencies));
     hash.add(genome.frequency);
     hash.add(genome.amplitude);

@@ -95,7 +95,7 @@ constexpr bool has_fields(const Cppn& network) { return network.outputs == cppn_
 // The largest connected body of what the network paints.
 struct PaintedBody {
   VoxelGrid grid;
-  std::vector<MuscleLaw> laws;  // of each cell, with fields
+  std::vector<FieldValue> values;  // of each cell, with fields
   bool is_empty() const;
   friend bool operator==(const PaintedBody&, const PaintedBody&) = default;
 };

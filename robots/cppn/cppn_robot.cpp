@@ -143,17 +143,17 @@ bool PaintedBody::is_empty() const {
 PaintedBody painted_body(const CppnGenome& genome) {
   validate(genome);
   const std::vector<CppnEvaluator::Outputs> outputs = outputs_of(genome);
-  PaintedBody body{.grid = largest_body(grid_of(genome, outputs)), .laws = {}};
+  PaintedBody body{.grid = largest_body(grid_of(genome, outputs)), .values = {}};
   if (!has_fields(genome.network)) return body;
-  body.laws.resize(outputs.size());
+  body.values.resize(outputs.size());
   for (std::size_t i = 0; i < outputs.size(); ++i)
     if (body.grid.cells[i] != air)
-      body.laws[i] = law_of(body.grid.cells[i],
-                            {.phase = outputs[i][phase_output],
-                             .frequency = outputs[i][frequency_output],
-                             .amplitude = outputs[i][amplitude_output],
-                             .stiffness = outputs[i][stiffness_output]},
-                            muscles_of(genome));
+      body.values[i] = field_value(body.grid.cells[i],
+                                   {.phase = outputs[i][phase_output],
+                                    .frequency = outputs[i][frequency_output],
+                                    .amplitude = outputs[i][amplitude_output],
+                                    .stiffness = outputs[i][stiffness_output]},
+                                   muscles_of(genome));
   return body;
 }
 
@@ -180,22 +180,22 @@ namespace {
 
 // A real body (real_body.h) needs up to seven materials per material of its voxels: springs along edges of one to four
 // voxels, across sides of one or two, and through the middle of one.
-constexpr std::size_t most_voxel_laws = (max_materials - 1) / 7;
+constexpr std::size_t most_voxel_values = (max_materials - 1) / 7;
 
-// Voxels that are alike share a law. So do springs between different voxels, in the room that is left of the table.
+// Voxels that are alike share a value. So do springs between different voxels, in the room that is left of the table.
 class FieldSprings {
  public:
   explicit FieldSprings(const PaintedBody& body) : grid_(body.grid), of_voxel_(body.grid.cells.size(), none) {
     std::vector<std::size_t> voxels;
-    std::vector<MuscleLaw> laws;
-    for (std::size_t i = 0; i < body.laws.size(); ++i) {
+    std::vector<FieldValue> values;
+    for (std::size_t i = 0; i < body.values.size(); ++i) {
       if (body.grid.cells[i] == air) continue;
       voxels.push_back(i);
-      laws.push_back(body.laws[i]);
+      values.push_back(body.values[i]);
     }
-    LawPalette palette = palette_of(laws, most_voxel_laws);
+    FieldPalette palette = palette_of(values, most_voxel_values);
     for (std::size_t i = 0; i < voxels.size(); ++i) of_voxel_[voxels[i]] = palette.of[i];
-    laws_ = std::move(palette.laws);
+    values_ = std::move(palette.values);
   }
 
   MaterialId material_of_voxel(std::size_t cell) const {
@@ -204,49 +204,49 @@ class FieldSprings {
 
   // Sets the table of a robot of this grid and the materials of its springs.
   void set(Robot& robot, const FieldMuscles& muscles) {
-    const std::size_t pure = laws_.size();
+    const std::size_t pure = values_.size();
     const SpringCells cells(robot, {grid_.nx, grid_.ny, grid_.nz}, grid_.edge);
-    std::vector<std::size_t> of_spring;  // a law of voxels, or after these a mixture
-    for (const Spring& spring : robot.springs) of_spring.push_back(law_of_cells(cells.of(spring)));
-    std::vector<MuscleLaw> mixed;
+    std::vector<std::size_t> of_spring;  // a value of voxels, or after these a mixture
+    for (const Spring& spring : robot.springs) of_spring.push_back(value_of_cells(cells.of(spring)));
+    std::vector<FieldValue> mixed;
     for (const Mixture& mixture : mixtures_) mixed.push_back(mean_of(mixture));
-    const LawPalette palette = palette_of(mixed, max_materials - 1 - pure);
+    const FieldPalette palette = palette_of(mixed, max_materials - 1 - pure);
     for (std::size_t s = 0; s < robot.springs.size(); ++s) {
-      const std::size_t law = of_spring[s] < pure ? of_spring[s] : pure + palette.of[of_spring[s] - pure];
-      robot.springs[s].material = static_cast<MaterialId>(law + 1);
+      const std::size_t value = of_spring[s] < pure ? of_spring[s] : pure + palette.of[of_spring[s] - pure];
+      robot.springs[s].material = static_cast<MaterialId>(value + 1);
     }
-    laws_.insert(laws_.end(), palette.laws.begin(), palette.laws.end());
-    FieldTable table = table_of(laws_, muscles);
+    values_.insert(values_.end(), palette.values.begin(), palette.values.end());
+    FieldTable table = table_of(values_, muscles);
     robot.materials = std::move(table.materials);
     robot.material_names = std::move(table.names);
   }
 
  private:
   static constexpr std::uint8_t none = 255;
-  using Mixture = std::array<std::uint8_t, 4>;  // laws in their order, then none
+  using Mixture = std::array<std::uint8_t, 4>;  // values in their order, then none
 
-  std::size_t law_of_cells(const std::vector<std::size_t>& cells) {
+  std::size_t value_of_cells(const std::vector<std::size_t>& cells) {
     Mixture mixture;
     mixture.fill(none);
     for (std::size_t i = 0; i < cells.size(); ++i) mixture[i] = of_voxel_[cells[i]];
     std::ranges::sort(mixture);
     const auto voxels = static_cast<std::size_t>(std::ranges::find(mixture, none) - mixture.begin());
     if (mixture[0] == mixture[voxels - 1]) return mixture[0];
-    const auto [entry, is_new] = numbers_.try_emplace(mixture, laws_.size() + mixtures_.size());
+    const auto [entry, is_new] = numbers_.try_emplace(mixture, values_.size() + mixtures_.size());
     if (is_new) mixtures_.push_back(mixture);
     return entry->second;
   }
 
-  MuscleLaw mean_of(const Mixture& mixture) const {
-    std::vector<MuscleLaw> laws;
-    for (const std::uint8_t law : mixture)
-      if (law != none) laws.push_back(laws_[law]);
-    return mean_law(laws);
+  FieldValue mean_of(const Mixture& mixture) const {
+    std::vector<FieldValue> values;
+    for (const std::uint8_t value : mixture)
+      if (value != none) values.push_back(values_[value]);
+    return mean_value(values);
   }
 
   const VoxelGrid& grid_;
   std::vector<std::uint8_t> of_voxel_;
-  std::vector<MuscleLaw> laws_;
+  std::vector<FieldValue> values_;
   std::vector<Mixture> mixtures_;
   std::map<Mixture, std::size_t> numbers_;
 };

@@ -21,7 +21,7 @@ namespace {
 struct CloudPoint {
   Vec3 place;
   MaterialId material = air;
-  MuscleLaw law{};  // with fields
+  FieldValue value{};  // with fields
   std::uint64_t z_order = 0;
 };
 
@@ -118,10 +118,10 @@ std::vector<CloudPoint> cloud_of(const NnGenome& genome) {
     cloud[i].material = static_cast<MaterialId>(1 + most_probable({output + 3, base_material_count}));
     if (!fields) continue;
     const auto field = [&](int index) { return field_scale * static_cast<double>(output[network_outputs + index]); };
-    cloud[i].law =
-        law_of(cloud[i].material,
-               {.phase = field(0), .frequency = field(1), .amplitude = 0.5 + field(2), .stiffness = field(3)},
-               muscles_of(genome));
+    cloud[i].value =
+        field_value(cloud[i].material,
+                    {.phase = field(0), .frequency = field(1), .amplitude = 0.5 + field(2), .stiffness = field(3)},
+                    muscles_of(genome));
   }
   fit_into_unit_sphere(cloud);
   if (genome.spacing > 0) spread_out(cloud, genome);
@@ -216,12 +216,12 @@ Robot grow_without_genome(const NnGenome& genome, const std::string& name) {
         {mass_a, mass_b, combine(cloud[a].material, cloud[b].material), rest_distance(robot, mass_a, mass_b)});
   }
   if (genome.network.has_fields()) {
-    std::vector<MuscleLaw> laws;
-    for (const auto& [a, b] : springs) laws.push_back(mean_law(std::array{cloud[a].law, cloud[b].law}));
-    const LawPalette palette = palette_of(laws, max_materials - 1);
-    for (std::size_t s = 0; s < laws.size(); ++s)
+    std::vector<FieldValue> values;
+    for (const auto& [a, b] : springs) values.push_back(mean_value(std::array{cloud[a].value, cloud[b].value}));
+    const FieldPalette palette = palette_of(values, max_materials - 1);
+    for (std::size_t s = 0; s < values.size(); ++s)
       robot.springs[s].material = static_cast<MaterialId>(palette.of[s] + 1);
-    FieldTable table = table_of(palette.laws, muscles_of(genome));
+    FieldTable table = table_of(palette.values, muscles_of(genome));
     robot.materials = std::move(table.materials);
     robot.material_names = std::move(table.names);
   }

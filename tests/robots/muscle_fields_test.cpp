@@ -46,81 +46,81 @@ TEST(PortableMath, AngleOfAPointAgreesWithTheLibrarys) {
 
 TEST(MuscleFields, APlaceMovesAndIsStiffAsItsOutputsSay) {
   const FieldMuscles muscles{.frequencies = 2, .frequency = 6, .amplitude = 0.2f};
-  const MuscleLaw law = law_of(3, {.phase = -1.75, .frequency = 0.1, .amplitude = 0, .stiffness = 1}, muscles);
-  EXPECT_NEAR(law.stiffness, 100, 1e-12) << "twice that of a muscle";
+  const FieldValue value = field_value(3, {.phase = -1.75, .frequency = 0.1, .amplitude = 0, .stiffness = 1}, muscles);
+  EXPECT_NEAR(value.stiffness, 100, 1e-12) << "twice that of a muscle";
   for (const double turns : {0., 0.1, 0.6})
-    EXPECT_NEAR(wave_of(law, turns), 0.1 * std::sin(turn * (turns + 0.25)), 1e-8);
-  EXPECT_EQ(law.frequency, 1);
-  EXPECT_EQ(law_of(3, {.frequency = -0.1}, muscles).frequency, 0);
-  EXPECT_EQ(law_of(3, {.frequency = 0.1}, {}).frequency, 0);
-  EXPECT_NEAR(wave_of(law_of(1, {.amplitude = 7}, muscles), 0.25), 0.2, 1e-8) << "the largest";
-  EXPECT_FALSE(law_of(1, {.amplitude = -7}, muscles).moves());
-  EXPECT_FALSE(law_of(bone, {.amplitude = 1}, muscles).moves());
-  EXPECT_NEAR(law_of(bone, {.stiffness = -1}, muscles).stiffness, 50, 1e-12);
-  EXPECT_NEAR(law_of(tissue, {}, muscles).stiffness, 40, 1e-12);
+    EXPECT_NEAR(wave_of(value, turns), 0.1 * std::sin(turn * (turns + 0.25)), 1e-8);
+  EXPECT_EQ(value.frequency, 1);
+  EXPECT_EQ(field_value(3, {.frequency = -0.1}, muscles).frequency, 0);
+  EXPECT_EQ(field_value(3, {.frequency = 0.1}, {}).frequency, 0);
+  EXPECT_NEAR(wave_of(field_value(1, {.amplitude = 7}, muscles), 0.25), 0.2, 1e-8) << "the largest";
+  EXPECT_FALSE(field_value(1, {.amplitude = -7}, muscles).moves());
+  EXPECT_FALSE(field_value(bone, {.amplitude = 1}, muscles).moves());
+  EXPECT_NEAR(field_value(bone, {.stiffness = -1}, muscles).stiffness, 50, 1e-12);
+  EXPECT_NEAR(field_value(tissue, {}, muscles).stiffness, 40, 1e-12);
 }
 
 TEST(MuscleFields, ASpringMovesByTheMeanOfItsPlaces) {
   Random random(4);
-  std::array<MuscleLaw, 3> laws;
-  for (MuscleLaw& law : laws) law = {random.uniform(20, 200), random.normal(), random.normal(), 0};
-  const MuscleLaw mean = mean_law(laws);
-  EXPECT_NEAR(mean.stiffness, (laws[0].stiffness + laws[1].stiffness + laws[2].stiffness) / 3, 1e-12);
+  std::array<FieldValue, 3> values;
+  for (FieldValue& value : values) value = {random.uniform(20, 200), random.normal(), random.normal(), 0};
+  const FieldValue mean = mean_value(values);
+  EXPECT_NEAR(mean.stiffness, (values[0].stiffness + values[1].stiffness + values[2].stiffness) / 3, 1e-12);
   for (const double turns : {0., 0.2, 0.7})
-    EXPECT_NEAR(wave_of(mean, turns), (wave_of(laws[0], turns) + wave_of(laws[1], turns) + wave_of(laws[2], turns)) / 3,
-                1e-12);
-  const std::array two{MuscleLaw{50, 0.1, 0, 0}, MuscleLaw{50, 0, 0.3, 1}};
-  EXPECT_EQ(mean_law(two), (MuscleLaw{50, 0, 0.15, 1})) << "the frequency that moves it more";
-  const std::array opposite{MuscleLaw{50, 0.1, 0.2, 0}, MuscleLaw{50, -0.1, -0.2, 0}};
-  EXPECT_FALSE(mean_law(opposite).moves());
+    EXPECT_NEAR(wave_of(mean, turns),
+                (wave_of(values[0], turns) + wave_of(values[1], turns) + wave_of(values[2], turns)) / 3, 1e-12);
+  const std::array two{FieldValue{50, 0.1, 0, 0}, FieldValue{50, 0, 0.3, 1}};
+  EXPECT_EQ(mean_value(two), (FieldValue{50, 0, 0.15, 1})) << "the frequency that moves it more";
+  const std::array opposite{FieldValue{50, 0.1, 0.2, 0}, FieldValue{50, -0.1, -0.2, 0}};
+  EXPECT_FALSE(mean_value(opposite).moves());
 }
 
-TEST(MuscleFields, FewLawsKeepTheirs) {
-  std::vector<MuscleLaw> laws;
+TEST(MuscleFields, FewValuesKeepTheirs) {
+  std::vector<FieldValue> values;
   for (int i = 0; i < 1000; ++i)
-    laws.push_back({50. + 10 * (i % 5), 0.1 * (i % 7), 0.1 * (i % 3), i % 7 + i % 3 == 0 ? 0 : i % 2});
-  const LawPalette palette = palette_of(laws, 255);
-  EXPECT_EQ(palette.laws.size(), 5u * (7 * 3 - 1) * 2 + 5);
-  for (std::size_t i = 0; i < laws.size(); ++i) EXPECT_EQ(palette.laws[palette.of[i]], laws[i]);
-  EXPECT_TRUE(palette_of({}, 255).laws.empty());
+    values.push_back({50. + 10 * (i % 5), 0.1 * (i % 7), 0.1 * (i % 3), i % 7 + i % 3 == 0 ? 0 : i % 2});
+  const FieldPalette palette = palette_of(values, 255);
+  EXPECT_EQ(palette.values.size(), 5u * (7 * 3 - 1) * 2 + 5);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(palette.values[palette.of[i]], values[i]);
+  EXPECT_TRUE(palette_of({}, 255).values.empty());
 }
 
-TEST(MuscleFields, ManyLawsShareThoseNearby) {
+TEST(MuscleFields, ManyValuesShareThoseNearby) {
   // A disc of n cells of equal area cannot be nearer to its cells' middles than 0.18 of its area per cell in the mean
   // square (hexagons: 5 / (18 sqrt(3))); boxes cut at their means are not far from that.
   Random random(5);
-  std::vector<MuscleLaw> laws;
-  while (laws.size() < 20000) {
+  std::vector<FieldValue> values;
+  while (values.size() < 20000) {
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-    if (x * x + y * y < 1) laws.push_back({50, x, y, 0});
+    if (x * x + y * y < 1) values.push_back({50, x, y, 0});
   }
-  for (std::size_t i = 0; i < 200; ++i) laws.push_back({50, 0, 0, 0});
+  for (std::size_t i = 0; i < 200; ++i) values.push_back({50, 0, 0, 0});
   for (const std::size_t most : {std::size_t{3}, std::size_t{36}, std::size_t{255}}) {
-    const LawPalette palette = palette_of(laws, most);
-    EXPECT_EQ(palette.laws.size(), most);
+    const FieldPalette palette = palette_of(values, most);
+    EXPECT_EQ(palette.values.size(), most);
     double squares = 0;
-    std::map<int, MuscleLaw> sums;
+    std::map<int, FieldValue> sums;
     std::map<int, int> counts;
-    for (std::size_t i = 0; i < laws.size(); ++i) {
-      const MuscleLaw& part = palette.laws[palette.of[i]];
-      ASSERT_EQ(part.moves(), laws[i].moves());
-      squares += std::pow(part.cosine - laws[i].cosine, 2) + std::pow(part.sine - laws[i].sine, 2);
-      sums[palette.of[i]].cosine += laws[i].cosine;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const FieldValue& part = palette.values[palette.of[i]];
+      ASSERT_EQ(part.moves(), values[i].moves());
+      squares += std::pow(part.cosine - values[i].cosine, 2) + std::pow(part.sine - values[i].sine, 2);
+      sums[palette.of[i]].cosine += values[i].cosine;
       ++counts[palette.of[i]];
     }
     EXPECT_LT(squares / 20000, 1.5 * 0.18 * std::numbers::pi / static_cast<double>(most - 1)) << most;
     for (const auto& [part, sum] : sums)
-      EXPECT_NEAR(palette.laws[static_cast<std::size_t>(part)].cosine, sum.cosine / counts[part], 1e-12);
+      EXPECT_NEAR(palette.values[static_cast<std::size_t>(part)].cosine, sum.cosine / counts[part], 1e-12);
   }
 }
 
-TEST(MuscleFields, MaterialsMoveAsTheirLaws) {
-  const std::array laws{MuscleLaw{60, 0.1, -0.05, 1}, MuscleLaw{80, 0, 0, 0}, MuscleLaw{70, -0.1, 0.02, 0}};
-  const auto [materials, names] = table_of(laws, {.frequencies = 2, .frequency = 8});
+TEST(MuscleFields, MaterialsMoveAsTheirValues) {
+  const std::array values{FieldValue{60, 0.1, -0.05, 1}, FieldValue{80, 0, 0, 0}, FieldValue{70, -0.1, 0.02, 0}};
+  const auto [materials, names] = table_of(values, {.frequencies = 2, .frequency = 8});
   EXPECT_EQ(names, (std::vector<std::string>{"air", "muscle 1", "tissue 1", "muscle 2"}));
   for (const double time : {0., 0.3, 1.1}) {
-    EXPECT_NEAR(wave_of(materials[1], time), wave_of(laws[0], 8 * time / turn), 1e-7);
-    EXPECT_NEAR(wave_of(materials[3], time), wave_of(laws[2], 4 * time / turn), 1e-7) << "half the frequency";
+    EXPECT_NEAR(wave_of(materials[1], time), wave_of(values[0], 8 * time / turn), 1e-7);
+    EXPECT_NEAR(wave_of(materials[3], time), wave_of(values[2], 4 * time / turn), 1e-7) << "half the frequency";
   }
   EXPECT_EQ(materials[2], (Material{.stiffness = 80}));
 }
@@ -213,17 +213,17 @@ TEST(PaintedFields, HaveRealBodiesWhoseVoxelsMoveAsPainted) {
     ASSERT_NO_THROW(validate(real));
     const Voxels voxels = voxels_of(robot);
     ASSERT_FALSE(voxels.all.empty());
-    std::set<MaterialId> laws;
+    std::set<MaterialId> values;
     std::map<std::uint32_t, MaterialId> middle;
     for (const Spring& spring : real.springs) middle[pair_of(spring.a, spring.b)] = spring.material;
     for (const Voxel& voxel : voxels.all) {
-      laws.insert(voxel.material);
+      values.insert(voxel.material);
       const Material &painted = robot.materials[voxel.material],
                      &made = real.materials[middle.at(pair_of(voxel.corners[0], voxel.corners[7]))];
       EXPECT_EQ(made.amplitude, painted.amplitude);
       EXPECT_EQ(made.phase, painted.phase);
     }
-    EXPECT_LE(laws.size(), 36u);
+    EXPECT_LE(values.size(), 36u);
   }
 }
 

@@ -60,7 +60,7 @@ TEST(NetworkFields, ASpringMovesByTheMeanOfItsMasses) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const NnGenome genome = random_nn_genome(options, seed);
     const Robot robot = grow(genome);
-    // The cloud once more, to find each mass's point and its law.
+    // The cloud once more, to find each mass's point and its value.
     Random random(genome.cloud_seed);
     std::vector<float> points(genome.points * 3);
     for (float& number : points) number = static_cast<float>(random.normal());
@@ -77,7 +77,7 @@ TEST(NetworkFields, ASpringMovesByTheMeanOfItsMasses) {
         places[i][axis] = static_cast<double>(outputs[i * 29 + axis]) - mean[axis];
       farthest = std::max(farthest, std::hypot(places[i][0], places[i][1], places[i][2]));
     }
-    const auto law_at = [&](std::uint16_t mass) {
+    const auto value_at = [&](std::uint16_t mass) {
       const Vec3 place = robot.masses[mass];
       for (std::size_t i = 0; i < genome.points; ++i) {
         const std::array<double, 3>& p = places[i];
@@ -87,21 +87,21 @@ TEST(NetworkFields, ASpringMovesByTheMeanOfItsMasses) {
         const float* output = &outputs[i * 29];
         const auto kind = static_cast<MaterialId>(std::max_element(output + 3, output + 25) - output - 3 + 1);
         const auto field = [&](int index) { return 0.25 * static_cast<double>(output[25 + index]); };
-        return law_of(kind, {field(0), field(1), 0.5 + field(2), field(3)},
-                      {genome.frequencies, genome.frequency, genome.amplitude});
+        return field_value(kind, {field(0), field(1), 0.5 + field(2), field(3)},
+                           {genome.frequencies, genome.frequency, genome.amplitude});
       }
       ADD_FAILURE() << "no point of mass " << mass;
-      return MuscleLaw{};
+      return FieldValue{};
     };
     double squares = 0;
     for (const Spring& spring : robot.springs) {
-      const MuscleLaw law = mean_law(std::array{law_at(spring.a), law_at(spring.b)});
+      const FieldValue value = mean_value(std::array{value_at(spring.a), value_at(spring.b)});
       const Material& material = robot.materials[spring.material];
-      EXPECT_EQ(material.amplitude > 0, law.moves());
+      EXPECT_EQ(material.amplitude > 0, value.moves());
       for (const double turns : {0., 0.25})
-        squares += std::pow(wave_of(material, turns * turn / 5) - wave_of(law, turns), 2);
+        squares += std::pow(wave_of(material, turns * turn / 5) - wave_of(value, turns), 2);
     }
-    // 255 cubes that fill the cloud of laws, which is 2 amplitudes wide, have sides of (8 / 255)^(1/3) amplitudes.
+    // 255 cubes that fill the cloud of values, which is 2 amplitudes wide, have sides of (8 / 255)^(1/3) amplitudes.
     const double side = std::cbrt(8. / 255) * 0.14;
     EXPECT_LT(squares / static_cast<double>(robot.springs.size()), 2 * side * side / 12) << seed;
   }

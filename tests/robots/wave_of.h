@@ -12,8 +12,8 @@ namespace mercury {
 
 inline constexpr double turn = 2 * std::numbers::pi;
 
-inline double wave_of(const MuscleLaw& law, double turns) {
-  return law.cosine * std::sin(turn * turns) + law.sine * std::cos(turn * turns);
+inline double wave_of(const FieldValue& value, double turns) {
+  return value.cosine * std::sin(turn * turns) + value.sine * std::cos(turn * turns);
 }
 
 inline double wave_of(const Material& material, double time) {

@@ -131,8 +131,8 @@ Robot grow(const CppnGenome& genome, const std::string& name = {});
 // The voxels of that robot: cells are materials of its table, up to 36 with fields.
 VoxelGrid painted_voxels(const CppnGenome& genome);
 
-// The largest body of what is left of the painted grid, after some cells of it were turned to air: with the table of the
-// whole robot, and springs that have the material that they have there, where they may have been shared with voxels
+// The largest body of what is left of the painted grid, after some cells of it were turned to air: with the table of
+// the whole robot, and springs that have the material that they have there, where they may have been shared with voxels
 // that are lost. Throws InputError for voxels that the robot lacks. The origin is that of a voxel robot.
 Robot grow_part(const CppnGenome& genome, const VoxelGrid& part, const std::string& name = {});
 
