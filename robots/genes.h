@@ -9,6 +9,9 @@
 //   write, read             the encoding without its head; read() throws InputError
 //   add_identity            what makes the robot what it is; without it, all that write() writes
 //   muscle_numbers          how many numbers of the muscles a mutation moves; only kinds that have some
+//   random                  those of a random robot that grows, without a robot whose origin holds them; only kinds
+//   that
+//                           gain by it
 //   numbers, with_numbers   as of Genome (mercury/genome.h), for these genes; only kinds that are a list of numbers
 //
 // and names genes_kind<its struct>() in its entry of the registry (Generator::genes). Nothing else knows it.
@@ -67,6 +70,9 @@ struct GenesKind {
   std::uint8_t tag;
   std::shared_ptr<const BodyGenes> (*of)(const Robot& robot);
   std::shared_ptr<const BodyGenes> (*read)(ByteReader& reader);
+  // Of the index-th robot of a seed, as of(generator.make(...)).
+  std::shared_ptr<const BodyGenes> (*random)(const Generator& generator, const ParameterValues& values,
+                                             std::uint64_t seed, std::uint64_t index);
 };
 
 template <class Values>
@@ -125,6 +131,13 @@ constexpr GenesKind genes_kind() {
           },
           .read = [](ByteReader& reader) -> std::shared_ptr<const BodyGenes> {
             return std::make_shared<GenesOf<Values>>(Values::read(reader));
+          },
+          .random = [](const Generator& generator, const ParameterValues& values, std::uint64_t seed,
+                       std::uint64_t index) -> std::shared_ptr<const BodyGenes> {
+            if constexpr (requires { Values::random(values, seed, index); })
+              return std::make_shared<GenesOf<Values>>(Values::random(values, seed, index));
+            else
+              return std::make_shared<GenesOf<Values>>(Values::of(generator.make(values, {}, seed, index)));
           }};
 }
 

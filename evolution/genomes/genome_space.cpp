@@ -116,7 +116,7 @@ class BodySpace : public GenomeSpace {
       const double strength = random.uniform(1, strongest_at_first);
       return genome(founders_[index % founders_.size()])->mutate(strength, mutation_seed);
     }
-    GenesPointer genes = context_->kind.of(generator_.make(values_, context_->environment, seed, index));
+    GenesPointer genes = context_->kind.random(generator_, values_, seed, index);
     if (contains(context_->genes, Genes::muscles))
       genes = genes->mutated(Genes::muscles, GeneMutation::of_strength(strongest_at_first), mutation_seed);
     return genome(std::move(genes));

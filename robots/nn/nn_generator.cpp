@@ -99,6 +99,9 @@ Robot crossed_networks(const Robot& a, const Robot& b, std::uint64_t seed, const
 
 }  // namespace
 
+NnOptions nn_options_in(const ParameterValues& values);  // nn_genes.cpp
+NnOptions nn_options_in(const ParameterValues& values) { return options_from(table(), values); }
+
 void validate(const NnOptions& options) { check_each(table(), options); }
 
 Generator nn_generator() {

@@ -8,6 +8,9 @@
 #include "robots/genes.h"
 
 namespace mercury {
+
+NnOptions nn_options_in(const ParameterValues& values);
+
 namespace {
 
 struct NnGenes {
@@ -24,6 +27,12 @@ struct NnGenes {
       throw InputError("/materials", "the base materials and their pairs are needed, 254 in all, not " +
                                          std::to_string(robot.materials.size()));
     return {*std::move(genome), material_genes_of(robot)};
+  }
+
+  static NnGenes random(const ParameterValues& values, std::uint64_t seed, std::uint64_t index) {
+    NnGenome genome = random_nn_genome(nn_options_in(values), seed, index);
+    grow_without_genome(genome);  // throws if its cloud is degenerate
+    return {std::move(genome), {}};
   }
 
   NnGenes mutated(Genes genes, const GeneMutation& mutation, std::uint64_t seed) const {

@@ -128,5 +128,19 @@ TEST(NetworkFields, GenesAreReadBackAndGrowTheSameRobot) {
   }
 }
 
+TEST(NetworkGenes, RandomOnesAreThoseOfRandomRobots) {
+  const Generator& networks = generator_named("nn");
+  const ParameterValues values{{"points", std::int64_t{64}}};
+  for (std::uint64_t index = 0; index < 20; ++index) {
+    ByteWriter drawn, made;
+    networks.genes->random(networks, values, 3, index)->write(drawn);
+    networks.genes->of(networks.make(values, {}, 3, index))->write(made);
+    EXPECT_EQ(drawn.bytes(), made.bytes());
+  }
+  const ParameterValues flat{{"points", std::int64_t{64}}, {"alpha", 1e-6f}};
+  EXPECT_THROW(networks.genes->random(networks, flat, 1, 0), InputError) << "no body of this alpha";
+  EXPECT_THROW(networks.make(flat, {}, 1, 0), InputError);
+}
+
 }  // namespace
 }  // namespace mercury
