@@ -15,6 +15,7 @@
 #include "app/commands/dry_run.h"
 #include "app/commands/render_subject.h"
 #include "app/options/option_values.h"
+#include "app/options/parameter_options.h"
 #include "app/video/figure.h"
 #include "app/video/picture_file.h"
 #include "app/video/video_pipeline.h"
@@ -235,6 +236,7 @@ void add_render_command(const Command& program, const Choose& choose) {
   options->film.add_to(command);
   options->output.add_to(command);
   options->simulation.add_to(command);
+  add_start_options(command, options->start);
   command.set_footer(
       "Examples:\n"
       "  mercury render --random voxel:12 --seed 1 -o group.mp4\n"

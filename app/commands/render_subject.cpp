@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/base/progress.h"
+#include "app/commands/run_evaluation.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/scene/hero_style.h"
 #include "app/video/frame_writer.h"
@@ -157,6 +158,13 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
     throw InputError("--still", fmt::format("{} is not accepted; the recording has {:.6g} s", moment, length));
 }
 
+// A recording begins where it does.
+void require_start(const TrialSettings& start, const Subject& subject) {
+  if (subject.recording && begins_elsewhere(start))
+    throw InputError(start.target_radius > 0 ? "--target-radius" : "--turned",
+                     "a recording has its own start; give robots to simulate");
+}
+
 // The first robot, with the others or copies of itself behind it.
 void show_as_hero(const RenderOptions& options, RenderTask& task) {
   if (task.view.board || task.view.compare || !task.subject.others.empty())
@@ -172,17 +180,22 @@ void show_as_hero(const RenderOptions& options, RenderTask& task) {
 
 }  // namespace
 
+Simulation Subject::simulation(const Configuration& in, const Clip& clip) const {
+  Simulation simulation(in, clip.robots, shown_work());
+  begin_first_trial(simulation, start, seed);
+  return simulation;
+}
+
 std::vector<FilmedGroup> Subject::groups_of(const Clip& clip, const ViewSettings& view) const {
   const auto group = [](const Subject& subject, const Clip& of, const std::string& above) -> FilmedGroup {
-    if (!subject.recording) return {Simulation(subject.configuration, of.robots, shown_work()), of.captions, above};
+    if (!subject.recording) return {subject.simulation(subject.configuration, of), of.captions, above};
     const auto share = std::make_shared<float>();
     return {playback(subject.recording, share), of.captions, above, share};
   };
   std::vector<FilmedGroup> groups;
   groups.push_back(group(*this, clip, others.empty() ? "" : title));
   for (const Subject& other : others) groups.push_back(group(other, other.clips.front(), other.title));
-  if (view.compare)
-    groups.push_back({Simulation(view.compare->over(configuration), clip.robots, shown_work()), clip.captions});
+  if (view.compare) groups.push_back({simulation(view.compare->over(configuration), clip), clip.captions});
   return groups;
 }
 
@@ -195,11 +208,20 @@ void check_options(RenderOptions& options) {
   if (options.video.hero() || options.video.aperture() > 0) options.video.set_usual_still(hero_moment);
   options.video.plan(options.simulation.seconds());
   options.view.settings();
+  validate(options.start);
 }
 
 RenderTask render_task(RenderOptions& options) {
   RenderTask task{.view = options.view.settings()};
   task.subject = subject_of(options, task.view);
+  for (const Subject& other : task.subject.others) require_start(options.start, other);
+  require_start(options.start, task.subject);
+  task.subject.start = options.start;
+  task.subject.seed = options.robots.seed_or_default();
+  for (Subject& other : task.subject.others) {
+    other.start = task.subject.start;
+    other.seed = task.subject.seed;
+  }
   if ((task.subject.recording || !task.subject.others.empty()) && task.view.compare)
     throw InputError("--compare", "not together with a recording, which has one side; give its robots' files");
   task.plan = options.video.plan(task.subject.seconds);

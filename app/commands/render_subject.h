@@ -14,12 +14,14 @@
 #include "app/options/view_options.h"
 #include "app/recording/trajectory_playback.h"
 #include "app/video/video_pipeline.h"
+#include "mercury/trials.h"
 
 namespace mercury {
 
 struct RenderOptions {
   RobotOptions robots;
   SimulationOptions simulation;
+  TrialSettings start = one_trial();  // where robots begin
   VideoOptions video;
   ViewOptions view;
   RunFilmOptions film;
@@ -31,6 +33,8 @@ struct Subject {
   std::vector<Clip> clips;                      // one after another
   std::shared_ptr<TrajectoryReader> recording;  // of the only clip, which has no robots then; or nothing
   double seconds = 0;                           // of each clip
+  TrialSettings start = one_trial();            // robots begin as its first trial does,
+  std::uint64_t seed = 1;                       // of this seed
   std::vector<std::string> notes;
   std::string title;            // above it, if there are others
   std::vector<Subject> others;  // beside it, each of one clip; empty = none
@@ -39,6 +43,9 @@ struct Subject {
   std::vector<FilmedGroup> groups_of(const Clip& clip, const ViewSettings& view) const;
   // What pictures of a clip say of it: VideoSettings::comment.
   std::string comment(const Clip& clip) const;
+
+ private:
+  Simulation simulation(const Configuration& in, const Clip& clip) const;
 };
 
 // What the options ask for, checked before expensive work begins.

@@ -12,12 +12,16 @@ namespace {
 
 constexpr const char* trials_group = "Trials";
 
+bool is_of_start(std::string_view name) {
+  constexpr std::string_view names[] = {"target_radius", "target_spread", "target_sphere", "turned"};
+  return std::ranges::find(names, name) != std::end(names);
+}
 // --seconds is an option of the simulation; what else is left out has no option.
 bool is_of_every_measurement(std::string_view name) {
-  constexpr std::string_view names[] = {
-      "settle",       "trials",  "jitter",        "strain_limit",  "strained_limit", "inverted_limit", "overlap_limit",
-      "least_masses", "folding", "target_radius", "target_spread", "target_sphere",  "turned"};
-  return std::ranges::find(names, name) != std::end(names);
+  constexpr std::string_view names[] = {"settle",        "trials",         "jitter",
+                                        "strain_limit",  "strained_limit", "inverted_limit",
+                                        "overlap_limit", "least_masses",   "folding"};
+  return is_of_start(name) || std::ranges::find(names, name) != std::end(names);
 }
 bool is_of_evolution(std::string_view name) {
   return !is_of_every_measurement(name) && name != "seconds" && name != "median" && name != "noise_per_trial";
@@ -40,6 +44,10 @@ std::string form_of(std::string_view unit, bool whole) {
 
 void add_trial_options(const Command& command, TrialSettings& trials) {
   add_parameters(command, trials, trials_group, is_of_every_measurement);
+}
+
+void add_start_options(const Command& command, TrialSettings& trials) {
+  add_parameters(command, trials, trials_group, is_of_start);
 }
 
 void add_mean_option(const Command& command, TrialSettings& trials) {

@@ -219,6 +219,27 @@ TEST_F(RenderCommand, RecordingGivesThePicturesOfTheSimulation) {
     EXPECT_EQ(read("direct/" + frame), read("played/" + frame)) << frame;
 }
 
+TEST_F(RenderCommand, RobotsBeginWhereTheFirstTrialOfARunDoes) {
+  const std::vector<std::string> robots{"--random", "voxel:2", "--seconds", "0.5", "--seed", "3", "--dt", "0.002"};
+  const std::vector<std::string> start{"--target", "0.3,0.2,0", "--target-radius", "0.6", "--turned"};
+  const auto made = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+    for (const auto* part : {&robots, &more}) words.insert(words.end(), part->begin(), part->end());
+    ASSERT_EQ(mercury(words).status, 0);
+  };
+  const auto picture = [&](const std::string& name) {
+    return std::vector<std::string>{"render", "-o", path(name), "--fps", "2", "--size", "160x90"};
+  };
+  made({"run", "--record", path("a.h5"), "--every", "1"}, start);
+  ASSERT_EQ(mercury({"render", path("a.h5"), "-o", path("played"), "--fps", "2", "--size", "160x90"}).status, 0);
+  made(picture("direct"), start);
+  made(picture("elsewhere"), {"--target", "0.3,0.2,0"});
+  EXPECT_EQ(read("direct/frame-00000.png"), read("played/frame-00000.png"));
+  EXPECT_NE(read("direct/frame-00000.png"), read("elsewhere/frame-00000.png"));
+  const Outcome recorded = mercury({"render", path("a.h5"), "--target-radius", "1", "-o", path("b")});
+  EXPECT_EQ(recorded.status, 2);
+  EXPECT_EQ(recorded.messages, "mercury: --target-radius: a recording has its own start; give robots to simulate\n");
+}
+
 // Steps of 1 ms do not fit into 30 frames/s: film, recording and the film of the recording show the same moments.
 TEST_F(RenderCommand, FilmsAndRecordingsHaveExactlyTheirRate) {
   const std::vector<std::string> simulate{"--random", "voxel:1", "--seconds", "1", "--device", "cpu"};
