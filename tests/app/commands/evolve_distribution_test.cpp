@@ -229,7 +229,7 @@ TEST_F(EvolveByMpi, ALostRankEndsTheRunWithALine) {
   const std::string generations = "40", wanted = expected_lineage(generations);
   for (const int lost : {1, 0}) {
     const std::string run = "without-" + std::to_string(lost);
-    ChildProcess child("mpirun", three_ranks(joined({path(run)}, small(generations)), "4"));
+    ChildProcess child("mpirun", three_ranks(joined({path(run)}, small(generations)), "2"));
     wait_for_generations(run, 2);
     const pid_t process = process_of(lost, path(run));
     ASSERT_GT(process, 0);
