@@ -48,6 +48,8 @@ class Look(TypedDict, total=False):
     plain: bool  # a plain backdrop rather than water or land
     cut: str  # opens each robot beyond a plane: "y:30%"
     smooth: bool  # round skins also of many robots
+    style: str  # of picture(): "usual", or "hero": the first robot against the light, copies of it behind, out of focus
+    aperture: float  # of picture(): blurs what is nearer or farther; diameter of the lens over its distance, 0 to 1
     faceted: bool  # edged skins, which show each voxel, also of few robots
     quality: str  # "auto" (high on a GPU, low without), "low", "medium", "high"
 

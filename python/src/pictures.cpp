@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/recording/trajectory_playback.h"
+#include "app/scene/hero_style.h"
 #include "app/scene/view_words.h"
 #include "app/video/film.h"
 #include "mercury/error.h"
@@ -89,6 +90,8 @@ auto with_errors(const Work& work) {
 struct Look {
   ViewWords words;
   std::string quality = "auto";
+  bool hero = false;   // of a picture
+  float aperture = 0;  // of a picture
 };
 
 float small_number_from(const std::string& name, nb::handle value) {
@@ -110,6 +113,18 @@ int side_from(const std::string& name, nb::handle value) {
 PictureSize size_from(nb::handle value) {
   const auto [width, height] = pair_from("size", value, "a pair of whole numbers (width, height)", side_from);
   return {width, height};
+}
+
+bool is_hero(const std::string& style) {
+  if (style != "usual" && style != "hero")
+    throw ParameterError("style", "\"" + style + "\" is not accepted; give usual or hero");
+  return style == "hero";
+}
+
+float aperture_from(const std::string& name, nb::handle value) {
+  const float aperture = small_number_from(name, value);
+  if (!(aperture >= 0 && aperture <= 1)) throw ParameterError(name, "give 0 to 1");
+  return aperture;
 }
 
 void take_word(Look& look, const std::string& name, nb::handle value) {
@@ -139,6 +154,8 @@ void take_word(Look& look, const std::string& name, nb::handle value) {
       {"cut", [&] { words.cut = text_from(name, value); }},
       {"smooth", [&] { words.smooth = bool_from(name, value); }},
       {"faceted", [&] { words.faceted = bool_from(name, value); }},
+      {"style", [&] { look.hero = is_hero(text_from(name, value)); }},
+      {"aperture", [&] { look.aperture = aperture_from(name, value); }},
       {"quality", [&] { look.quality = text_from(name, value); }}};
   if (const auto found = takes.find(name); found != takes.end()) return found->second();
   std::vector<std::string> names;
@@ -163,12 +180,19 @@ render::Quality quality_of(const std::string& name) {
 
 PictureOptions picture_options(nb::handle size, const nb::dict& given) {
   const Look look = look_of(given);
-  return {.size = size_from(size), .view = view_settings(look.words), .quality = quality_of(look.quality)};
+  PictureOptions options{
+      .size = size_from(size), .view = view_settings(look.words), .quality = quality_of(look.quality)};
+  options.view.hero = look.hero;
+  options.view.aperture = look.aperture;
+  if (look.hero && options.quality == render::Quality::automatic) options.quality = render::Quality::medium;
+  return options;
 }
 
 FilmOptions film_options(nb::handle size, double fps, double speed, int crf, const std::string& ffmpeg,
                          const nb::dict& given) {
   const PictureOptions picture = picture_options(size, given);
+  if (picture.view.hero) throw ParameterError("style", "hero is of picture()");
+  if (picture.view.aperture > 0) throw ParameterError("aperture", "is of picture()");
   return {.size = picture.size,
           .view = picture.view,
           .quality = picture.quality,
@@ -193,6 +217,12 @@ Simulation alone(const Simulation& simulation, std::size_t robot, std::shared_pt
   return one;
 }
 
+// The picture of a simulation, whose robots stand as the style wants it.
+render::Image styled_picture(DrawingThread& thread, const Simulation& simulation, PictureOptions options) {
+  if (options.view.hero) set_hero_style(options.view, simulation.configuration().environment);
+  return picture_of(thread, simulation, options);
+}
+
 // `robot` of a batch; nothing = all.
 render::Image picture(nb::handle what, nb::handle environment, const PictureOptions& options,
                       std::optional<std::int64_t> robot = {}) {
@@ -202,20 +232,21 @@ render::Image picture(nb::handle what, nb::handle environment, const PictureOpti
       if (!environment.is_none()) throw ParameterError("environment", "a batch has one already");
       const Batch& batch = nb::cast<const Batch&>(what);
       if (!robot)
-        return batch.use([&](const Simulation& simulation) { return picture_of(*thread, simulation, options); });
+        return batch.use([&](const Simulation& simulation) { return styled_picture(*thread, simulation, options); });
       const SharedRobots robots = batch.robots();
       const std::size_t index = checked_index(*robot, robots.size());
       const Simulation one =
           batch.use([&](const Simulation& simulation) { return alone(simulation, index, robots[index]); });
       const ReleasedGil released;
-      return picture_of(*thread, one, options);
+      return styled_picture(*thread, one, options);
     }
     if (robot) throw ParameterError("robot", "goes with a batch; give one robot instead");
-    const SharedRobots robots = robots_of(what);
+    SharedRobots robots = robots_of(what);
     if (robots.empty()) throw InputError("there is no robot to show");
     const Environment surroundings = environment_of(environment);
     const ReleasedGil released;
-    return picture_of(*thread, resting(robots, surroundings), options);
+    if (options.view.hero) add_siblings(robots, surroundings);
+    return styled_picture(*thread, resting(robots, surroundings), options);
   });
 }
 

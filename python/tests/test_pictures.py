@@ -136,6 +136,17 @@ def test_robots_at_rest_are_shown_in_an_environment(robots):
     assert (water != land).any()
 
 
+def test_a_hero_is_shown_as_mercury_render_shows_it(tmp_path, mercury):
+    """The same pixels as the command's, of a robot at rest with its copies."""
+    image = pytest.importorskip("matplotlib.image")
+    mercury("render", "sample:eel", "--style", "hero", "--still", 0, "--size", "160x90", "--quality", "low", "--show", "skin",
+            "-o", tmp_path / "hero.png", "--quiet")  # fmt: skip
+    eel = mercurysim.load("sample:eel")
+    ours = mercurysim.picture(eel, SMALL, style="hero", quality="low", show="skin")
+    assert (ours == np.round(255 * image.imread(tmp_path / "hero.png")[..., :3])).all()
+    assert (ours != mercurysim.picture(eel, SMALL, aperture=0.3, quality="low", show="skin")).any()
+
+
 @pytest.mark.parametrize(
     "arguments, message",
     [
@@ -146,6 +157,8 @@ def test_robots_at_rest_are_shown_in_an_environment(robots):
         ({"theme": "pink"}, 'theme: "pink" is not accepted; give dark, light'),
         ({"quality": "best"}, 'quality: "best" is not accepted; give auto, low, medium, high'),
         ({"cut": "w"}, 'cut: "w" is not accepted; '),
+        ({"style": "noir"}, 'style: "noir" is not accepted; give usual or hero'),
+        ({"aperture": 2}, "aperture: give 0 to 1"),
         ({"zoom": 0}, "zoom: 0 is not accepted; give 0.001 to 1000"),
         ({"azimuth": float("nan")}, "azimuth: give a finite number of degrees"),
         ({"scale": (2, 1)}, 'scale: "2,1" is not accepted; give two finite numbers, the lower first'),
@@ -404,6 +417,8 @@ def test_render_does_not_take_a_batch(batch, tmp_path):
         ({"output": "a.mp4", "solver": "euler"}, 'solver: "euler" is not a solver; '),
         ({"output": "a.mp4", "dt": -1}, "dt: -1 is not accepted; "),
         ({"output": "a.mp4", "color": "mood"}, 'color: "mood" is not accepted; '),
+        ({"output": "a.mp4", "style": "hero"}, "style: hero is of picture()"),
+        ({"output": "a.mp4", "aperture": 0.1}, "aperture: is of picture()"),
         ({"output": "a.mp4", "what": []}, "there is no robot to film"),
     ],
 )
