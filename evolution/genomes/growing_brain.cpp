@@ -165,7 +165,7 @@ BrainFrame::BrainFrame(const Robot& robot) : sensors_(robot.sensors), brain_(*ro
 }
 
 GrowingBrain GrowingBrain::of(const BrainFrame& frame, const Brain& brain) {
-  GrowingBrain genes{.step = BrainGenes::first_step};
+  GrowingBrain genes;
   std::map<Marking, ConnectionGene> connections;
   for (std::size_t i = 0; i < brain.layers.size(); ++i) {
     const NeuronLayer& layer = brain.layers[i];
@@ -202,6 +202,8 @@ GrowingBrain GrowingBrain::minimal(const BrainFrame& frame, const BrainGrowth& g
       if (random.chance(growth.first_connections) || sense == always)
         insert(genes.connections, ConnectionGene(frame.sense(sense), frame.neuron(neuron), normal_weight(random)));
   }
+  const auto numbers = static_cast<double>(genes.biases.size() + genes.connections.size());
+  genes.step = first_length / std::sqrt(std::max(1.0, numbers));
   return genes;
 }
 

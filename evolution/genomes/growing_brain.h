@@ -33,6 +33,7 @@
 #include "mercury/brain.h"
 #include "mercury/genome.h"
 #include "mercury/robot.h"
+#include "robots/brain_genes.h"
 #include "robots/bytes.h"
 
 namespace mercury {
@@ -87,14 +88,16 @@ class BrainFrame {
 };
 
 struct GrowingBrain {
-  // Of minimal brains, which have far to go.
-  static constexpr double first_step = 1, smallest_step = 1e-4, largest_step = 10;
+  static constexpr double smallest_step = 1e-4, largest_step = 10;
+  // About how far all weights and biases of a minimal brain move at first, together: step times the root of their
+  // number.
+  static constexpr double first_length = 2;
   static constexpr std::size_t most_grown = 128;  // neurons, so that a brain has not more layers than it may
 
   std::vector<float> biases;                // of the frame's neurons
   std::vector<NeuronGene> neurons;          // that grew, in the order of their markings
   std::vector<ConnectionGene> connections;  // in the order of their markings
-  double step = first_step;                 // [of a weight]
+  double step = BrainGenes::first_step;     // [of a weight]
   friend bool operator==(const GrowingBrain&, const GrowingBrain&) = default;
 
   // The brain of a robot as it is: its connections, all enabled. Several between the same two are one.
