@@ -96,9 +96,10 @@ RunSettings settings_with(const Command& command, const Values& values, std::vec
   }
   for (const auto& [name, value] : values) {
     const auto option = tree.root().find_option(name);
-    if (!option || !option->takes_value())
-      throw InputError("--vary", fmt::format("\"{}\" is no option of a run that has a value", name.substr(2)));
-    words.push_back(name + "=" + value);
+    if (!option) throw InputError("--vary", fmt::format("\"{}\" is no option of a run", name.substr(2)));
+    if (!option->takes_value() && value != "yes" && value != "no")
+      throw InputError("--vary", fmt::format("\"{}={}\" is not accepted; give yes or no", name.substr(2), value));
+    if (option->takes_value() || value == "yes") words.push_back(option->takes_value() ? name + "=" + value : name);
   }
   tree.parse(words);
   return run.settings(notes);
@@ -111,7 +112,8 @@ void SweepOptions::add_to(const Command& command) {
       .in_group("Sweep");
   command
       .add_list("--vary", varied_,
-                fmt::format("A sweep: a run per value and seed (default --seeds {}); may be given several times",
+                fmt::format("A sweep: a run per value and seed (default --seeds {}; yes and no of options without a "
+                            "value); may be given several times",
                             usual_seeds))
       .one_value_each()
       .with_form("OPTION=VALUE,...")

@@ -105,6 +105,16 @@ TEST_F(EvolveSweep, ItsRunsAreThoseOfSingleCommands) {
   EXPECT_NE(sweep.output.find("algorithm=ga"), std::string::npos);
 }
 
+TEST_F(EvolveSweep, OptionsWithoutAValueAreThereOrNot) {
+  ASSERT_EQ(evolve("sweep", small({"--seeds", "3", "--vary", "muscle-adaptation=no,yes", "--genes", "both"})).status,
+            0);
+  ASSERT_EQ(evolve("with", small({"--seed", "3", "--genes", "both", "--muscle-adaptation"})).status, 0);
+  ASSERT_EQ(evolve("without", small({"--seed", "3", "--genes", "both"})).status, 0);
+  EXPECT_EQ(read("sweep/muscle-adaptation=yes/seed-3/lineage.csv"), read("with/lineage.csv"));
+  EXPECT_EQ(read("sweep/muscle-adaptation=no/seed-3/lineage.csv"), read("without/lineage.csv"));
+  EXPECT_NE(read("with/lineage.csv"), read("without/lineage.csv"));
+}
+
 TEST_F(EvolveSweep, GoesOnWhereItStopped) {
   ASSERT_EQ(evolve("sweep", small({"--seeds", "1..2", "--prepare"})).status, 0);
   EXPECT_EQ(runs_of_sweep(path("sweep")).size(), 2u);
@@ -128,6 +138,7 @@ TEST_F(EvolveSweep, MistakesAreRefusedBeforeAnythingIsWritten) {
                                                        {"--vary", "algorithm=ga,"},
                                                        {"--vary", "algorithm=swim"},
                                                        {"--vary", "nonsense=1"},
+                                                       {"--vary", "pipelined=maybe"},
                                                        {"--vary", "resume=1"},
                                                        {"--vary", "seed=1,2"},
                                                        {"--vary", "elites=0.1,9"},
