@@ -18,12 +18,10 @@
 #include "mercury/random.h"
 #include "mercury/real_body.h"
 #include "mercury/voxels.h"
-#include "robots/bytes.h"
-#include "robots/genes.h"
 #include "robots/portable_math.h"
 #include "tests/refusal.h"
+#include "tests/robots/field_robots.h"
 #include "tests/robots/surface.h"
-#include "tests/robots/wave_of.h"
 
 namespace mercury {
 namespace {
@@ -261,25 +259,9 @@ TEST(PaintedFields, BadOriginsAreRefusedWithTheirPlace) {
             "muscle_frequencies: 3 is not accepted with fields; give 1 or 2");
 }
 
-// What evolution keeps of a robot, written and read.
 TEST(PaintedFields, GenesAreReadBackAndGrowTheSameRobot) {
-  const GenesKind& genes_of = *generator_named("cppn").genes;
-  for (std::uint64_t index = 0; index < 10; ++index) {
-    const Robot robot = random_cppn_robot(painted_options(2), 4, index);
-    const auto genes = genes_of.of(robot);
-    const auto mutant = genes->mutated(Genes::both, GeneMutation::of_strength(1), index);
-    for (const auto& one : {genes, mutant, genes->crossed(*mutant, Genes::both, index)}) {
-      ByteWriter writer;
-      one->write(writer);
-      const std::string bytes = std::move(writer).take();
-      ByteReader reader(bytes);
-      EXPECT_EQ(genes_of.read(reader)->grown("one", "ocean"), one->grown("one", "ocean"));
-    }
-    EXPECT_EQ(genes->grown(robot.name, "ocean"), robot);
-    const Robot moved = genes->mutated(Genes::muscles, GeneMutation::of_strength(1), index)->grown(robot.name, "ocean");
-    EXPECT_EQ(moved.masses, robot.masses) << "the body stays";
-    EXPECT_NE(moved.materials, robot.materials);
-  }
+  for (std::uint64_t index = 0; index < 10; ++index)
+    expect_same_genes_read_back(random_cppn_robot(painted_options(2), 4, index), index);
 }
 
 }  // namespace

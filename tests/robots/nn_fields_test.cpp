@@ -16,7 +16,7 @@
 #include "robots/bytes.h"
 #include "robots/genes.h"
 #include "robots/muscle_fields.h"
-#include "tests/robots/wave_of.h"
+#include "tests/robots/field_robots.h"
 
 namespace mercury {
 namespace {
@@ -107,25 +107,9 @@ TEST(NetworkFields, ASpringMovesByTheMeanOfItsMasses) {
   }
 }
 
-// What evolution keeps of a robot, written and read.
 TEST(NetworkFields, GenesAreReadBackAndGrowTheSameRobot) {
-  const GenesKind& genes_of = *generator_named("nn").genes;
-  for (std::uint64_t index = 0; index < 10; ++index) {
-    const Robot robot = random_nn_robot(network_options(2), 4, index);
-    const auto genes = genes_of.of(robot);
-    const auto mutant = genes->mutated(Genes::both, GeneMutation::of_strength(1), index);
-    for (const auto& one : {genes, mutant, genes->crossed(*mutant, Genes::both, index)}) {
-      ByteWriter writer;
-      one->write(writer);
-      const std::string bytes = std::move(writer).take();
-      ByteReader reader(bytes);
-      EXPECT_EQ(genes_of.read(reader)->grown("one", "ocean"), one->grown("one", "ocean"));
-    }
-    EXPECT_EQ(genes->grown(robot.name, "ocean"), robot);
-    const Robot moved = genes->mutated(Genes::muscles, GeneMutation::of_strength(1), index)->grown(robot.name, "ocean");
-    EXPECT_EQ(moved.masses, robot.masses) << "the body stays";
-    EXPECT_NE(moved.materials, robot.materials);
-  }
+  for (std::uint64_t index = 0; index < 10; ++index)
+    expect_same_genes_read_back(random_nn_robot(network_options(2), 4, index), index);
 }
 
 TEST(NetworkGenes, RandomOnesAreThoseOfRandomRobots) {
