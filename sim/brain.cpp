@@ -149,6 +149,24 @@ void validate_input(const Robot& robot, const Layers& layers, std::size_t senses
     throw InputError(where + "/rate", "the copies of a brain per actuator share their weights, which cannot learn");
 }
 
+void validate_gates(const Layers& layers, const NeuronLayer& layer, const std::string& where) {
+  const auto require_layer = [&](const std::string& name, const std::string& place) {
+    if (name.empty()) return;
+    const std::uint32_t neurons = layers.require(name, place).neurons;
+    if (neurons != layer.neurons)
+      throw InputError(place, "layer \"" + name + "\" has " + std::to_string(neurons) + " neurons, this layer " +
+                                  std::to_string(layer.neurons) + "; they need as many");
+  };
+  require_layer(layer.gate, where + "/gate");
+  require_layer(layer.keep_layer, where + "/keep");
+  if (!layer.gate.empty() && !layer.alpha.empty())
+    throw InputError(where, "has both alpha and a gate, which takes its place; give one of them");
+  if (!layer.keep_layer.empty() && !layer.keep.empty())
+    throw InputError(where + "/keep", "is both numbers and a layer; give one of them");
+  for (const float keep : layer.keep)
+    if (!(keep >= 0 && keep <= 1)) throw InputError(where + "/keep", "a keep is 0 to 1, or the name of a layer");
+}
+
 void validate_layer(const Robot& robot, const Layers& layers, std::size_t senses, std::size_t index) {
   const NeuronLayer& layer = robot.brain->layers[index];
   const std::string where = numbered("/brain/layers/", index);
@@ -166,10 +184,12 @@ void validate_layer(const Robot& robot, const Layers& layers, std::size_t senses
                                          std::to_string(layer.neurons) + " neurons");
   };
   require_count(layer.alpha, "/alpha", true);
+  require_count(layer.keep, "/keep", true);
   require_count(layer.bias, "/bias", false);
   for (const float alpha : layer.alpha)
     if (!(alpha > 0 && alpha <= 1)) throw InputError(where + "/alpha", "an alpha is above 0 and at most 1");
   for (const float bias : layer.bias) require_finite(bias, where + "/bias");
+  validate_gates(layers, layer, where);
   for (std::size_t k = 0; k < layer.inputs.size(); ++k)
     validate_input(robot, layers, senses, layer, layer.inputs[k], where + "/inputs/" + std::to_string(k));
 }
@@ -322,7 +342,11 @@ class PlanMaker {
   // Returns the first weight after the layer's.
   std::size_t add_layer(std::size_t number, std::size_t first_weight) {
     const NeuronLayer& layer = brain_.layers[number];
-    BrainPlan::Layer added{index(first_[number]), index(copies_ * layer.neurons), index(plan_.learnings.size()), 0};
+    BrainPlan::Layer added{.first = index(first_[number]),
+                           .count = index(copies_ * layer.neurons),
+                           .first_learning = index(plan_.learnings.size()),
+                           .learnings = 0,
+                           .first_gate = layer.is_gated() ? index(plan_.gates.size()) : BrainPlan::none};
     std::size_t weight = first_weight;
     edges_by_neuron_.clear();
     for (const NeuronInput& input : layer.inputs) {
@@ -336,15 +360,30 @@ class PlanMaker {
         BrainPlan::Neuron neuron{.first_run = index(plan_.runs.size()),
                                  .runs = 0,
                                  .bias = layer.bias.empty() ? BrainPlan::none : index(first_weight + i),
-                                 .alpha = layer.alpha.empty() ? 1 : layer.alpha[layer.alpha.size() == 1 ? 0 : i],
+                                 .alpha = number_of(layer.alpha, i, 1),
                                  .activation = layer.activation};
         for (std::size_t k = 0; k < layer.inputs.size(); ++k) weight = add_runs(layer, k, added.first, copy, i, weight);
         neuron.runs = index(plan_.runs.size()) - neuron.first_run;
         plan_.neurons.push_back(neuron);
+        if (layer.is_gated()) plan_.gates.push_back(gate_of(layer, copy, i));
       }
     added.learnings = index(plan_.learnings.size()) - added.first_learning;
     plan_.layers.push_back(added);
     return weight;
+  }
+
+  // Of a neuron in a list that has one number per neuron, one for all, or none.
+  static float number_of(const std::vector<float>& numbers, std::size_t neuron, float otherwise) {
+    return numbers.empty() ? otherwise : numbers[numbers.size() == 1 ? 0 : neuron];
+  }
+
+  BrainPlan::Gate gate_of(const NeuronLayer& layer, std::size_t copy, std::size_t neuron) const {
+    const auto of = [&](const std::string& name, std::uint32_t otherwise) {
+      return name.empty() ? otherwise : neuron_of(name, neuron, copy);
+    };
+    return {.gate = of(layer.gate, BrainPlan::none),
+            .keep = of(layer.keep_layer, layer.keep.empty() ? BrainPlan::Gate::rest : BrainPlan::none),
+            .constant = number_of(layer.keep, neuron, 0)};
   }
 
   std::size_t add_runs(const NeuronLayer& layer, std::size_t number, std::uint32_t first_neuron, std::size_t copy,

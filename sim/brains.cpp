@@ -25,7 +25,7 @@ void require(std::size_t given, std::size_t wanted, const char* what) {
     throw std::invalid_argument(std::to_string(given) + " " + what + ", the brain has " + std::to_string(wanted));
 }
 
-// y <- y + alpha (act(W z + b) - y), layer after layer, and what its weights learn.
+// y <- k y + g act(W z + b), layer after layer, and what its weights learn.
 void update_neurons(const BrainPlan& plan, std::vector<float>& z, std::span<float> weights,
                     const std::vector<std::pair<std::uint32_t, float>>& clamps) {
   const std::span<float> neurons = std::span(z).subspan(plan.senses.size());
@@ -40,8 +40,10 @@ void update_neurons(const BrainPlan& plan, std::vector<float>& z, std::span<floa
         for (std::size_t k = 0; k < run.count; ++k) sum = multiply_add(weights[run.weight + k], z[run.source + k], sum);
       }
       const float y = neurons[layer.first + i];
-      const float wanted = activation_of(neuron.activation, sum);
-      changed[i] = neuron.alpha == 1 ? wanted : multiply_add(neuron.alpha, wanted - y, y);
+      const float act = activation_of(neuron.activation, sum);
+      changed[i] = layer.first_gate == BrainPlan::none
+                       ? changed_activation(neuron, y, act)
+                       : gated_activation(plan.gates[layer.first_gate + i], neuron.alpha, neurons.data(), y, act);
     }
     std::ranges::copy(changed, neurons.begin() + layer.first);
     set_clamped(neurons, clamps);

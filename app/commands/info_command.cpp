@@ -74,6 +74,15 @@ void print_brain(const Robot& robot) {
   print_line("brain", fmt::format("{} senses, {} neurons, {} weights, drives {} actuator{}, thinks every {:.3g} s",
                                   layout.senses.size(), layout.neurons.size(), layout.weights, layout.driven.size(),
                                   layout.driven.size() == 1 ? "" : "s", robot.brain->period));
+  std::vector<std::string> gates;
+  for (const NeuronLayer& layer : robot.brain->layers) {
+    if (!layer.is_gated()) continue;
+    const std::string keep =
+        !layer.keep_layer.empty() ? layer.keep_layer : fmt::format("{}", fmt::join(layer.keep, " "));
+    gates.push_back(layer.name + " (" + (layer.gate.empty() ? "" : "gate " + layer.gate) +
+                    (layer.gate.empty() || keep.empty() ? "" : ", ") + (keep.empty() ? "" : "keep " + keep) + ")");
+  }
+  if (!gates.empty()) print_line("gates", fmt::format("{}", fmt::join(gates, ", ")));
 }
 
 // "1200 muscles", "1200 muscles, 300 by half waves"

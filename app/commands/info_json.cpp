@@ -140,9 +140,21 @@ Json info_of(const Robot& robot, const std::filesystem::path& file) {
     for (const auto& [actuator, springs] : found.actuators)
       actuators.push_back({{"name", actuator.name}, {"materials", actuator.materials}, {"springs", springs}});
   const BrainLayout layout = brain_layout(robot);
+  Json gates = Json::array();
+  if (robot.brain)
+    for (const NeuronLayer& layer : robot.brain->layers) {
+      if (!layer.is_gated()) continue;
+      Json numbers;
+      for (const float keep : layer.keep) numbers.push_back(shortest(keep));
+      if (layer.keep.size() == 1) numbers = shortest(layer.keep[0]);
+      gates.push_back({{"layer", layer.name},
+                       {"gate", text_or_null(layer.gate)},
+                       {"keep", layer.keep_layer.empty() ? numbers : Json(layer.keep_layer)}});
+    }
   const Json brain = robot.brain ? Json{{"senses", layout.senses},
                                         {"neurons", layout.neurons},
                                         {"weights", layout.weights},
+                                        {"gates", gates},
                                         {"period", shortest(robot.brain->period)}}
                                  : Json();
   return {{"file", file.string()},

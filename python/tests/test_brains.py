@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mercurysim
+from mercurysim import brains
 
 
 def swimmer(rng=1, senses=({"kind": "clock", "frequency": 6.3}, {"kind": "target_direction"})):
@@ -71,6 +72,8 @@ def test_a_brain_does_what_a_policy_outside_does():
     (lambda brain: brain["layers"][0]["inputs"][0].update({"from": "eyes"}), "no layer is named \"eyes\""),
     (lambda brain: brain.update(period=-1), "/brain/period: must be above 0 s"),
     (lambda brain: brain.pop("layers"), "/brain: layers is missing"),
+    (lambda brain: brain["layers"][0].update(gate="eyes"), "/brain/layers/0/gate: no layer is named \"eyes\""),
+    (lambda brain: brain["layers"][0].update(keep=2), "/brain/layers/0/keep: a keep is 0 to 1"),
 ])
 def test_errors_say_where(change, message):
     robot = swimmer()
@@ -92,6 +95,20 @@ def test_what_does_not_fit_a_batch_is_refused():
     with pytest.raises(IndexError):
         batch.brain.clamp(3, 0, 1)
     batch.brain.set_targets(None)
+
+
+def test_gates_are_part_of_a_robot(tmp_path):
+    robot = swimmer()
+    count = len(robot.actuators)
+    weights = np.random.default_rng(2).normal(size=(4 * count, 5)), np.random.default_rng(3).normal(size=(4 * count, count))
+    robot = robot.with_brain({"layers": brains.lstm(*weights)})
+    robot.save(tmp_path / "lstm.json")
+    assert json.loads((tmp_path / "lstm.json").read_text())["requires"] == ["brain", "gates"]
+    assert mercurysim.load(tmp_path / "lstm.json") == robot
+    cell, hidden = robot.brain["layers"][3:]
+    assert (cell["gate"], cell["keep"]) == ("lstm input", "lstm forget")
+    assert (hidden["gate"], hidden["keep"]) == ("lstm output", 0)
+    assert robot.brain_layout["neurons"][3 * count] == "lstm cell 0"
 
 
 def test_arrays_are_the_brains_themselves(device):

@@ -42,6 +42,11 @@ class Part {
     if (!value_.is_string()) wrong("a text");
     return value_.get<std::string>();
   }
+  // Of a layer, which has no empty one.
+  std::string name() const {
+    if (text().empty()) refuse("must name a layer");
+    return text();
+  }
   float number() const {
     if (!value_.is_number()) wrong("a number");
     const double number = value_.get<double>();
@@ -76,6 +81,7 @@ class Part {
     return all;
   }
   bool is_array() const { return value_.is_array(); }
+  bool is_text() const { return value_.is_string(); }
 
  private:
   std::string_view of_type() const {
@@ -183,6 +189,15 @@ NeuronLayer layer_of(const Part& part) {
     const Part alpha = part.at("alpha");
     layer.alpha = alpha.is_array() ? alpha.numbers() : std::vector<float>{alpha.number()};
   }
+  if (part.has("gate")) layer.gate = part.at("gate").name();
+  if (part.has("keep")) {
+    const Part keep = part.at("keep");
+    if (keep.is_text())
+      layer.keep_layer = keep.name();
+    else
+      layer.keep = keep.is_array() ? keep.numbers() : std::vector<float>{keep.number()};
+    if (keep.is_array() && layer.keep.empty()) keep.refuse("an empty list; leave it out for 1 - gate");
+  }
   if (part.has("bias")) layer.bias = part.at("bias").numbers();
   if (part.has("inputs"))
     part.at("inputs").for_each([&](const Part& input) { layer.inputs.push_back(input_of(input, layer.neurons)); });
@@ -226,6 +241,11 @@ class Writer {
   }
   void numbers(std::string_view name, std::span<const float> values) {
     list(name, values, [&](float value) { number(value); });
+  }
+  // One for all; nothing if there is none.
+  void number_or_numbers(std::string_view name, std::span<const float> values) {
+    if (values.size() == 1) number(name, values[0]);
+    if (values.size() > 1) numbers(name, values);
   }
   template <class Write>
   void object(const Write& write) {
@@ -336,8 +356,10 @@ void write_brain(const Brain& brain, DocumentEvents& events) {
         to.text("name", layer.name);
         to.whole("neurons", layer.neurons);
         to.text("activation", activation_names[static_cast<std::size_t>(layer.activation)]);
-        if (layer.alpha.size() == 1) to.number("alpha", layer.alpha[0]);
-        if (layer.alpha.size() > 1) to.numbers("alpha", layer.alpha);
+        to.number_or_numbers("alpha", layer.alpha);
+        if (!layer.gate.empty()) to.text("gate", layer.gate);
+        to.number_or_numbers("keep", layer.keep);
+        if (!layer.keep_layer.empty()) to.text("keep", layer.keep_layer);
         if (!layer.bias.empty()) to.numbers("bias", layer.bias);
         if (!layer.inputs.empty())
           to.list("inputs", layer.inputs, [&](const NeuronInput& input) { write_input(input, layer.neurons, to); });

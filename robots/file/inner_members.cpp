@@ -33,7 +33,8 @@ const ObjectPlace& document_place() {
   static const ObjectPlace actuator{{"name", "materials", "springs"}, {}};
   static const ObjectPlace sensor{keys_of_sensors(), {}};
   static const ObjectPlace input{{"from", "rate", "weights", "edges"}, {}};
-  static const ObjectPlace layer{{"name", "neurons", "activation", "alpha", "bias", "inputs"}, {{"inputs", &input}}};
+  static const ObjectPlace layer{{"name", "neurons", "activation", "alpha", "gate", "keep", "bias", "inputs"},
+                                 {{"inputs", &input}}};
   static const ObjectPlace output{{"actuator", "layer", "neuron"}, {}};
   static const ObjectPlace brain{{"period", "per", "seed", "layers", "outputs"},
                                  {{"layers", &layer}, {"outputs", &output}}};

@@ -66,8 +66,8 @@ class ActuatorReader : public DocumentEvents {
 // What a file may say that it requires ("requires"): the parts of a robot that a version without them would leave out,
 // and then run another robot. Files name those that they have. Parts that came before there was this list are not in
 // it.
-inline constexpr std::array<std::string_view, 6> known_requirements{"mass",    "velocity", "fixed", "relaxation_time",
-                                                                    "modulus", "brain"};
+inline constexpr std::array<std::string_view, 7> known_requirements{"mass",    "velocity", "fixed", "relaxation_time",
+                                                                    "modulus", "brain",    "gates"};
 // Those of them that a robot has, in their order.
 std::vector<std::string_view> requirements_of(const Robot& robot);
 

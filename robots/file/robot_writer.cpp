@@ -179,8 +179,14 @@ class RobotWriter {
 
 std::vector<std::string_view> requirements_of(const Robot& robot) {
   const bool relaxes = std::ranges::any_of(robot.materials, [](const Material& m) { return m.relaxation_time != 0; });
-  const std::array<bool, known_requirements.size()> has{
-      !robot.mass.empty(), !robot.velocity.empty(), !robot.fixed.empty(), relaxes, false, robot.brain.has_value()};
+  const bool has_gates = robot.brain && std::ranges::any_of(robot.brain->layers, &NeuronLayer::is_gated);
+  const std::array<bool, known_requirements.size()> has{!robot.mass.empty(),
+                                                        !robot.velocity.empty(),
+                                                        !robot.fixed.empty(),
+                                                        relaxes,
+                                                        false,
+                                                        robot.brain.has_value(),
+                                                        has_gates};
   std::vector<std::string_view> found;
   for (std::size_t i = 0; i < has.size(); ++i)
     if (has[i]) found.push_back(known_requirements[i]);

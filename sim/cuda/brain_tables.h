@@ -44,7 +44,8 @@ struct ThinkingRobot {
   std::uint32_t brain;  // among the brains
   float period;
   std::uint64_t seed;
-  std::uint64_t first_sense, first_neuron, first_run, first_learning, first_layer, first_output;  // of the plan
+  std::uint64_t first_sense, first_neuron, first_run, first_gate, first_learning, first_layer,
+      first_output;  // of the plan
   std::uint32_t senses, neurons, layers, outputs, samples, weights;
   std::uint64_t first_place, first_share, first_row, first_rest, first_activation, first_sample, first_weight,
       first_driven, first_scratch;
@@ -58,6 +59,7 @@ struct BrainTables {
   const BrainPlan::Sense* senses;
   const BrainPlan::Neuron* neurons;
   const BrainPlan::Run* runs;
+  const BrainPlan::Gate* gates;
   const BrainPlan::Learning* learnings;
   const BrainLayer* layers;
   const BrainPlan::Output* outputs;

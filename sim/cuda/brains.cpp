@@ -29,6 +29,7 @@ class TableMaker {
   std::vector<BrainPlan::Sense> senses;
   std::vector<BrainPlan::Neuron> neurons;
   std::vector<BrainPlan::Run> runs;
+  std::vector<BrainPlan::Gate> gates;
   std::vector<BrainPlan::Learning> learnings;
   std::vector<BrainLayer> layers;
   std::vector<BrainPlan::Output> outputs;
@@ -88,6 +89,7 @@ class TableMaker {
     robot.first_sense = append(senses, plan.senses);
     robot.first_neuron = append(neurons, plan.neurons);
     robot.first_run = append(runs, plan.runs);
+    robot.first_gate = append(gates, plan.gates);
     robot.first_learning = append(learnings, plan.learnings);
     robot.first_layer = layers.size();
     for (const BrainPlan::Layer& layer : plan.layers) layers.push_back({layer, reads_itself(plan, layer)});
@@ -188,6 +190,7 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
   senses_ = uploaded(made.senses, stream);
   neurons_ = uploaded(made.neurons, stream);
   runs_ = uploaded(made.runs, stream);
+  gates_ = uploaded(made.gates, stream);
   learnings_ = uploaded(made.learnings, stream);
   layers_ = uploaded(made.layers, stream);
   outputs_ = uploaded(made.outputs, stream);
@@ -211,6 +214,7 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
              .senses = senses_.data(),
              .neurons = neurons_.data(),
              .runs = runs_.data(),
+             .gates = gates_.data(),
              .learnings = learnings_.data(),
              .layers = layers_.data(),
              .outputs = outputs_.data(),

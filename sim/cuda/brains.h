@@ -51,6 +51,7 @@ class DeviceBrains {
   DeviceArray<BrainPlan::Sense> senses_;
   DeviceArray<BrainPlan::Neuron> neurons_;
   DeviceArray<BrainPlan::Run> runs_;
+  DeviceArray<BrainPlan::Gate> gates_;
   DeviceArray<BrainPlan::Learning> learnings_;
   DeviceArray<BrainLayer> layers_;
   DeviceArray<BrainPlan::Output> outputs_;

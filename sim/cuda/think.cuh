@@ -331,7 +331,7 @@ class Thought {
     for (std::uint32_t i = robot_.thread(); i < of_.neurons; i += robot_.threads()) z_[of_.senses + i] = neurons[i];
   }
 
-  // y <- y + alpha (act(W z + b) - y). Eight lanes sum up a neuron, and each of them ends one of the eight that they
+  // y <- k y + g act(W z + b). Eight lanes sum up a neuron, and each of them ends one of the eight that they
   // have summed up before.
   __device__ void update(const BrainLayer& layer) const {
     float* const neurons = z_ + of_.senses;
@@ -347,7 +347,7 @@ class Thought {
         own = pass == member ? sum : own;
       }
       const std::uint32_t i = first + member * groups + group;
-      if (i < layer.count) (layer.reads_itself ? sums : neurons + layer.first)[i] = updated(layer.first + i, own);
+      if (i < layer.count) (layer.reads_itself ? sums : neurons + layer.first)[i] = updated(layer, i, own);
     }
     wait();
     if (layer.reads_itself) {
@@ -365,12 +365,17 @@ class Thought {
     wait();
   }
 
-  // The new activation of a neuron, of which others know nothing yet.
-  __device__ float updated(std::uint32_t number, float sum) const {
+  // The new activation of a neuron of a layer, of which others know nothing yet: only itself may be gated by it.
+  __device__ float updated(const BrainLayer& layer, std::uint32_t i, float sum) const {
+    const std::uint32_t number = layer.first + i;
     const BrainPlan::Neuron neuron = tables_.neurons[of_.first_neuron + number];
     const float clamped = tables_.clamps[of_.first_activation + number];
-    const float y = z_[of_.senses + number], wanted = activation_of(neuron.activation, sum);
-    const float changed = neuron.alpha == 1 ? wanted : multiply_add(neuron.alpha, wanted - y, y);
+    const float* const neurons = z_ + of_.senses;
+    const float y = neurons[number], act = activation_of(neuron.activation, sum);
+    const float changed =
+        layer.first_gate == BrainPlan::none
+            ? changed_activation(neuron, y, act)
+            : gated_activation(tables_.gates[of_.first_gate + layer.first_gate + i], neuron.alpha, neurons, y, act);
     return tables_.activations[of_.first_activation + number] = std::isnan(clamped) ? changed : clamped;
   }
 

@@ -7,6 +7,8 @@
 //
 // A row of a matrix is one run, an edge a run of length one. In a brain per actuator, the senses and neurons of all
 // copies stand there, actuator after actuator within a layer, and their runs read the same weights.
+//
+// A gated layer has a Gate per neuron beside that. Other layers have none, so that they pay nothing for it.
 #pragma once
 
 #include <cmath>
@@ -59,6 +61,14 @@ struct BrainPlan {
     Activation activation;
     friend bool operator==(const Neuron&, const Neuron&) = default;
   };
+  // How a neuron changes whose g or k is another neuron's activation, or whose k is a constant.
+  struct Gate {
+    static constexpr std::uint32_t rest = none - 1;
+    std::uint32_t gate;  // the neuron that is g; `none` = alpha
+    std::uint32_t keep;  // the neuron that is k; `none` = `constant`, `rest` = 1 - g
+    float constant;
+    friend bool operator==(const Gate&, const Gate&) = default;
+  };
   struct Learning {
     std::uint32_t neuron, source, weight;
     float rate;
@@ -67,6 +77,7 @@ struct BrainPlan {
   struct Layer {
     std::uint32_t first, count;               // neurons
     std::uint32_t first_learning, learnings;  // of different weights
+    std::uint32_t first_gate;                 // of as many gates as neurons; `none` = it has none
     friend bool operator==(const Layer&, const Layer&) = default;
   };
   struct Output {
@@ -80,6 +91,7 @@ struct BrainPlan {
   std::vector<Sense> senses;
   std::vector<Neuron> neurons;
   std::vector<Run> runs;
+  std::vector<Gate> gates;
   std::vector<Learning> learnings;
   std::vector<Layer> layers;
   std::vector<Output> outputs;
@@ -92,10 +104,26 @@ struct BrainPlan {
   // Whether all but places and weights is the same.
   bool has_tables_of(const BrainPlan& other) const {
     return period == other.period && seed == other.seed && samples == other.samples && senses == other.senses &&
-           neurons == other.neurons && runs == other.runs && learnings == other.learnings && layers == other.layers &&
-           outputs == other.outputs;
+           neurons == other.neurons && runs == other.runs && gates == other.gates && learnings == other.learnings &&
+           layers == other.layers && outputs == other.outputs;
   }
 };
+
+// y <- y + alpha (act - y), of a neuron whose layer has no gates.
+MERCURY_HOST_DEVICE float changed_activation(const BrainPlan::Neuron& neuron, float y, float act) {
+  return neuron.alpha == 1 ? act : multiply_add(neuron.alpha, act - y, y);
+}
+// y <- k y + g act, with g and k among the activations of all neurons.
+MERCURY_HOST_DEVICE float gated_activation(const BrainPlan::Gate& gate, float alpha, const float* neurons, float y,
+                                           float act) {
+  const float g = gate.gate == BrainPlan::none ? alpha : neurons[gate.gate];
+  float k = gate.constant;
+  if (gate.keep == BrainPlan::Gate::rest)
+    k = 1 - g;
+  else if (gate.keep != BrainPlan::none)
+    k = neurons[gate.keep];
+  return multiply_add(g, act, k * y);
+}
 
 // Steps between two thoughts.
 MERCURY_HOST_DEVICE std::int64_t steps_per_thought(float period, double dt) {

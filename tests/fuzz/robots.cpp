@@ -60,7 +60,8 @@ std::string with_brain() {
       R"("sensors":[{"kind":"clock","frequency":2},{"kind":"strain","actuator":"tail","noise":0.1,"delay":0.1},)"
       R"({"kind":"touch","masses":[1]},{"kind":"neuron","layer":"h","neuron":1}],)"
       R"("brain":{"period":0.01,"layers":[{"name":"h","neurons":2,"alpha":0.5,"bias":[0,1],"inputs":[)"
-      R"({"from":"senses","weights":[[1,2,3,4,5],[6,7,8,9,10]]},{"from":"h","edges":[[0,1,2]],"rate":0.1}]}],)"
+      R"({"from":"senses","weights":[[1,2,3,4,5],[6,7,8,9,10]]},{"from":"h","edges":[[0,1,2]],"rate":0.1}]},)"
+      R"({"name":"c","neurons":2,"gate":"h","keep":"d"},{"name":"d","neurons":2,"alpha":0.5,"keep":[0,0.5]}],)"
       R"("outputs":[{"actuator":"tail","layer":"h","neuron":0}]},)");
   return json;
 }

@@ -178,14 +178,14 @@ TEST(BadRobotFiles, WhatAFileRequires) {
   EXPECT_EQ(refusal(R"(["mass","velocity","fixed","relaxation_time"])"), "no error");
   EXPECT_EQ(refusal(R"(["mass","wings"])"),
             "/requires/1: requires \"wings\", which this version does not know; it knows mass, velocity, fixed, "
-            "relaxation_time, modulus, brain");
+            "relaxation_time, modulus, brain, gates");
   EXPECT_EQ(refusal("\"mass\""), "/requires: must be an array, not a text");
   EXPECT_EQ(refusal("[1]"), "/requires/0: must be a text, not a number");
   EXPECT_EQ(refusal("[[]]"), "/requires/0: must be a text, not an array");
   // A later version may change what a member is; the file says so before it.
   EXPECT_EQ(refusal_of({.head = R"("format":"mercury-robot","version":1,"requires":["wings"])", .masses = "{}"}),
             "/requires/0: requires \"wings\", which this version does not know; it knows mass, velocity, fixed, "
-            "relaxation_time, modulus, brain");
+            "relaxation_time, modulus, brain, gates");
 }
 
 TEST(BadRobotFiles, RelaxationTimes) {

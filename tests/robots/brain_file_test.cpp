@@ -91,6 +91,25 @@ TEST_P(BrainsInFiles, ComeBackAsTheyWereWritten) {
   EXPECT_EQ(parse_robot(serialize_robot(per_actuator, GetParam()), GetParam()), per_actuator);
 }
 
+// A layer is gated by one that stands before it, keeps what another says or a number, and says so in `requires`.
+TEST_P(BrainsInFiles, HaveGates) {
+  const Robot robot =
+      read(chain(R"("brain":{"layers":[{"name":"in","neurons":2,"activation":"sigmoid"},)"
+                 R"({"name":"cell","neurons":2,"gate":"in","keep":"out"},)"
+                 R"({"name":"out","neurons":2,"alpha":0.5,"keep":[0,1]},{"name":"motor","neurons":2,"keep":0}]})"));
+  const std::vector<NeuronLayer>& layers = robot.brain->layers;
+  EXPECT_FALSE(layers[0].is_gated());
+  EXPECT_EQ(layers[1].gate, "in");
+  EXPECT_EQ(layers[1].keep_layer, "out");
+  EXPECT_THAT(layers[2].keep, ElementsAre(0, 1));
+  EXPECT_EQ(layers[2].gate, "");
+  EXPECT_THAT(layers[3].keep, ElementsAre(0));
+  const std::string written = serialize_robot(robot, GetParam());
+  EXPECT_EQ(parse_robot(written, GetParam()), robot);
+  EXPECT_EQ(serialize_robot(parse_robot(written, GetParam()), GetParam()), written);
+  EXPECT_THAT(serialize_robot(robot, RobotFormat::json), HasSubstr(R"("requires":["brain","gates"])"));
+}
+
 TEST_P(BrainsInFiles, SensorsNeedNoBrain) {
   const Robot robot = read(chain(R"("sensors":[{"kind":"up"}])"));
   EXPECT_EQ(robot.sensors.size(), 1u);
@@ -135,6 +154,15 @@ TEST_P(BrainsInFiles, ErrorsSayWhere) {
       "/brain/layers/0: the last layer has 3 neurons, the robot has 2 actuators; name outputs, or make them equal");
   EXPECT_EQ(layer(R"("neurons":2,"bias":[1,"x"])"), "/brain/layers/0/bias/1: must be a number, not a text");
   EXPECT_THAT(layer(R"("neurons":2,"bias":[1,1e39])"), HasSubstr("/brain/layers/0/bias/1: "));
+  EXPECT_EQ(layer(R"("neurons":2,"gate":1)"), "/brain/layers/0/gate: must be a text, not a number");
+  EXPECT_EQ(layer(R"("neurons":2,"gate":"")"), "/brain/layers/0/gate: must name a layer");
+  EXPECT_EQ(layer(R"("neurons":2,"gate":"input")"),
+            "/brain/layers/0/gate: no layer is named \"input\"; the brain has motor");
+  EXPECT_EQ(layer(R"("neurons":2,"keep":{})"), "/brain/layers/0/keep: must be a number, not an object");
+  EXPECT_EQ(layer(R"("neurons":2,"keep":[])"), "/brain/layers/0/keep: an empty list; leave it out for 1 - gate");
+  EXPECT_EQ(layer(R"("neurons":2,"keep":[1])"), "no error");
+  EXPECT_EQ(layer(R"("neurons":2,"keep":[1,"x"])"), "/brain/layers/0/keep/1: must be a number, not a text");
+  EXPECT_EQ(layer(R"("neurons":2,"keep":-1)"), "/brain/layers/0/keep: a keep is 0 to 1, or the name of a layer");
 }
 
 TEST(BrainOfAChangedBody, StaysIfItFits) {

@@ -128,6 +128,9 @@ TEST(BrainStructure, IsAllButTheWeights) {
   EXPECT_TRUE(same_brain_structure(a, b));
   b.brain->layers[0].alpha = {0.5f};
   EXPECT_FALSE(same_brain_structure(a, b));
+  b.brain->layers[0].alpha.clear();
+  b.brain->layers[0].gate = "hidden";
+  EXPECT_FALSE(same_brain_structure(a, b));
   give_brain_per_actuator(b, 4);
   EXPECT_FALSE(same_brain_structure(a, b));
 }

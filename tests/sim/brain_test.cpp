@@ -18,6 +18,8 @@ namespace mercury {
 namespace {
 
 using test::bar;
+using test::gated;
+using test::lstm;
 using test::matrix;
 using test::SharedBatch;
 using test::thinker;
@@ -37,6 +39,14 @@ struct Reference {
   explicit Reference(const Robot& of) : robot(of) {
     for (const NeuronLayer& layer : robot.brain->layers) y.emplace_back(layer.neurons, 0.0);
   }
+  const std::vector<double>& of(const std::string& name) const {
+    const auto& layers = robot.brain->layers;
+    return y[static_cast<std::size_t>(std::ranges::find(layers, name, &NeuronLayer::name) - layers.begin())];
+  }
+  static double act(Activation activation, double sum) {
+    if (activation == Activation::linear) return sum;
+    return activation == Activation::sigmoid ? 1 / (1 + std::exp(-sum)) : std::tanh(sum);
+  }
   void think(std::span<const float> senses) {
     const auto& layers = robot.brain->layers;
     for (std::size_t l = 0; l < layers.size(); ++l) {
@@ -52,8 +62,16 @@ struct Reference {
           for (const NeuronEdge& edge : input.edges)
             if (edge.to == i) sum += static_cast<double>(edge.weight) * z[edge.from];
         }
-        const double alpha = layers[l].alpha.empty() ? 1.0 : static_cast<double>(layers[l].alpha[0]);
-        next[i] = y[l][i] + alpha * (std::tanh(sum) - y[l][i]);
+        const auto number = [&](const std::vector<float>& all) {
+          return static_cast<double>(all[all.size() == 1 ? 0 : i]);
+        };
+        const double g = !layers[l].gate.empty()    ? of(layers[l].gate)[i]
+                         : !layers[l].alpha.empty() ? number(layers[l].alpha)
+                                                    : 1;
+        const double k = !layers[l].keep_layer.empty() ? of(layers[l].keep_layer)[i]
+                         : !layers[l].keep.empty()     ? number(layers[l].keep)
+                                                       : 1 - g;
+        next[i] = k * y[l][i] + g * act(layers[l].activation, sum);
       }
       y[l] = next;
     }
@@ -99,22 +117,120 @@ TEST_P(BrainOn, GoesOnFromTheStateOfOneRobotBitForBit) {
 }
 
 TEST_P(BrainOn, ThinksAsTheEquationSays) {
-  const Robot robot = thinker();
+  for (const Robot& robot : {thinker(), lstm(), gated()}) {
+    SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+    batch->set_target(0, Vec3{1, 2, 3});
+    Reference reference(robot);
+    for (int thought = 0; thought < 100; ++thought) {
+      batch->step(20);
+      const BrainState state = batch->brain_state(0);
+      ASSERT_EQ(state.thoughts, static_cast<std::uint64_t>(thought + 1));
+      reference.think(state.senses);
+      std::size_t neuron = 0;
+      for (const std::vector<double>& layer : reference.y)
+        for (const double y : layer) EXPECT_NEAR(state.neurons[neuron++], y, 2e-6);
+      for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(drives(batch)[i], state.neurons[neuron - 2 + i]);
+    }
+    for (const std::vector<double>& layer : reference.y) EXPECT_GT(std::abs(layer[0]), 0.01);
+  }
+}
+
+// The equations as Gers, Schmidhuber and Cummins 2000 and PyTorch have them.
+TEST_P(BrainOn, AnLstmIsFiveLayers) {
+  const Robot robot = lstm();
   SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
-  batch->set_target(0, Vec3{1, 2, 3});
-  Reference reference(robot);
-  for (int thought = 0; thought < 100; ++thought) {
+  using Cells = std::array<double, 3>;
+  Cells c{}, h{};
+  for (int thought = 0; thought < 50; ++thought) {
     batch->step(20);
     const BrainState state = batch->brain_state(0);
-    ASSERT_EQ(state.thoughts, static_cast<std::uint64_t>(thought + 1));
-    reference.think(state.senses);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(state.neurons[i], reference.y[0][i], 2e-6);
-    for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_NEAR(state.neurons[3 + i], reference.y[1][i], 2e-6);
-      EXPECT_EQ(drives(batch)[i], state.neurons[3 + i]);
+    const auto sums = [&](std::size_t l) {
+      const NeuronLayer& layer = robot.brain->layers[l];
+      Cells all{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        all[i] = static_cast<double>(layer.bias[i]);
+        for (std::size_t k = 0; k < 7; ++k)
+          all[i] += static_cast<double>(layer.inputs[0].weights[7 * i + k]) * static_cast<double>(state.senses[k]);
+        for (std::size_t k = 0; k < 3; ++k) all[i] += static_cast<double>(layer.inputs[1].weights[3 * i + k]) * h[k];
+      }
+      return all;
+    };
+    const auto sigmoid = [](double x) { return 1 / (1 + std::exp(-x)); };
+    const Cells i = sums(0), f = sums(1), o = sums(2), g = sums(3);
+    for (std::size_t k = 0; k < 3; ++k) {
+      c[k] = sigmoid(f[k]) * c[k] + sigmoid(i[k]) * std::tanh(g[k]);
+      h[k] = sigmoid(o[k]) * std::tanh(c[k]);
+      EXPECT_NEAR(state.neurons[9 + k], c[k], 2e-6);
+      EXPECT_NEAR(state.neurons[12 + k], h[k], 2e-6);
     }
   }
-  EXPECT_GT(std::abs(reference.y[1][0]), 0.01);
+  EXPECT_GT(std::abs(c[0]), 0.1);
+}
+
+TEST_P(BrainOn, HeldGatesHoldWhatACellKeeps) {
+  const Robot robot = lstm();
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
+  batch->step(200);
+  const std::vector<float> before = batch->brain_state(0).neurons;
+  batch->clamp_neuron(0, 0, 0.0f);  // input
+  batch->clamp_neuron(0, 3, 1.0f);  // forget
+  batch->clamp_neuron(0, 7, 0.0f);  // output of another cell
+  batch->step(200);
+  const std::vector<float> after = batch->brain_state(0).neurons;
+  EXPECT_EQ(after[9], before[9]);
+  EXPECT_NE(after[10], before[10]);
+  EXPECT_EQ(after[13], 0.0f);
+}
+
+// Copies of an LSTM, each with its own state, beside the CPU backend.
+TEST_P(BrainOn, GatesAsTheCpuDoes) {
+  Robot robot = bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 8);
+  const std::size_t actuators = actuators_of(robot).size();
+  ASSERT_GT(actuators, 3u);
+  robot.sensors = {{.kind = SensorKind::strain, .actuator = "self", .gain = 5},
+                   {.kind = SensorKind::clock, .frequency = 4}};
+  Brain& brain = robot.brain.emplace();
+  brain.per_actuator = true;
+  const auto layer = [](const char* name, Activation activation, float bias) {
+    NeuronLayer made{.name = name, .neurons = 1, .activation = activation, .alpha = {}, .bias = {bias}};
+    made.inputs = {matrix("senses", {0.5f, bias, -0.7f}), matrix("motor", {2 * bias})};
+    return made;
+  };
+  NeuronLayer cell = layer("cell", Activation::tanh, 0.2f);
+  cell.gate = "input", cell.keep_layer = "forget";
+  NeuronLayer motor{.name = "motor", .neurons = 1, .gate = "output", .keep = {0}};
+  motor.inputs = {matrix("cell", {1})};
+  brain.layers = {layer("input", Activation::sigmoid, 0.1f), layer("forget", Activation::sigmoid, 0.8f),
+                  layer("output", Activation::sigmoid, -0.3f), cell, motor};
+  std::vector<Robot> robots{robot, lstm(), thinker(), gated()};
+  const Configuration configuration{.dt = dt, .environment = Ocean{}};
+  SharedBatch batch = this->batch(configuration, robots);
+  Simulation cpu({.dt = dt, .environment = Ocean{}, .device = {.kind = DeviceKind::cpu}}, robots);
+  for (int thought = 0; thought < 20; ++thought) {
+    for (std::size_t i = 0; i < robots.size(); ++i) batch->set_state(i, cpu.state(i));
+    batch->step(20);
+    cpu.step(20);
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const std::vector<float> got = batch->brain_state(i).neurons, expected = cpu.brain_state(i).neurons;
+      ASSERT_EQ(got.size(), expected.size());
+      for (std::size_t k = 0; k < got.size(); ++k) EXPECT_NEAR(got[k], expected[k], 2e-6) << i << ' ' << k;
+    }
+  }
+  const std::vector<float> copies = cpu.brain_state(0).neurons;
+  EXPECT_NE(copies[0], copies[1]);  // their muscles differ
+}
+
+// y += alpha (act - y), written with both factors.
+TEST_P(BrainOn, ConstantGatesAreAnAlpha) {
+  Robot robot = thinker();
+  robot.brain->layers[1].keep = {0.5f};
+  const std::vector<Robot> robots{robot, thinker()};
+  SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, robots);
+  for (int thought = 0; thought < 10; ++thought) {
+    batch->step(20);
+    const std::vector<float> with = batch->brain_state(0).neurons, without = batch->brain_state(1).neurons;
+    for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(with[i], without[i], 2e-6);
+  }
 }
 
 TEST_P(BrainOn, ThinksEveryPeriodWhateverTheTimeStep) {
@@ -147,7 +263,7 @@ TEST_P(BrainOn, IsTheSameAloneAndInAnyBatchAndHoweverStepsAreDivided) {
   Robot slow = thinker();
   slow.brain->period = 0.033f;
   const Robot still = bodies::random_voxels({.x = 3, .y = 2, .z = 2}, 5);
-  const std::vector<Robot> robots{still, thinker(), slow, thinker(), still};
+  const std::vector<Robot> robots{still, thinker(), slow, lstm(), thinker(), gated(), still};
   const Configuration configuration{.dt = dt, .environment = Land{}};
   SharedBatch all = this->batch(configuration, robots);
   for (const std::int64_t steps : {1, 19, 20, 7, 53}) all->step(steps);
@@ -164,7 +280,7 @@ TEST_P(BrainOn, GoesOnBitForBitFromASavedState) {
   robot.sensors[1].delay = 0.1f;
   robot.sensors[2].noise = 0.1f;
   robot.brain->layers[0].inputs[0].rate = 0.01f;
-  const std::vector<Robot> robots{robot, thinker(), bar()};
+  const std::vector<Robot> robots{robot, thinker(), bar(), lstm(), gated()};
   SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, robots);
   batch->step(133);
   const BatchState saved = batch->save();
@@ -529,6 +645,23 @@ TEST(Brain, RefusesWhatDoesNotFit) {
               r.brain->layers[0].inputs[1] = {"hidden", {}, {{0, 3, 1.0f}}, 0};
             }),
             "/brain/layers/0/inputs/1/edges/0: input 3 is out of range, there are 3");
+  EXPECT_EQ(error([](Robot& r) { r = gated(); }), "accepted");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].gate = "eyes"; }),
+            "/brain/layers/0/gate: no layer is named \"eyes\"; the brain has hidden, motor");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].gate = "senses"; }),
+            "/brain/layers/0/gate: no layer is named \"senses\"; the brain has hidden, motor");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].keep_layer = "motor"; }),
+            "/brain/layers/0/keep: layer \"motor\" has 2 neurons, this layer 3; they need as many");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[1].gate = "motor"; }),
+            "/brain/layers/1: has both alpha and a gate, which takes its place; give one of them");
+  EXPECT_EQ(error([](Robot& r) {
+              r.brain->layers[0].keep = {1, 1};
+            }),
+            "/brain/layers/0/keep: 2 numbers, the layer has 3 neurons");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].keep = {1.5f}; }),
+            "/brain/layers/0/keep: a keep is 0 to 1, or the name of a layer");
+  EXPECT_EQ(error([](Robot& r) { r.brain->layers[0].keep = {0}, r.brain->layers[0].keep_layer = "hidden"; }),
+            "/brain/layers/0/keep: is both numbers and a layer; give one of them");
   EXPECT_EQ(error([](Robot& r) { r.brain->period = 0; }), "/brain/period: must be above 0 s");
   EXPECT_EQ(error([](Robot& r) { r.brain->layers[1].name = "hidden"; }), "/brain/layers/1: has the name of layer 0");
 }

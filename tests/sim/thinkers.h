@@ -46,4 +46,53 @@ inline Robot thinker() {
   return robot;
 }
 
+// The same robot with an LSTM of three cells between senses and motors.
+inline Robot lstm() {
+  Robot robot = thinker();
+  float next = 1;
+  const auto numbers = [&](std::size_t count) {
+    std::vector<float> all;
+    for (std::size_t i = 0; i < count; ++i) all.push_back(0.8f * std::sin(next += 3));
+    return all;
+  };
+  const auto layer = [&](const char* name, Activation activation) {
+    NeuronLayer made{.name = name, .neurons = 3, .activation = activation, .alpha = {}, .bias = numbers(3)};
+    made.inputs = {matrix("senses", numbers(3 * 7)), matrix("hidden", numbers(3 * 3))};
+    return made;
+  };
+  NeuronLayer cell = layer("cell", Activation::tanh);
+  cell.gate = "input", cell.keep_layer = "forget";
+  NeuronLayer hidden{.name = "hidden", .neurons = 3, .gate = "output", .keep = {0}};
+  hidden.inputs = {{.from = "cell", .weights = {}, .edges = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}}}};
+  NeuronLayer motor{.name = "motor", .neurons = 2, .alpha = {0.5f}};
+  motor.inputs = {matrix("hidden", numbers(2 * 3))};
+  robot.brain->layers = {layer("input", Activation::sigmoid),
+                         layer("forget", Activation::sigmoid),
+                         layer("output", Activation::sigmoid),
+                         cell,
+                         hidden,
+                         motor};
+  return robot;
+}
+
+// Gates of every kind: the rest is kept, or a constant, or what a layer itself says; a later layer is g.
+inline Robot gated() {
+  Robot robot = thinker();
+  std::vector<NeuronLayer>& layers = robot.brain->layers;
+  layers[0].gate = "late";
+  NeuronLayer leaky{.name = "leaky", .neurons = 3, .activation = Activation::linear, .alpha = {0.1f}};
+  leaky.keep = {0.9f, 0.5f, 0};
+  leaky.inputs = {matrix("senses", std::vector<float>(3 * 7, 0.3f))};
+  NeuronLayer own{.name = "own", .neurons = 3, .activation = Activation::sigmoid, .alpha = {0.2f}};
+  own.keep_layer = "own";
+  own.inputs = {matrix("leaky", {1, 0, 0, 0, 1, 0, 0, 0, 1})};
+  NeuronLayer late{.name = "late", .neurons = 3, .activation = Activation::sigmoid, .bias = {-0.5f, 0, 0.5f}};
+  late.inputs = {matrix("own", {1, 0, 0.2f, 0, 1, 0, 0.1f, 0, 1})};
+  layers[1].keep = {0.25f};
+  layers[1].bias = {0.5f, -0.5f};
+  const NeuronLayer motor = layers[1];
+  layers = {layers[0], leaky, own, late, motor};
+  return robot;
+}
+
 }  // namespace mercury::test

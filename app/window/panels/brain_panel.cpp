@@ -34,10 +34,12 @@ class BrainPanel : public Panel {
     std::string name;
     ImVec2 at{0, 0};     // in the graph [0, 1]
     std::size_t column;  // of the graph
+    std::string gates;   // ", gate input 2, keep forget 2"
   };
   struct Edge {
     std::size_t from, to;
     float weight;
+    bool gates = false;  // `from` is the gate or the keep of `to`
   };
   // The graph of one brain.
   struct Graph {
@@ -103,7 +105,7 @@ BrainPanel::Graph BrainPanel::graph_of(const Robot& robot) {
   const std::size_t columns = brain.layers.size() + 2;
   const auto add = [&](const std::string& name, std::size_t column, std::size_t index, std::size_t count) {
     const float x = static_cast<float>(column) / static_cast<float>(columns - 1);
-    graph.nodes.push_back({name, {x, height_of(index, count)}, column});
+    graph.nodes.push_back({name, {x, height_of(index, count)}, column, ""});
   };
   for (std::size_t i = 0; i < layout.senses.size(); ++i) add(layout.senses[i], 0, i, layout.senses.size());
   // Where a layer's neurons begin: all copies of a layer come before the next layer.
@@ -135,6 +137,20 @@ BrainPanel::Graph BrainPanel::graph_of(const Robot& robot) {
   std::erase_if(graph.edges, [](const Edge& edge) { return edge.weight == 0; });
   for (const Edge& edge : graph.edges) graph.largest = std::max(graph.largest, std::abs(edge.weight));
   if (graph.largest == 0) graph.largest = 1;
+  const auto gate = [&](std::size_t l, std::size_t copy, const std::string& name, const char* role) {
+    for (std::size_t k = 0; k < brain.layers.size(); ++k)
+      for (std::size_t i = 0; i < brain.layers[l].neurons && brain.layers[k].name == name; ++i) {
+        const std::size_t within = copy * brain.layers[l].neurons + i, from = graph.senses + first[k] + within,
+                          to = graph.senses + first[l] + within;
+        graph.edges.push_back({from, to, graph.largest, true});
+        graph.nodes[to].gates += fmt::format(", {} {}", role, graph.nodes[from].name);
+      }
+  };
+  for (std::size_t l = 0; l < brain.layers.size(); ++l)
+    for (std::size_t copy = 0; copy < copies; ++copy) {
+      gate(l, copy, brain.layers[l].gate, "gate");
+      gate(l, copy, brain.layers[l].keep_layer, "keep");
+    }
   for (std::size_t i = 0; i < layout.outputs.size(); ++i)
     graph.edges.push_back({graph.senses + layout.outputs[i], graph.senses + graph.neurons + i, graph.largest});
   return graph;
@@ -243,8 +259,9 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
     const float flow = share * std::tanh(value_of(now, edge.from));
     const float opacity = std::clamp(0.15f + 0.8f * std::abs(flow), 0.0f, 1.0f);
     list.AddLine(place(graph_.nodes[edge.from]), place(graph_.nodes[edge.to]),
-                 packed(render::color_at(render::Colormap::diverging, flow, -1, 1), opacity),
-                 (0.05f + 0.1f * std::abs(share)) * text);
+                 edge.gates ? ImGui::GetColorU32(ImGuiCol_TextDisabled, opacity)
+                            : packed(render::color_at(render::Colormap::diverging, flow, -1, 1), opacity),
+                 (edge.gates ? 0.08f : 0.05f + 0.1f * std::abs(share)) * text);
   }
   for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
     const ImVec2 at = place(graph_.nodes[i]);
@@ -263,8 +280,8 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
   if (near) {
     const Node& node = graph_.nodes[*near];
     const std::optional<std::size_t> neuron = neuron_of(*near);
-    ImGui::SetTooltip("%s: %.3g\nclick: plot it%s", node.name.c_str(), static_cast<double>(value_of(now, *near)),
-                      neuron ? "\nright-click: silence or hold it" : "");
+    ImGui::SetTooltip("%s: %.3g%s\nclick: plot it%s", node.name.c_str(), static_cast<double>(value_of(now, *near)),
+                      node.gates.c_str(), neuron ? "\nright-click: silence or hold it" : "");
     if (neuron && ImGui::IsMouseClicked(1)) {
       menu_of_ = *neuron;
       ImGui::OpenPopup("neuron");
@@ -272,7 +289,10 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
     if (clicked && !plotted_.erase(*near) && plotted_.size() < max_plotted) plotted_.insert(*near);
     if (clicked) log.write("brain", {{"node", node.name}, {"plotted", plotted_.size()}});
   }
-  note("senses on the left, layers, muscles on the right; blue is negative, red positive");
+  const bool has_gates = std::ranges::count(graph_.edges, true, &Edge::gates) > 0;
+  note(has_gates
+           ? "senses on the left, layers, muscles on the right; blue is negative, red positive, gray lines are gates"
+           : "senses on the left, layers, muscles on the right; blue is negative, red positive");
 }
 
 // Of the neuron that was right-clicked.

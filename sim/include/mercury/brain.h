@@ -5,12 +5,18 @@
 // layer after layer, and then sets the drives u of its actuators (mercury/shared_array.h), which stay until it thinks
 // again:
 //
-//   y  <-  y + alpha (act(W z + b) - y)          u = y of the output neurons, limited to [-1, 1]
+//   y  <-  k y + g act(W z + b)                  u = y of the output neurons, limited to [-1, 1]
+//   g = alpha, k = 1 - g                         so y moves to act(W z + b) by a share of alpha
 //
 // z is what a layer's inputs name: the senses, or the neurons of a layer. The neurons of one layer change at the same
 // time; a layer sees those before it as they are now, and itself and those after it as they were. So layers of alpha 1
 // are a perceptron, a layer that is its own input is a recurrent network, or with an alpha below 1 a continuous-time
 // one (Beer 1995: alpha = period / tau), and two such neurons an oscillator.
+//
+// The neurons of other layers may be g and k, neuron by neuron: the `gate` and the `keep` of a layer. So an LSTM
+// (Hochreiter and Schmidhuber 1997; Gers et al. 2000) is five layers: input, forget and output gates, which are
+// sigmoids of what the cell reads; the cell, with gate = input and keep = forget; and hidden = tanh(cell), with
+// gate = output and keep = 0.
 //
 // An input with a `rate` learns by Oja's rule (Oja 1982): after its layer has changed,
 //
@@ -140,6 +146,10 @@ struct NeuronLayer {
   std::vector<float> alpha{};  // of each neuron, or one for all; empty = 1
   std::vector<float> bias{};   // of each neuron; empty = 0
   std::vector<NeuronInput> inputs{};
+  std::string gate{};         // a layer of as many neurons, which are g in place of alpha; empty = alpha
+  std::vector<float> keep{};  // k of each neuron, or one for all; empty = 1 - g
+  std::string keep_layer{};   // a layer of as many neurons, which are k in place of `keep`
+  bool is_gated() const { return !gate.empty() || !keep.empty() || !keep_layer.empty(); }
   friend bool operator==(const NeuronLayer&, const NeuronLayer&) = default;
 };
 
