@@ -19,11 +19,11 @@ def body():
     return robot
 
 
-def model(path, nodes, constants, inputs=6, shape=None):
+def model(path, nodes, constants, inputs=6, shape=None, more=(), outputs=("y",)):
     graph = helper.make_graph(
-        nodes, "test", [helper.make_tensor_value_info("x", TensorProto.FLOAT, shape or [1, inputs])],
-        [helper.make_tensor_value_info("y", TensorProto.FLOAT, None)],
-        [numpy_helper.from_array(np.asarray(value, np.float32), name) for name, value in constants.items()])  # fmt: skip
+        nodes, "test", [helper.make_tensor_value_info("x", TensorProto.FLOAT, shape or [1, inputs]), *more],
+        [helper.make_tensor_value_info(name, TensorProto.FLOAT, None) for name in outputs],
+        [numpy_helper.from_array(np.asarray(value), name) for name, value in constants.items()])  # fmt: skip
     onnx.save(helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8), path)
     return path
 
@@ -64,6 +64,108 @@ def test_a_recurrent_layer_remembers_as_onnx_says(tmp_path):
     np.testing.assert_allclose(batch.brain.neurons[0], expected.reshape(15, count)[-1], atol=5e-6)
 
 
+CELLS = 4
+
+
+def policy_with_lstm(path, count, **attributes):
+    """Layers before and after an LSTM whose state is explicit."""
+    state = [helper.make_tensor_value_info(name, TensorProto.FLOAT, [1, 1, CELLS]) for name in "hc"]
+    return model(path, [
+        helper.make_node("Gemm", ["x", "w0", "b0"], ["s0"], transB=1), helper.make_node("Tanh", ["s0"], ["h0"]),
+        helper.make_node("Unsqueeze", ["h0", "axis"], ["i"]),
+        helper.make_node("LSTM", ["i", "w", "r", "b", "", "h", "c"], ["", "nh", "nc"], hidden_size=CELLS, **attributes),
+        helper.make_node("Squeeze", ["nh", "axis"], ["l"]), helper.make_node("Gemm", ["l", "w1"], ["y"], transB=1),
+    ], {"w0": numbers(5, 6), "b0": numbers(5), "w": numbers(1, 4 * CELLS, 5), "r": numbers(1, 4 * CELLS, CELLS),
+        "b": numbers(1, 8 * CELLS), "w1": 0.5 * numbers(count, CELLS), "axis": np.zeros(1, np.int64)},
+        more=state, outputs=("y", "nh", "nc"))  # fmt: skip
+
+
+def expect_the_same(batch, evaluator, names, state_names, thoughts=50):
+    """The drives of a robot are what a model with explicit state gives, thought after thought."""
+    state = dict.fromkeys(state_names, np.zeros((1, 1, CELLS), np.float32))
+    largest = 0
+    for _ in range(thoughts):
+        batch.step(20)
+        drives, *after = evaluator.run(None, {names: batch.brain.senses, **state})
+        state = dict(zip(state_names, after, strict=True))
+        np.testing.assert_allclose(np.asarray(batch.actuation.drive)[0], np.clip(drives[0], -1, 1), atol=5e-6)
+        largest = max(largest, abs(drives).max())
+    assert largest > 0.1
+
+
+def test_an_lstm_between_layers_does_what_onnx_says(tmp_path):
+    robot = body()
+    path = policy_with_lstm(tmp_path / "lstm.onnx", len(robot.actuators))
+    brain = brains.from_onnx(path)
+    assert [layer["neurons"] for layer in brain["layers"]] == [5, *[CELLS] * 5, len(robot.actuators)]
+    batch = mercurysim.Batch(robot.with_brain(brain, SENSORS), device="cpu")
+    expect_the_same(batch, ReferenceEvaluator(str(path)), "x", "hc")
+
+
+def test_an_lstm_reads_a_sequence_of_senses(tmp_path):
+    robot = body()
+    count = len(robot.actuators)
+    constants = {"w": numbers(1, 4 * count, 6), "r": 0.3 * numbers(1, 4 * count, count)}
+    path = model(tmp_path / "lstm.onnx", [helper.make_node("LSTM", ["x", "w", "r"], ["y"], hidden_size=count)],
+                 constants, shape=["steps", 1, 6])  # fmt: skip
+    batch = mercurysim.Batch(robot.with_brain(brains.from_onnx(path), SENSORS), device="cpu")
+    senses, drives = [], []
+    for _ in range(50):
+        batch.step(20)
+        senses.append(batch.brain.senses)
+        drives.append(np.array(batch.actuation.drive)[0])
+    expected = ReferenceEvaluator(str(path)).run(None, {"x": np.stack(senses)})[0]
+    np.testing.assert_allclose(np.stack(drives), expected.reshape(50, count), atol=5e-6)
+
+
+def test_an_lstm_is_written_and_read_again(tmp_path):
+    robot = body()
+    brain = brains.from_onnx(policy_with_lstm(tmp_path / "policy.onnx", len(robot.actuators)))
+    thinking = robot.with_brain(brain, SENSORS)
+    path = tmp_path / "brain.onnx"
+    brains.to_onnx(thinking.brain, 6, path)
+    written = onnx.load(path)
+    assert [node.op_type for node in written.graph.node].count("LSTM") == 1
+    states = [value.name for value in written.graph.input][1:]
+    assert states == ["layer 1 hidden", "layer 1 cell"]
+    batch = mercurysim.Batch(thinking, device="cpu")
+    expect_the_same(batch, ReferenceEvaluator(str(path)), "senses", states)
+    same = mercurysim.Batch(robot.with_brain(brains.from_onnx(path), SENSORS), device="cpu")
+    same.step(1000)
+    np.testing.assert_allclose(same.brain.neurons, batch.brain.neurons, atol=1e-6)
+
+
+def test_lstms_follow_one_another(tmp_path):
+    robot = body()
+    count = len(robot.actuators)
+    stacked = [
+        *brains.lstm(numbers(4 * CELLS, 6), numbers(4 * CELLS, CELLS), numbers(4 * CELLS), name="first"),
+        *brains.lstm(numbers(4 * CELLS, CELLS), numbers(4 * CELLS, CELLS), name="second", source="first"),
+        {"name": "motor", "neurons": count, "inputs": [{"from": "second", "weights": numbers(count, CELLS).tolist()}]},
+    ]
+    batch = mercurysim.Batch(robot.with_brain({"layers": stacked}, SENSORS), device="cpu")
+    brains.to_onnx(batch.robots[0].brain, 6, tmp_path / "stacked.onnx")
+    states = [f"{name} {part}" for name in ("first", "second") for part in ("hidden", "cell")]
+    expect_the_same(batch, ReferenceEvaluator(str(tmp_path / "stacked.onnx")), "senses", states)
+
+
+def test_an_lstm_does_what_pytorch_says():
+    torch = pytest.importorskip("torch")
+    robot = body()
+    count = len(robot.actuators)
+    torch.manual_seed(1)
+    net = torch.nn.LSTM(6, count)
+    bias = (net.bias_ih_l0 + net.bias_hh_l0).detach()
+    layers = brains.lstm(net.weight_ih_l0.detach(), net.weight_hh_l0.detach(), bias)
+    batch = mercurysim.Batch(robot.with_brain({"layers": layers}, SENSORS), device="cpu")
+    state = None
+    for _ in range(50):
+        batch.step(20)
+        with torch.no_grad():
+            drives, state = net(torch.from_numpy(batch.brain.senses), state)
+        np.testing.assert_allclose(np.asarray(batch.actuation.drive)[0], drives[0].numpy(), atol=5e-6)
+
+
 def test_a_brain_is_written_and_read_again(tmp_path):
     robot = body()
     brain = brains.perceptron([(numbers(8, 6), numbers(8)), (numbers(len(robot.actuators), 8), None)], output="tanh")
@@ -80,10 +182,9 @@ def test_a_brain_is_written_and_read_again(tmp_path):
 
 
 def test_what_is_no_brain_is_refused(tmp_path):
-    lstm = model(tmp_path / "lstm.onnx", [helper.make_node("LSTM", ["x", "w", "r"], ["y"], hidden_size=3)],
-                 {"w": numbers(1, 12, 6), "r": numbers(1, 12, 3)}, shape=["steps", 1, 6])  # fmt: skip
-    with pytest.raises(mercurysim.InputError, match=r"lstm.onnx: node 0 \(LSTM\): is no layer of a brain; there are Gemm"):
-        brains.from_onnx(lstm)
+    convolution = model(tmp_path / "conv.onnx", [helper.make_node("Conv", ["x", "w"], ["y"])], {"w": numbers(1, 1, 3)})
+    with pytest.raises(mercurysim.InputError, match=r"conv.onnx: node 0 \(Conv\): is no layer of a brain; there are Gemm"):
+        brains.from_onnx(convolution)
     (tmp_path / "text.onnx").write_text("no model at all")
     with pytest.raises(mercurysim.InputError, match="text.onnx: "):
         brains.from_onnx(tmp_path / "text.onnx")
@@ -92,3 +193,37 @@ def test_what_is_no_brain_is_refused(tmp_path):
     memory = {"layers": [{"name": "a", "neurons": 2, "alpha": 0.5, "inputs": [{"from": "senses", "weights": numbers(2, 3).tolist()}]}]}
     with pytest.raises(mercurysim.InputError, match="/brain/layers/0: ONNX takes layers in a row"):
         brains.to_onnx(memory, 3, tmp_path / "memory.onnx")
+    for gates in ({"gate": "a"}, {"keep": 0.5}):
+        layer = {"name": "a", "neurons": 2, "inputs": [{"from": "senses", "weights": numbers(2, 3).tolist()}], **gates}
+        with pytest.raises(mercurysim.InputError, match="/brain/layers/0: ONNX takes layers in a row"):
+            brains.to_onnx({"layers": [layer]}, 3, tmp_path / "gated.onnx")
+    with pytest.raises(mercurysim.InputError, match=r"lstm: weights must be \(4 cells, inputs\) and \(4 cells, cells\), not \(8, 3\) and \(9, 2\)"):
+        brains.lstm(numbers(8, 3), numbers(9, 2))
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    ({"inputs": ["x", "w", "r", "", "", "", "", "p"]}, "has peepholes"),
+    ({"inputs": ["x", "w", "r", "", "lengths"]}, "has sequence_lens"),
+    ({"inputs": ["x", "w", "r", "", "", "one"]}, "has a state at the start that is not 0"),
+    ({"direction": "reverse"}, "must run forward, with Sigmoid, Tanh, Tanh"),
+    ({"activations": ["Sigmoid", "Tanh", "Relu"]}, "must run forward, with Sigmoid, Tanh, Tanh"),
+    ({"clip": 3.0}, "has neither clip nor input_forget"),
+    ({"shape": [50, 1, 6]}, "give sequences and batches of 1"),
+    ({"shape": [1, 8, 6]}, "give sequences and batches of 1"),
+    ({"outputs": ["", "", "y"], "last": "Tanh"}, "must read what the node before it gives"),
+    ({"outputs": ["", "", "y"]}, "its output is not what its last layer gives"),
+])  # fmt: skip
+def test_other_lstms_are_refused_in_one_line(tmp_path, change, message):
+    given = {"inputs": ["x", "w", "r"], "outputs": ["y"], "shape": ["steps", 1, 6], **change}
+    last = given.pop("last", None)
+    shape, inputs, outputs = (given.pop(name) for name in ("shape", "inputs", "outputs"))
+    nodes = [helper.make_node("LSTM", inputs, outputs, hidden_size=3, **given)]
+    if last:
+        nodes.append(helper.make_node(last, ["y"], ["z"]))
+    constants = {"w": numbers(1, 12, 6), "r": numbers(1, 12, 3), "p": numbers(1, 9), "one": np.ones((1, 1, 3), np.float32),
+                 "lengths": np.ones(1, np.int32)}  # fmt: skip
+    path = model(tmp_path / "lstm.onnx", nodes, constants, shape=shape, outputs=("z" if last else "y",))
+    with pytest.raises(mercurysim.InputError) as error:
+        brains.from_onnx(path)
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
