@@ -111,6 +111,35 @@ def test_gates_are_part_of_a_robot(tmp_path):
     assert robot.brain_layout["neurons"][3 * count] == "lstm cell 0"
 
 
+def test_a_gru_is_four_layers():
+    """Cho et al. 2014, as PyTorch has it: h = (1 - z) n + z h, n = tanh(W s + b + r (R h + c))."""
+    robot = swimmer()
+    count, rng = len(robot.actuators), np.random.default_rng(4)
+    W, R, b = rng.normal(size=(3, count, 5)), 0.5 * rng.normal(size=(3, count, count)), rng.normal(size=(3, count))
+    c = rng.normal(size=count)
+
+    def gate(name, sign, k):
+        inputs = [{"from": source, "weights": (sign * array[k]).tolist()} for source, array in (("senses", W), ("h", R))]
+        return {"name": name, "neurons": count, "activation": "sigmoid", "bias": (sign * b[k]).tolist(), "inputs": inputs}
+
+    layers = [
+        gate("reset", 1, 0), gate("change", -1, 1),  # 1 - sigmoid(x) = sigmoid(-x)
+        {"name": "recall", "neurons": count, "activation": "linear", "gate": "reset", "keep": 0, "bias": c.tolist(),
+         "inputs": [{"from": "h", "weights": R[2].tolist()}]},
+        {"name": "h", "neurons": count, "gate": "change", "bias": b[2].tolist(),
+         "inputs": [{"from": "senses", "weights": W[2].tolist()}, {"from": "recall", "edges": [[i, i, 1] for i in range(count)]}]},
+    ]  # fmt: skip
+    batch = mercurysim.Batch(robot.with_brain({"layers": layers}), device="cpu")
+    h = np.zeros(count)
+    for _ in range(50):
+        batch.step(20)
+        s = batch.brain.senses[0].astype(float)
+        r, z = (1 / (1 + np.exp(-(W[k] @ s + R[k] @ h + b[k]))) for k in (0, 1))
+        h = (1 - z) * np.tanh(W[2] @ s + b[2] + r * (R[2] @ h + c)) + z * h
+        np.testing.assert_allclose(np.asarray(batch.actuation.drive)[0], h, atol=5e-6)
+    assert abs(h).max() > 0.1
+
+
 def test_arrays_are_the_brains_themselves(device):
     robots = [swimmer(i) for i in range(3)]
     batch, same = (mercurysim.Batch([robots[0]] * 3, device=device) for _ in range(2))
