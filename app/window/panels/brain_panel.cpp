@@ -34,7 +34,7 @@ class BrainPanel : public Panel {
     std::string name;
     ImVec2 at{0, 0};     // in the graph [0, 1]
     std::size_t column;  // of the graph
-    std::string gates;   // ", gate input 2, keep forget 2"
+    std::string gates;   // for its tooltip, "gate input 2, keep forget 2" in a line of their own
   };
   struct Edge {
     std::size_t from, to;
@@ -143,7 +143,8 @@ BrainPanel::Graph BrainPanel::graph_of(const Robot& robot) {
         const std::size_t within = copy * brain.layers[l].neurons + i, from = graph.senses + first[k] + within,
                           to = graph.senses + first[l] + within;
         graph.edges.push_back({from, to, graph.largest, true});
-        graph.nodes[to].gates += fmt::format(", {} {}", role, graph.nodes[from].name);
+        std::string& gates = graph.nodes[to].gates;
+        gates += fmt::format("{}{} {}", gates.empty() ? "\n" : ", ", role, graph.nodes[from].name);
       }
   };
   for (std::size_t l = 0; l < brain.layers.size(); ++l)
@@ -258,10 +259,15 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
     const float share = std::copysign(std::sqrt(std::abs(edge.weight / graph_.largest)), edge.weight);
     const float flow = share * std::tanh(value_of(now, edge.from));
     const float opacity = std::clamp(0.15f + 0.8f * std::abs(flow), 0.0f, 1.0f);
-    list.AddLine(place(graph_.nodes[edge.from]), place(graph_.nodes[edge.to]),
-                 edge.gates ? ImGui::GetColorU32(ImGuiCol_TextDisabled, opacity)
-                            : packed(render::color_at(render::Colormap::diverging, flow, -1, 1), opacity),
-                 (edge.gates ? 0.08f : 0.05f + 0.1f * std::abs(share)) * text);
+    const ImVec2 from = place(graph_.nodes[edge.from]), to = place(graph_.nodes[edge.to]);
+    if (edge.gates) {  // past the neurons between them, which stand at the same height
+      const float rise = std::min(0.5f * std::abs(to.x - from.x), 3 * text);
+      list.AddBezierQuadratic(from, {(from.x + to.x) / 2, (from.y + to.y) / 2 - rise}, to,
+                              ImGui::GetColorU32(ImGuiCol_TextDisabled, opacity), 0.1f * text);
+      continue;
+    }
+    list.AddLine(from, to, packed(render::color_at(render::Colormap::diverging, flow, -1, 1), opacity),
+                 (0.05f + 0.1f * std::abs(share)) * text);
   }
   for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
     const ImVec2 at = place(graph_.nodes[i]);
@@ -291,7 +297,7 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
   }
   const bool has_gates = std::ranges::count(graph_.edges, true, &Edge::gates) > 0;
   note(has_gates
-           ? "senses on the left, layers, muscles on the right; blue is negative, red positive, gray lines are gates"
+           ? "senses on the left, layers, muscles on the right; blue is negative, red positive, gray arcs are gates"
            : "senses on the left, layers, muscles on the right; blue is negative, red positive");
 }
 
