@@ -358,6 +358,22 @@ TEST(GrowingBrains, GrowAgainFromAFile) {
   EXPECT_THAT(names, testing::Contains("regrown 1"));
 }
 
+TEST(GrowingBrains, KeepGates) {
+  Robot robot = robot_with(2, 2);
+  NeuronLayer gate = robot.brain->layers.back();
+  gate.name = "gate";
+  gate.activation = Activation::sigmoid;
+  robot.brain->layers.insert(robot.brain->layers.begin(), gate);
+  robot.brain->layers.back().gate = "gate";
+  const BrainFrame frame(robot);
+  GrowingBrain genes = GrowingBrain::of(frame, *robot.brain);
+  for (std::uint64_t seed = 0; seed < 60; ++seed) genes = genes.mutated(frame, all_at_once, 1, seed);
+  robot.brain = genes.grown(frame);
+  EXPECT_NO_THROW(validate(robot));
+  EXPECT_GT(robot.brain->layers.size(), 2u);
+  EXPECT_EQ(robot.brain->layers.back().gate, "gate");
+}
+
 TEST(GrowingBrains, RefuseBrainsThatTheyCannotBe) {
   Robot robot = robot_with(1, 2);
   robot.brain->layers[0].inputs.push_back({.from = "senses", .weights = {1, 2, 3, 4}, .rate = 0.1f});
