@@ -212,8 +212,8 @@ void add_kind(const Command& family, const Choose& choose, const Generator& gene
   auto options = std::make_shared<Options>();
   const Command command = family.add_command(generator.kind, generator.help);
   options->shape.add_to(command, generator);
-  for (const Option& option : command.options())
-    if (option.group() == generator.title) option.on_first_screen();
+  for (const GeneratorParameter& parameter : generator.parameters)
+    if (!parameter.shared && !parameter.advanced) command.find_option(option_of(parameter.name))->on_first_screen();
   options->shared.add_to(command);
   command.set_footer(footer_of(generator));
   command.when_chosen([options, choose, &generator] {
