@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/bounded_number.h"
+#include "robots/mutation_step.h"
 
 #include <algorithm>
 #include <cmath>

@@ -14,7 +14,6 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
-#include "robots/bounded_number.h"
 #include "robots/mutation_step.h"
 #include "robots/parameter_table.h"
 
@@ -88,7 +87,7 @@ Genome moved(const Genome& genome, const ParameterTable<Genome>& table, double s
   return child;
 }
 
-// A value as a number without bounds, and the reverse (bounded_number.h). Its unit is a step of moved() with this size.
+// A value as a number without bounds, and the reverse (bounded()). Its unit is a step of moved() with this size.
 constexpr double usual_step = 0.02;
 inline double number_of(const GeneratorParameter& description, double value) {
   const double low = description.lowest, high = *description.highest;

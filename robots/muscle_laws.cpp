@@ -9,7 +9,6 @@
 
 #include "mercury/error.h"
 #include "mercury/random.h"
-#include "robots/bounded_number.h"
 #include "robots/mutation_step.h"
 
 namespace mercury {

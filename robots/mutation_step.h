@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// By how much mutations move numbers.
+// By how much mutations move numbers, and values within bounds as numbers without.
 //
 // Steps that adapt themselves are those of evolution strategies with one step per individual (Schwefel 1981; Beyer and
 // Schwefel 2002, section 4.2): a child inherits the step of its parent, a little larger or smaller, and is made with
@@ -33,5 +33,13 @@ double step_number(Random& random, int tail);
 // The value mirrored at the ends of the range until it is within: no value is preferred. low < high, the value is
 // finite.
 double reflected(double value, double low, double high);
+
+// The value within [low, high] of any finite number: the number itself, but for a twentieth of the range at both ends,
+// where a parabola meets the bound with slope 0; beyond, mirror images repeat. It is smooth, and no value is preferred
+// over a whole period (Hansen, "Boundary transformation" of c-cmaes). low < high.
+double bounded(double number, double low, double high);
+
+// The number nearest to the range that has this value: bounded()'s inverse. Values outside count as the bound.
+double unbounded(double value, double low, double high);
 
 }  // namespace mercury

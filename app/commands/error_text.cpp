@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/commands/error_text.h"
+#include "app/commands/program.h"
 
 #include <pthread.h>
 

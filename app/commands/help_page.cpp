@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/commands/help_page.h"
+#include "app/commands/command_list.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "app/commands/command_line.h"
+#include "app/commands/program.h"
 #include "mercury/generator.h"
 
 namespace mercury {

@@ -8,7 +8,6 @@
 #include <cctype>
 
 #include "app/base/version.h"
-#include "app/commands/help_page.h"
 
 namespace mercury {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/commands/rank_test.h"
+#include "app/commands/sweep.h"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "app/base/csv.h"
-#include "app/commands/rank_test.h"
 #include "evolution/run_folder/plot.h"
 #include "mercury/run_folder.h"
 #include "mercury/spread.h"

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,12 @@ Sweep read_sweep(const std::filesystem::path& folder);
 std::string sweep_csv(const Sweep& sweep);
 std::string sweep_plot(const Sweep& sweep);
 // A line per variant: its runs, the median and the quartiles of their last best scores, and how probable a difference
-// like that from the first variant is by chance (rank_test.h).
+// like that from the first variant is by chance (rank_test()).
 std::string sweep_table(const Sweep& sweep);
+
+// The test of Mann and Whitney (1947) of whether two samples come from one distribution: the probability of ranks at
+// least this uneven, to both sides, if they do. Exact for up to 20 values each without ties, else by the normal
+// distribution with corrections for ties and continuity. 1 if a sample is empty.
+double rank_test(std::span<const double> a, std::span<const double> b);
 
 }  // namespace mercury

@@ -14,9 +14,9 @@
 
 #include "mercury/error.h"
 #include "robots/file/document.h"
-#include "robots/importers/numpy_file.h"
+#include "robots/importers/calibration.h"
+#include "robots/importers/encodings.h"
 #include "robots/importers/report_builder.h"
-#include "robots/importers/scaling.h"
 
 namespace mercury {
 namespace {

@@ -21,8 +21,8 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "robots/importers/calibration.h"
 #include "robots/importers/report_builder.h"
-#include "robots/importers/scaling.h"
 #include "robots/importers/xml_document.h"
 
 namespace mercury {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/importers/numpy_file.h"
+#include "robots/importers/encodings.h"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/importers/scaling.h"
+#include "robots/importers/calibration.h"
 
 #include <algorithm>
 #include <array>

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "robots/importers/calibration.h"
 #include "robots/importers/report_builder.h"
-#include "robots/importers/scaling.h"
 #include "robots/importers/vxa_reader.h"
 
 namespace mercury {

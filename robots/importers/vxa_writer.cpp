@@ -15,9 +15,9 @@
 #include "mercury/import.h"
 #include "mercury/origin.h"
 #include "robots/file/whole_file.h"
+#include "robots/importers/calibration.h"
 #include "robots/importers/encodings.h"
 #include "robots/importers/report_builder.h"
-#include "robots/importers/scaling.h"
 #include "robots/importers/voxel_body.h"
 
 namespace mercury {

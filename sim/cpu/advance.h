@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Advances work batches.
+// Advances work batches, and measures bodies.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 
 #include "sim/cpu/grouping/work_batch.h"
 #include "sim/cpu/kernels/kernel.h"
+#include "sim/cpu/layout/body.h"
 
 namespace mercury::cpu {
 
@@ -17,5 +18,7 @@ std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& s
 
 // Brings all states back to the bodies.
 void store(std::span<WorkBatch> batches);
+
+Telemetry measure_state(const Body& body, const Configuration& configuration, const Clock& clock);
 
 }  // namespace mercury::cpu

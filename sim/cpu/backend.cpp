@@ -16,7 +16,6 @@
 #include "sim/cpu/advance.h"
 #include "sim/cpu/backend.h"
 #include "sim/cpu/grouping/cost_model.h"
-#include "sim/cpu/telemetry.h"
 
 namespace mercury {
 namespace {

@@ -10,7 +10,7 @@
 #include "mercury/error.h"
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
-#include "robots/bounded_number.h"
+#include "robots/mutation_step.h"
 #include "tests/refusal.h"
 
 namespace mercury {

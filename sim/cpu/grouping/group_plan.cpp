@@ -9,7 +9,6 @@
 #include "mercury/parallel.h"
 #include "mercury/work_counter.h"
 #include "sim/cpu/grouping/cost_model.h"
-#include "sim/cpu/grouping/merged_topology.h"
 #include "sim/cpu/grouping/partition.h"
 
 namespace mercury::cpu {

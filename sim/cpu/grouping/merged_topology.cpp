@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/cpu/grouping/merged_topology.h"
+#include "sim/cpu/grouping/group_plan.h"
 
 #include <algorithm>
 #include <tuple>

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/rank_test.h"
 #include "app/commands/sweep.h"
 #include "tests/app/program.h"
 
