@@ -121,6 +121,7 @@ std::optional<std::vector<Confirmation>> check_robots(
     finer.dt = configuration.dt / static_cast<double>(1 << k);
     EvaluationRequest request = trial_request(trials, finer, seed);
     if (uses_folding(objective)) request.folding = measure_all_folding;
+    request.upright = request.upright || uses_upright(objective);
     Evaluator evaluator(request, trial_source(robots, trials, seed), count * per_step);
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<Evaluation> of_robot;

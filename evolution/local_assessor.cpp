@@ -146,6 +146,7 @@ class LocalAssessor : public Assessor {
         request_(trial_request(settings, configuration, seed)) {
     request_.grows = true;
     if (std::ranges::any_of(objectives_, uses_folding)) request_.folding = measure_all_folding;
+    request_.upright = request_.upright || std::ranges::any_of(objectives_, uses_upright);
     if (!settings_.racing || request_.steps <= static_cast<std::int64_t>(racing_checks)) return;
     for (std::size_t check = 1; check <= racing_checks; ++check)
       request_.checks.push_back(request_.steps * static_cast<std::int64_t>(check) /

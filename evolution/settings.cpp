@@ -103,8 +103,10 @@ std::unique_ptr<Assessor> make_assessor(const EvolutionSettings& settings) {
   for (const std::string& formula : settings.objectives) objectives.emplace_back(formula);
   TrialSettings trials = settings.trials;
   for (const MapAxis& axis : settings.algorithm.axes)
-    if (const auto quantity = find_quantity(axis.quantity))
+    if (const auto quantity = find_quantity(axis.quantity)) {
       trials.folding = trials.folding || quantities()[*quantity].of_folding;
+      trials.upright = trials.upright || quantities()[*quantity].of_upright;
+    }
   return make_local_assessor(settings.configuration, trials, std::move(objectives), settings.seed);
 }
 

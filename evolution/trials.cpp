@@ -160,6 +160,7 @@ EvaluationRequest trial_request(const TrialSettings& settings, const Configurati
                             .steps = steps_in(settings.seconds) - settling,
                             .sample_every = std::max<std::int64_t>(1, steps_in(trial_sample_period)),
                             .folding = measured_folding(settings),
+                            .upright = settings.upright,
                             .hashes = true};
   const auto trials = static_cast<std::size_t>(settings.trials);
   if (begins_elsewhere(settings))

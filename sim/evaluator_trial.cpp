@@ -60,6 +60,7 @@ PortionTrial::PortionTrial(Simulation& simulation, const EvaluationRequest& requ
 bool PortionTrial::run() {
   if (simulation_.size() == 0) return true;
   simulation_.measure_folding(request_.folding);
+  simulation_.measure_upright(request_.upright);
   if (request_.start) place();
   if (request_.noise_seed && simulation_.has_brains())
     for (std::size_t i = 0; i < simulation_.size(); ++i)

@@ -27,11 +27,11 @@ class Measuring {
     return measured;
   }
 
-  Rotation frame(const PlaceMeasures& whole) const {
-    const Double3 rest = mean(robot_.masses, {}, true);
+  Rotation frame() const {
+    const Double3 rest = mean(robot_.masses, {}, true), center = mean(positions_, {}, true);
     double s[9] = {};
     for (std::size_t i = 0; i < positions_.size(); ++i) {
-      const Double3 X = mass(i) * (Double3(robot_.masses[i]) - rest), x = Double3(positions_[i]) - whole.center;
+      const Double3 X = mass(i) * (Double3(robot_.masses[i]) - rest), x = Double3(positions_[i]) - center;
       const double products[] = {X.x * x.x, X.x * x.y, X.x * x.z, X.y * x.x, X.y * x.y,
                                  X.y * x.z, X.z * x.x, X.z * x.y, X.z * x.z};
       for (std::size_t k = 0; k < 9; ++k) s[k] += products[k];
@@ -108,9 +108,13 @@ SensedBody measure_body(const Robot& robot, const BrainPlan& plan, std::span<con
   const Measuring measuring(robot, positions, velocities);
   for (std::size_t i = 0; i < plan.places.size(); ++i)
     measured.places.push_back(measuring.place(plan.places[i], i == 0, ground));
-  if (plan.uses_frame) measured.body.frame = measuring.frame(measured.places[0]);
+  if (plan.uses_frame) measured.body.frame = measuring.frame();
   if (plan.uses_turn_rate) measured.body.turn_rate = measuring.turn_rate(measured.places[0]);
   return measured;
+}
+
+Rotation body_frame(const Robot& robot, std::span<const Vec3> positions) {
+  return Measuring(robot, positions, {}).frame();
 }
 
 }  // namespace mercury

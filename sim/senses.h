@@ -19,4 +19,7 @@ struct SensedBody {
 SensedBody measure_body(const Robot& robot, const BrainPlan& plan, std::span<const Vec3> positions,
                         std::span<const Vec3> velocities, bool ground);
 
+// The rotation that brings the rest shape closest to these positions.
+Rotation body_frame(const Robot& robot, std::span<const Vec3> positions);
+
 }  // namespace mercury

@@ -381,7 +381,7 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
   // These may need the positions between samples.
-  if (measures_folding() || parts_->host_thinks() || parts_->pushes_within(steps)) {
+  if (measures_folding() || parts_->upright || parts_->host_thinks() || parts_->pushes_within(steps)) {
     for (std::size_t first = 0; first < samples.size(); first += size()) {
       step(every);
       std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));

@@ -39,6 +39,7 @@ struct Simulation::Parts {
   std::function<MeasuredFolding(const Robot&)> folding_of;     // none = of no robot
   // One per robot; nothing = not known yet, null = not measured.
   mutable std::vector<std::optional<std::shared_ptr<const BodyCells>>> cells;
+  bool upright = false;      // is measured
   double check_seconds = 0;  // LoadTimes::check
   std::vector<float> lifts;  // by which robots at rest stand higher; empty = not known
   SharedState shared_state;
@@ -66,9 +67,9 @@ struct Simulation::Parts {
   // Puts robots from this index on at rest, on the floor if there is one.
   void put_at_rest(std::size_t first);
 
-  // To telemetry of all robots, explosions included, if it is asked for.
   bool find_cells() const;  // returns whether the folding of any robot is measured
-  void add_folding(std::span<Telemetry> telemetry) const;
+  // To telemetry of all robots, explosions included, what positions say and somebody asks for.
+  void add_posture(std::span<Telemetry> telemetry) const;
   // Without the explosion.
   State state(std::size_t robot) const;
   // All materials of a robot as they are now. Ids that the robot does not have are air.

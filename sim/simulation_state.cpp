@@ -8,6 +8,7 @@
 #include "mercury/parallel.h"
 #include "mercury/simulation.h"
 #include "sim/physics/measures.h"
+#include "sim/senses.h"
 #include "sim/simulation_parts.h"
 
 namespace mercury {
@@ -151,7 +152,7 @@ std::vector<Telemetry> Simulation::telemetry() const {
   statuses.resize(all.size());
   parts_->backend->report(parts_->clock, all, statuses);
   for (std::size_t i = 0; i < all.size(); ++i) parts_->add_explosion(all[i], i, statuses[i]);
-  parts_->add_folding(all);
+  parts_->add_posture(all);
   return all;
 }
 
@@ -166,6 +167,9 @@ void Simulation::measure_folding(std::function<MeasuredFolding(const Robot&)> of
 
 bool Simulation::measures_folding() const { return parts_->find_cells(); }
 
+void Simulation::measure_upright(bool on) { parts_->upright = on; }
+bool Simulation::measures_upright() const { return parts_->upright; }
+
 bool Simulation::Parts::find_cells() const {
   if (!folding_of) return false;
   const auto is_repeated = [&](std::size_t i) { return i > 0 && robots[i] == robots[i - 1]; };
@@ -179,14 +183,19 @@ bool Simulation::Parts::find_cells() const {
   return std::ranges::any_of(cells, [](const auto& of_robot) { return *of_robot != nullptr; });
 }
 
-void Simulation::Parts::add_folding(std::span<Telemetry> telemetry) const {
-  if (telemetry.empty() || !find_cells()) return;
+void Simulation::Parts::add_posture(std::span<Telemetry> telemetry) const {
+  if (telemetry.empty()) return;
+  const bool folds = find_cells();
+  if (!folds && !upright) return;
   std::vector<Vec3> positions(offsets.back());
   backend->read_positions(positions);
   parallel_for(0, size(), [&](std::size_t i) {
-    const BodyCells* of_robot = cells[i]->get();
-    if (!of_robot || telemetry[i].exploded) return;
-    const Folding folding = of_robot->folding(std::span(positions).subspan(offsets[i], masses(i)));
+    if (telemetry[i].exploded) return;
+    const auto own = std::span<const Vec3>(positions).subspan(offsets[i], masses(i));
+    if (upright) telemetry[i].upright = static_cast<float>(body_frame(*robots[i], own).up());
+    const BodyCells* of_robot = folds ? cells[i]->get() : nullptr;
+    if (!of_robot) return;
+    const Folding folding = of_robot->folding(own);
     telemetry[i].inverted = folding.inverted;
     telemetry[i].overlap = folding.overlap;
   });

@@ -92,6 +92,9 @@ constexpr Column table[] = {
      figure_of<&RobotResult::inverted>},
     {{"overlap", "1", "largest share of the masses that were within other parts of the body; the same"},
      figure_of<&RobotResult::overlap>},
+    {{"upright", "1",
+      "cosine between the body's up axis and the vertical, mean over the time; measured with `--upright`"},
+     figure_of<&RobotResult::upright>},
     {{"reached", "1",
       "share of the trials in which the center of mass came within `--reach` of the target; of robots that sense it, "
       "and "
@@ -187,6 +190,7 @@ RobotResult result_of_trial(const Evaluation& evaluation, const EvaluationReques
   result.strained_share = evaluation.strained_share;
   result.inverted = evaluation.inverted;
   result.overlap = evaluation.overlap;
+  result.upright = evaluation.upright;
   if (has_target(*evaluation.robot, configuration.environment, settings))
     result.reached = quantity("reached", evaluation, configuration);
   return result;
@@ -201,7 +205,8 @@ void take_medians(RobotResult& result, std::span<const RobotResult> trials) {
   for (double RobotResult::*figure :
        {&RobotResult::distance, &RobotResult::mean_speed, &RobotResult::cruise_speed, &RobotResult::cruise_lengths,
         &RobotResult::work, &RobotResult::positive_work, &RobotResult::absolute_work, &RobotResult::highest,
-        &RobotResult::largest_strain, &RobotResult::strained_share, &RobotResult::inverted, &RobotResult::overlap})
+        &RobotResult::largest_strain, &RobotResult::strained_share, &RobotResult::inverted, &RobotResult::overlap,
+        &RobotResult::upright})
     result.*figure = median([&](const RobotResult& trial) { return trial.*figure; });
   for (Vec3 RobotResult::*place : {&RobotResult::start, &RobotResult::end})
     for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z})

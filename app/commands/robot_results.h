@@ -54,6 +54,7 @@ struct RobotResult {
   double largest_strain = none;                                    // over all samples [1]
   double strained_share = none;              // largest Telemetry::strained_share of all samples [1]
   double inverted = none, overlap = none;    // largest of Telemetry of all samples, if measured [1]
+  double upright = none;                     // mean of Telemetry::upright, if measured [1]
   double reached = none;                     // share of the trials that reached the target, of robots that may [1]
   double exploded_at = none;                 // [s], if it exploded
   std::uint32_t culprit_spring = no_spring;  // if it exploded

@@ -226,6 +226,8 @@ CheckpointNotes notes_of(const RunOptions& options, const Configuration& configu
   CheckpointNotes notes{.seconds = trials.seconds,
                         .settle = trials.settle,
                         .strain_limit = trials.strain_limit,
+                        .folding = trials.folding,
+                        .upright = trials.upright,
                         .seed = options.robots.seed()};
   for (const RobotIdentity& identity : identities) notes.robots.push_back(checkpoint_robot_of(identity));
   for (const RobotResult& robot : failed) notes.failed.push_back(checkpoint_robot_of(robot.identity, robot.failure));
@@ -335,9 +337,10 @@ int run_resumed(RunOptions options) {
   trials.seconds = options.simulation.seconds(checkpoint.notes.seconds);
   trials.settle = checkpoint.notes.settle;
   trials.strain_limit = checkpoint.notes.strain_limit;
-  trials.folding = trials.folding ||
-                   std::ranges::any_of(checkpoint.notes.measures,
+  trials.folding = checkpoint.notes.folding ||
+                   std::ranges::any_of(checkpoint.notes.measures,  // of earlier versions
                                        [](const TrialMeasures::Sums& sums) { return std::isfinite(sums.overlap); });
+  trials.upright = checkpoint.notes.upright;
   validate(trials);
   const double steps = std::round(trials.seconds / configuration.dt);
   if (!(steps <= 1e15) || steps < static_cast<double>(checkpoint.state.clock.step))

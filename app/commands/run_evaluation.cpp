@@ -120,6 +120,7 @@ RunReport measure(Simulation& simulation, std::vector<RobotIdentity> identities,
                   const StepObservers& observers, std::int64_t first, TrialProgress trial) {
   const EvaluationRequest request = trial_request(trials, simulation.configuration());
   simulation.measure_folding(request.folding);
+  simulation.measure_upright(request.upright);
   const std::int64_t start = first + request.settling, end = start + request.steps;
   Advance advance(simulation, observers, trial, end, request.sample_every);
   RunReport report{.settle = trials.settle,

@@ -44,7 +44,7 @@ std::string state_of(const RobotResult& robot) {
 }
 
 std::string row_of(const RobotResult& robot, const std::string& label, std::size_t width, bool has_quartiles,
-                   bool has_folding, bool has_target) {
+                   bool has_folding, bool has_upright, bool has_target) {
   const auto count = [&](std::size_t number) { return robot.was_stepped() ? fmt::to_string(number) : "-"; };
   const std::string quartiles =
       !has_quartiles ? ""
@@ -52,13 +52,14 @@ std::string row_of(const RobotResult& robot, const std::string& label, std::size
           ? fmt::format("{:>19}", fmt::format("{:.4f} to {:.4f}", robot.lower_quartile, robot.upper_quartile)) + "  "
           : fmt::format("{:>19}  ", "-");
   return fmt::format(
-      "{:>5}  {:<{}}  {:>6}  {:>7}  {}  {}{}  {}{}  {}  {}  {}  {}  {}{}{:<16}  {}\n", robot.identity.index, label,
+      "{:>5}  {:<{}}  {:>6}  {:>7}  {}  {}{}  {}{}  {}  {}  {}  {}  {}{}{}{:<16}  {}\n", robot.identity.index, label,
       width, count(robot.masses), count(robot.springs), figure(robot.distance, 12, 4), quartiles,
       figure(robot.mean_speed, 11, 4), figure(robot.cruise_speed, 12, 4), robot.steady == 0 ? "~" : " ",
       figure(robot.work, 9, 3), figure(robot.highest, 11, 3), figure(100 * robot.largest_strain, 10, 2),
       figure(100 * robot.strained_share, 8, 2),
       has_folding ? fmt::format("{}  {}  ", figure(100 * robot.inverted, 12, 2), figure(100 * robot.overlap, 11, 2))
                   : "",
+      has_upright ? figure(robot.upright, 7, 3) + "  " : "",
       has_target ? figure(100 * robot.reached, 11, 1) + "  " : "",
       robot.was_stepped() ? fmt::format("{:016x}", robot.hash) : "-", state_of(robot));
 }
@@ -85,6 +86,8 @@ std::string table_of(const RunReport& report) {
   const bool has_quartiles = report.trials > 1;
   const bool has_folding =
       std::ranges::any_of(report.robots, [](const RobotResult& robot) { return std::isfinite(robot.inverted); });
+  const bool has_upright =
+      std::ranges::any_of(report.robots, [](const RobotResult& robot) { return std::isfinite(robot.upright); });
   const bool has_target =
       std::ranges::any_of(report.robots, [](const RobotResult& robot) { return std::isfinite(robot.reached); });
   std::size_t width = 5;
@@ -100,13 +103,13 @@ std::string table_of(const RunReport& report) {
   if (has_quartiles) text += fmt::format(", medians of {} trials", report.trials);
   if (report.jitter > 0) text += fmt::format(", jitter {:g} of the shortest rest length", report.jitter);
   text += fmt::format(
-      "\n\n{:>5}  {:<{}}  {:>6}  {:>7}  {:>12}  {}{:>11}  {:>12}   {:>9}  {:>11}  {:>10}  {:>8}  {}{}{:<16}  {}\n",
+      "\n\n{:>5}  {:<{}}  {:>6}  {:>7}  {:>12}  {}{:>11}  {:>12}   {:>9}  {:>11}  {:>10}  {:>8}  {}{}{}{:<16}  {}\n",
       "index", "robot", width, "masses", "springs", "distance [m]",
       has_quartiles ? fmt::format("{:>19}  ", "quartiles [m]") : "", "speed [m/s]", "cruise [m/s]", "work [J]",
       "highest [m]", "strain [%]", "> 50 [%]", has_folding ? "inverted [%]  overlap [%]  " : "",
-      has_target ? "reached [%]  " : "", "hash", "state");
+      has_upright ? "upright  " : "", has_target ? "reached [%]  " : "", "hash", "state");
   for (std::size_t i = 0; i < labels.size(); ++i)
-    text += row_of(report.robots[i], labels[i], width, has_quartiles, has_folding, has_target);
+    text += row_of(report.robots[i], labels[i], width, has_quartiles, has_folding, has_upright, has_target);
   const std::size_t stepped = report.robots.size() - report.count(Fate::failed);
   text +=
       fmt::format("\n{} robot{}, {} springs, {:.3g} s of wall time, {} springs/s\n", stepped, stepped == 1 ? "" : "s",

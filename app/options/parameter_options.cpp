@@ -18,9 +18,9 @@ bool is_of_start(std::string_view name) {
 }
 // --seconds is an option of the simulation; what else is left out has no option.
 bool is_of_every_measurement(std::string_view name) {
-  constexpr std::string_view names[] = {"settle",        "trials",         "jitter",
-                                        "strain_limit",  "strained_limit", "inverted_limit",
-                                        "overlap_limit", "least_masses",   "folding"};
+  constexpr std::string_view names[] = {"settle",         "trials",         "jitter",        "strain_limit",
+                                        "strained_limit", "inverted_limit", "overlap_limit", "least_masses",
+                                        "folding",        "upright"};
   return is_of_start(name) || std::ranges::find(names, name) != std::end(names);
 }
 bool is_of_evolution(std::string_view name) {

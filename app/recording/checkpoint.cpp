@@ -147,6 +147,28 @@ void read_foldings(hid_t parent, std::span<TrialMeasures::Sums> measures) {
   }
 }
 
+// Of the robots of a run that measures it. Unlike folding, it needs the values at the start and at the last sample.
+void write_uprights(hid_t parent, std::span<const TrialMeasures::Sums> measures) {
+  if (std::ranges::all_of(measures, [](const auto& sums) { return std::isnan(sums.start.upright); })) return;
+  std::vector<double> numbers;
+  for (const TrialMeasures::Sums& sums : measures)
+    numbers.insert(numbers.end(), {static_cast<double>(sums.start.upright), static_cast<double>(sums.last.upright),
+                                   sums.upright, sums.upright_seconds});
+  write_dataset(parent, "uprights", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {measures.size(), 4}, numbers.data());
+}
+
+void read_uprights(hid_t parent, std::span<TrialMeasures::Sums> measures) {
+  if (!has_member(parent, "uprights")) return;
+  const auto rows = read_rows<std::array<double, 4>>(parent, "uprights", H5T_NATIVE_DOUBLE, {4});
+  if (rows.size() != measures.size()) throw Error("/checkpoint/uprights: it has another length than measures");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    measures[i].start.upright = float_of(rows[i][0]);
+    measures[i].last.upright = float_of(rows[i][1]);
+    measures[i].upright = rows[i][2];
+    measures[i].upright_seconds = rows[i][3];
+  }
+}
+
 // Earlier versions wrote none: they are unknown then.
 constexpr std::pair<const char*, double TrialMeasures::Sums::*> later_numbers[] = {
     {"positive_work", &TrialMeasures::Sums::positive_work}, {"nearest", &TrialMeasures::Sums::nearest}};
@@ -259,6 +281,8 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   write_attribute(group, "settle", notes.settle);
   write_attribute(group, "strain_limit", notes.strain_limit);
   write_attribute(group, "sampled", notes.sampled);
+  write_attribute(group, "folding", std::uint8_t{notes.folding});
+  write_attribute(group, "upright", std::uint8_t{notes.upright});
   write_robots(group, "robots", notes.robots);
   write_robots(group, "failed", notes.failed);
   std::vector<Row> rows;
@@ -266,6 +290,7 @@ void write_notes(hid_t file, const Simulation& simulation, const CheckpointNotes
   write_dataset(group, "measures", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {rows.size(), row_numbers}, rows.data());
   write_ways(group, notes.measures);
   write_foldings(group, notes.measures);
+  write_uprights(group, notes.measures);
   write_later_numbers(group, notes.measures);
   write_brain_states(group, simulation);
   if (!notes.recording) return;
@@ -284,16 +309,20 @@ void require(bool holds, const char* what) {
 }
 
 CheckpointNotes read_notes(hid_t group) {
-  CheckpointNotes notes{.seconds = read_attribute<double>(group, "seconds"),
-                        .settle = read_attribute<double>(group, "settle"),
-                        .strain_limit = read_attribute<double>(group, "strain_limit"),
-                        .sampled = read_attribute<std::int64_t>(group, "sampled"),
-                        .robots = read_robots(group, "robots"),
-                        .failed = read_robots(group, "failed")};
+  CheckpointNotes notes{
+      .seconds = read_attribute<double>(group, "seconds"),
+      .settle = read_attribute<double>(group, "settle"),
+      .strain_limit = read_attribute<double>(group, "strain_limit"),
+      .folding = has_attribute(group, "folding") && read_attribute<std::uint8_t>(group, "folding") != 0,
+      .upright = has_attribute(group, "upright") && read_attribute<std::uint8_t>(group, "upright") != 0,
+      .sampled = read_attribute<std::int64_t>(group, "sampled"),
+      .robots = read_robots(group, "robots"),
+      .failed = read_robots(group, "failed")};
   for (const Row& row : read_rows<Row>(group, "measures", H5T_NATIVE_DOUBLE, {row_numbers}))
     notes.measures.push_back(sums_from(row));
   read_ways(group, notes.measures);
   read_foldings(group, notes.measures);
+  read_uprights(group, notes.measures);
   read_later_numbers(group, notes.measures);
   if (!has_member(group, "recording")) return notes;
   const Handle recording = open_group(group, "recording");

@@ -40,6 +40,7 @@ struct CheckpointRecording {
 struct CheckpointNotes {
   double seconds = 0, settle = 0;             // of the whole run [s]
   double strain_limit = 0;                    // [1]
+  bool folding = false, upright = false;      // are measured: TrialSettings
   std::int64_t sampled = -1;                  // step of the last sample; -1 = nothing was measured yet
   std::vector<TrialMeasures::Sums> measures;  // of all samples so far, one per robot; none if nothing was measured yet
   std::vector<CheckpointRobot> robots;        // one per robot

@@ -170,6 +170,10 @@ bool uses_folding(const Objective& objective) {
   return std::ranges::any_of(objective.uses(), [](std::size_t q) { return quantities()[q].of_folding; });
 }
 
+bool uses_upright(const Objective& objective) {
+  return std::ranges::any_of(objective.uses(), [](std::size_t q) { return quantities()[q].of_upright; });
+}
+
 // In water that drags each mass in proportion to its velocity, the mean force on a body is proportional to its own mean
 // velocity, so it stays, or drifts with the flow, whatever its muscles do. Without water and ground, no force acts.
 std::string why_meaningless(const Objective& objective, const Environment& environment) {

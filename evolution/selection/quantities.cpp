@@ -104,7 +104,7 @@ double efficiency(const Trial& trial) {
 }
 
 // name, unit, help, of the body alone, usual range, value, whether it grows with how far the robot gets, whether
-// it needs EvaluationRequest::folding, whether it is a share of the trials
+// it needs EvaluationRequest::folding or upright, whether it is a share of the trials
 constexpr Quantity table[] = {
     {"distance", "m", "how far the center of mass went from start to end; on land along the ground", false, 0, 5,
      distance, true},
@@ -129,7 +129,7 @@ constexpr Quantity table[] = {
     {"target_nearest", "m", "least distance of the center of mass from the target; on land along the ground", false, 0,
      5, [](const Trial& trial) { return trial.evaluation.nearest; }},
     {"reached", "", "1 if target_nearest came within --reach, else 0; of several trials their share", false, 0, 1,
-     reached, false, false, true},
+     reached, false, false, false, true},
     {"height", "m", "how far the center of mass rose above its start", false, 0, 1, height},
     {"work", "J", "that the muscles did, less what they took back", false, 0, 100,
      [](const Trial& trial) { return trial.evaluation.work; }},
@@ -146,6 +146,8 @@ constexpr Quantity table[] = {
      0, 1, [](const Trial& trial) { return trial.evaluation.inverted; }, false, true},
     {"overlap", "", "largest share of the masses that were within other parts of the body; unknown as inverted", false,
      0, 1, [](const Trial& trial) { return trial.evaluation.overlap; }, false, true},
+    {"upright", "", "cosine between the body's up axis and the vertical, mean over the trial; unknown unless measured",
+     false, -1, 1, [](const Trial& trial) { return trial.evaluation.upright; }, false, false, true},
     {"seconds", "s", "time of the trial", false, 0, 10, seconds},
     {"body_lengths", "", "distance per length", false, 0, 5,
      [](const Trial& trial) { return ratio(distance(trial), length_at_rest(trial)); }, true},

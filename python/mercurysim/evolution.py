@@ -95,6 +95,7 @@ class Settings(TypedDict, total=False):
     turned: bool  # each trial starts turned about the vertical by a random angle
     noise_per_trial: bool  # senses have other noise in each trial but the first
     folding: bool
+    upright: bool
     racing: bool  # stop robots early that are clearly behind
     confirm: bool  # best/ waits for checks of champions, which `mercury evolve --resume` makes
     environment: Environment | str | None  # default: the one that the robots are made for

@@ -92,6 +92,7 @@ largest_strain       of a spring [1]
 strained_share       of the springs: those that are strained by more than half [1]
 inverted             share of the body that is inside out [1], NaN unless measure_folding is True
 overlap              share of the masses that are within other parts of the body [1], the same
+upright              cosine between the body's up axis and the vertical [1], NaN unless measure_upright is True
 exploded             whether the robot has left the finite and is frozen
 exploded_at          when [s], 0 unless exploded
 culprit_spring       index of the spring that is the cause, -1 if none is known)";
@@ -290,6 +291,13 @@ void bind_reports(nb::class_<Batch>& batch) {
           [](Batch& self, bool on) { self.change([&](Simulation& simulation) { simulation.measure_folding(on); }); },
           "Whether telemetry() measures how bodies are folded, inverted and overlap; it takes all positions from the "
           "device.")
+      .def_prop_rw(
+          "measure_upright",
+          [](const Batch& self) {
+            return self.use([](const Simulation& simulation) { return simulation.measures_upright(); });
+          },
+          [](Batch& self, bool on) { self.change([&](Simulation& simulation) { simulation.measure_upright(on); }); },
+          "Whether telemetry() measures how upright bodies are; it takes all positions from the device.")
       .def(
           "hash",
           [](const Batch& self, std::int64_t robot) {

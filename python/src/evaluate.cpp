@@ -70,6 +70,7 @@ Result is what it would be if its trial ended there. Where it returns False, it 
 are saved; results of others are the same bit for bit. With one trial per robot. Several threads call the function, in no
 particular order, so it has to depend on `so_far` alone.
 folding: whether results have `inverted` and `overlap`, which take all positions from the device.
+upright: whether results have `upright`, which takes them, too.
 hashes, states: whether results have the hash and the masses of the final state.
 memory_limit: of the host, for robots that are made and not yet returned [bytes]; None = a quarter of what is free.
 portion: how many robots are loaded together, at most; None = chosen. Results do not depend on it.
@@ -308,7 +309,7 @@ nb::object evaluate(nb::object source, double seconds, nb::handle environment, c
                     int trials, std::optional<double> jitter, double target_radius, double target_spread,
                     bool target_sphere, bool turned, double delay, double noise, double damage, std::uint64_t seed,
                     nb::handle drives, double drive_every, const std::vector<double>& checks, nb::handle goes_on,
-                    bool folding, bool hashes, bool states, std::optional<std::size_t> memory_limit,
+                    bool folding, bool upright, bool hashes, bool states, std::optional<std::size_t> memory_limit,
                     std::optional<std::size_t> portion) {
   const Configuration configuration = configuration_of(environment, solver, dt, damping, device, threads);
   validate(configuration);
@@ -320,6 +321,7 @@ nb::object evaluate(nb::object source, double seconds, nb::handle environment, c
   settings.settle = settle;
   settings.trials = trials;
   settings.folding = folding;
+  settings.upright = upright;
   settings.jitter = jitter.value_or(trials > 1 ? usual_jitter : 0);
   settings.target_radius = target_radius;
   settings.target_spread = target_spread;
@@ -376,8 +378,9 @@ void bind_evaluate(nb::module_& module) {
       nb::arg("target_spread") = 0.0, nb::arg("target_sphere") = false, nb::arg("turned") = false,
       nb::arg("delay") = 0.0, nb::arg("noise") = 0.0, nb::arg("damage") = 0.0, nb::arg("seed") = 1,
       nb::arg("drives") = nb::none(), nb::arg("drive_every") = 0.02, nb::arg("checks") = std::vector<double>(),
-      nb::arg("goes_on") = nb::none(), nb::arg("folding") = false, nb::arg("hashes") = false, nb::arg("states") = false,
-      nb::arg("memory_limit") = nb::none(), nb::arg("portion") = nb::none(),
+      nb::arg("goes_on") = nb::none(), nb::arg("folding") = false, nb::arg("upright") = false,
+      nb::arg("hashes") = false, nb::arg("states") = false, nb::arg("memory_limit") = nb::none(),
+      nb::arg("portion") = nb::none(),
       nb::sig("def evaluate(source: Robot | collections.abc.Iterable[Robot] | "
               "collections.abc.Callable[[int], Robot | None], seconds: float, *, "
               "environment: Environment | str | None = None, solver: str = 'force', dt: float = 0.001, "
@@ -389,7 +392,7 @@ void bind_evaluate(nb::module_& module) {
               "collections.abc.Callable[[int, Robot], numpy.typing.ArrayLike] | None = None, "
               "drive_every: float = 0.02, checks: collections.abc.Sequence[float] = (), "
               "goes_on: collections.abc.Callable[[Result], bool] | None = None, "
-              "folding: bool = False, hashes: bool = False, states: bool = False, "
+              "folding: bool = False, upright: bool = False, hashes: bool = False, states: bool = False, "
               "memory_limit: int | None = None, portion: int | None = None) -> Results"),
       evaluate_description);
   // What is open when the interpreter exits is closed while threads can still run.

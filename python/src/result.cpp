@@ -188,6 +188,9 @@ void bind_result(nb::module_& module) {
       .def_prop_ro("overlap", median_value(&Evaluation::overlap),
                    "Largest share of the masses that were within other parts of the body [1]; NaN unless "
                    "evaluate(folding=True).")
+      .def_prop_ro("upright", median_value(&Evaluation::upright),
+                   "Cosine between the body's up axis and the vertical, mean over the trial [1]; NaN unless "
+                   "evaluate(upright=True).")
       .def_prop_ro("exploded", &has_exploded, "Whether the robot left the finite in a trial and was frozen.")
       .def_prop_ro(
           "quantities", &all_quantities, nb::sig("def quantities(self) -> dict[str, float]"),

@@ -12,7 +12,7 @@ namespace {
 struct Row {
   float center_of_mass[3], velocity[3];
   double kinetic_energy, elastic_energy, muscle_power;
-  float largest_strain, strained_share, inverted, overlap;
+  float largest_strain, strained_share, inverted, overlap, upright;
   double exploded_at;
   std::int64_t culprit_spring;
   bool exploded;
@@ -34,6 +34,7 @@ constexpr Field fields[] = {
     {"strained_share", "f4", offsetof(Row, strained_share)},
     {"inverted", "f4", offsetof(Row, inverted)},
     {"overlap", "f4", offsetof(Row, overlap)},
+    {"upright", "f4", offsetof(Row, upright)},
     {"exploded", "?", offsetof(Row, exploded)},
     {"exploded_at", "f8", offsetof(Row, exploded_at)},
     {"culprit_spring", "i8", offsetof(Row, culprit_spring)},
@@ -51,6 +52,7 @@ Row row_of(const Telemetry& from) {
   row.strained_share = from.strained_share;
   row.inverted = from.inverted;
   row.overlap = from.overlap;
+  row.upright = from.upright;
   row.exploded = from.exploded;
   row.exploded_at = from.exploded ? from.exploded_at : 0;
   row.culprit_spring = from.culprit_spring == no_spring ? -1 : static_cast<std::int64_t>(from.culprit_spring);

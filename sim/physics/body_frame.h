@@ -21,6 +21,8 @@ struct Rotation {
     return {r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
             r[2] * v.x + r[5] * v.y + r[8] * v.z};
   }
+  // The cosine of the angle between the body's z axis and the world's.
+  MERCURY_HOST_DEVICE double up() const { return r[8]; }
 };
 
 struct Quaternion {

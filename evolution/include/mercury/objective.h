@@ -38,6 +38,8 @@ class Objective {
 
 // Whether it names a quantity that only EvaluationRequest::folding measures.
 bool uses_folding(const Objective& objective);
+// The same of EvaluationRequest::upright.
+bool uses_upright(const Objective& objective);
 
 // Why an objective means nothing in an environment: it grows with how far a robot gets, and none can move itself there.
 // Empty if it means something. Runs of earlier versions may have such objectives.

@@ -34,6 +34,7 @@ struct Quantity {
   double (*value)(const Trial& trial) = nullptr;
   bool of_travel = false;   // it grows with how far the robot gets, so it means nothing where no robot can move itself
   bool of_folding = false;  // NaN unless EvaluationRequest::folding
+  bool of_upright = false;  // NaN unless EvaluationRequest::upright
   bool is_share = false;    // 0 or 1 in a trial; of several trials, the mean is reported
 };
 

@@ -48,6 +48,7 @@ struct TrialSettings {
   bool turned = false;           // each trial starts turned about the vertical by a random angle
   bool noise_per_trial = false;  // senses have other noise in each trial but the first
   bool folding = false;          // measure `inverted` and `overlap`, also where no limit asks for them
+  bool upright = false;          // measure `upright`, also where no objective asks for it
   bool racing = false;           // stop robots that are clearly behind
   friend bool operator==(const TrialSettings&, const TrialSettings&) = default;
 
@@ -99,6 +100,7 @@ struct TrialSettings {
       Parameter("noise_per_trial", &TrialSettings::noise_per_trial, "Give senses other noise in each trial"),
       Parameter("folding", &TrialSettings::folding,
                 "Measure how the body is folded, inverted and overlap, as these two limits do"),
+      Parameter("upright", &TrialSettings::upright, "Measure how upright the body is, as an objective of it does"),
       Parameter("racing", &TrialSettings::racing, "Stop robots early that are clearly behind")};
 };
 

@@ -60,6 +60,7 @@ struct EvaluationRequest {
   std::function<std::uint64_t(std::size_t index)> noise_seed;
   // Which of `inverted` and `overlap` the telemetry of a robot has: Simulation::measure_folding(). None = of no robot.
   std::function<MeasuredFolding(const Robot&)> folding;
+  bool upright = false;  // the telemetry has `upright`: Simulation::measure_upright()
   // Drives of the actuators, as Simulation::hold_drives() takes them. Every `drive_every` steps, the steps before the
   // start included, drive() writes those of a robot for the next ones: one per actuator of actuators_of(robot), in [-1,
   // 1]; NaN = the actuator goes on by itself. `period` counts from 0. Several threads call it at the same time. It
@@ -115,7 +116,9 @@ struct Evaluation {
   double inverted =
       std::numeric_limits<double>::quiet_NaN();  // largest Telemetry::inverted of all samples [1]; NaN = not measured
   double overlap = std::numeric_limits<double>::quiet_NaN();  // the same of Telemetry::overlap
-  double third = 0;                                           // of the time of the trial [s]
+  // Mean of Telemetry::upright over the trial, or until it exploded [1]; NaN = not measured.
+  double upright = std::numeric_limits<double>::quiet_NaN();
+  double third = 0;  // of the time of the trial [s]
   // Center of mass after a third and after two thirds of that time, between samples; NaN if it is unknown [m].
   Vec3 at_third, at_two_thirds;
   std::uint64_t hash = 0;  // Simulation::hash() of the final state, if requested

@@ -210,6 +210,9 @@ class Simulation {
   void measure_folding(bool on);
   void measure_folding(std::function<MeasuredFolding(const Robot&)> of);
   bool measures_folding() const;  // of any robot
+  // The same of Telemetry::upright, of all robots.
+  void measure_upright(bool on);
+  bool measures_upright() const;
   // FNV-1a over the bytes of all positions, then all velocities. Equal hashes mean equal states, bit for bit.
   std::uint64_t hash(std::size_t robot) const;
   // Of all robots, on all cores.

@@ -22,6 +22,9 @@ struct Telemetry {
   float strained_share = 0;   // of the springs: those of a strain above strained_limit [1]
   // How the body is folded (folding.h) [1]; NaN unless Simulation::measure_folding(), and for an exploded robot.
   float inverted = std::numeric_limits<float>::quiet_NaN(), overlap = std::numeric_limits<float>::quiet_NaN();
+  // The cosine of the angle between the body's up axis, by its frame (brain.h), and the vertical [1]: 1 = as in its
+  // file, 0 = on its side, -1 = upside down; NaN unless Simulation::measure_upright(), and for an exploded robot.
+  float upright = std::numeric_limits<float>::quiet_NaN();
   bool exploded = false;                     // the robot is frozen, see State
   double exploded_at = 0;                    // when the step began that failed [s], if exploded
   std::uint32_t culprit_spring = no_spring;  // index in Robot::springs, if exploded and a spring is known as the cause

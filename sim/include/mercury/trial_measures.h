@@ -23,7 +23,8 @@ class TrialMeasures {
     double path = 0, work = 0, positive_work = 0, highest = 0, largest_strain = 0, strained_share = 0;
     double inverted = std::numeric_limits<double>::quiet_NaN(), overlap = inverted;  // NaN = not measured
     double nearest = inverted;                                                       // to the target; NaN = unknown
-    double elapsed = 0;  // from the start to the last sample [s]
+    double upright = 0, upright_seconds = 0;  // its integral over the time while it was measured [s], [s]
+    double elapsed = 0;                       // from the start to the last sample [s]
     // The way of the center of mass: its places at every stride-th sample, from the start; samples are `period` [s]
     // apart. Without places the way is unknown.
     double period = 0;
@@ -62,6 +63,10 @@ class TrialMeasures {
     sums_.inverted = std::fmax(sums_.inverted, static_cast<double>(now.inverted));
     sums_.overlap = std::fmax(sums_.overlap, static_cast<double>(now.overlap));
     sums_.nearest = std::min(sums_.nearest, distance_between(now.center_of_mass, environment_.target, environment_));
+    if (!std::isnan(sums_.last.upright + now.upright)) {
+      sums_.upright += seconds * 0.5 * (static_cast<double>(sums_.last.upright) + static_cast<double>(now.upright));
+      sums_.upright_seconds += seconds;
+    }
     sums_.last = now;
     sums_.elapsed += seconds;
     note(now.center_of_mass, seconds);
@@ -80,6 +85,8 @@ class TrialMeasures {
     result.inverted = sums_.inverted;
     result.overlap = sums_.overlap;
     result.nearest = sums_.nearest;
+    result.upright =
+        sums_.upright_seconds > 0 ? sums_.upright / sums_.upright_seconds : static_cast<double>(sums_.start.upright);
     result.third = sums_.elapsed / 3;
     result.at_third = place_at(sums_.elapsed / 3);
     result.at_two_thirds = place_at(2 * sums_.elapsed / 3);

@@ -87,7 +87,7 @@ TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
 // The start around a target and the push are those of the run that was killed; how near it came is kept.
 TEST_F(Checkpoint, ATargetAndAPushArePartOfTheRun) {
   const Arguments more{"--target-radius", "0.3",         "--target-spread", "0.9", "--turned", "--reach", "0.1",
-                       "--push",          "0.3,0.1,0.2", "--push-at",       "0.6"};
+                       "--push",          "0.3,0.1,0.2", "--push-at",       "0.6", "--upright"};
   const json whole = robots_of(mercury(run_ + more));
   EXPECT_NE(whole, robots_of(mercury(run_)));
   for (const json& robot : whole) EXPECT_TRUE(robot["reached"] == 0 || robot["reached"] == 1) << robot["reached"];

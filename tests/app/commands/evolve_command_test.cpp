@@ -381,6 +381,15 @@ TEST_F(EvolveCommand, FoldingIsMeasuredWhereAnObjectiveOrAxisNamesIt) {
     EXPECT_TRUE(std::isnan(one.assessment.values[find_quantity("inverted").value()]));
 }
 
+TEST_F(EvolveCommand, UprightIsMeasuredWhereAnObjectiveOrAxisNamesIt) {
+  for (const Arguments& asks : {Arguments{"--objective", "distance * upright"},
+                                Arguments{"--algorithm", "map-elites", "--axis", "upright:-1:1:4"}}) {
+    ASSERT_EQ(evolve("stands", joined(small("1"), joined(asks, {"--force"}))).status, 0);
+    for (const Individual& one : RunHistory(path("stands")).individuals())
+      EXPECT_TRUE(std::isfinite(one.assessment.values[find_quantity("upright").value()]));
+  }
+}
+
 // A search among the muscles of a robot file: in one go, in two parts, and in shards.
 TEST_F(EvolveCommand, TrialsAroundATargetGoOnBitForBitAndAreThereAgainInRun) {
   const auto run = [&](const char* folder, const char* generations) {

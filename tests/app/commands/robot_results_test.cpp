@@ -60,7 +60,7 @@ RobotResult walker(double distance) {
 
 TEST(RobotResults, ValuesThatMeanNothingAreEmptyOrNull) {
   EXPECT_EQ(csv_line(walker(0.1)),
-            "3,\"a,\"\"b\"\"\",x.json,,sound,,2,1,paper,0.1,1,,,,,,,,,,,,,,,,,,,,,,false,,,0000000000000abc\n");
+            "3,\"a,\"\"b\"\"\",x.json,,sound,,2,1,paper,0.1,1,,,,,,,,,,,,,,,,,,,,,,,false,,,0000000000000abc\n");
   const auto json = json_of(walker(0.1));
   EXPECT_EQ(json["distance"], 0.1);
   EXPECT_EQ(json["exploded"], false);

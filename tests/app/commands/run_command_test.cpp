@@ -85,6 +85,20 @@ TEST_F(RunCommand, FoldingIsMeasuredWhereItIsAskedFor) {
   }
 }
 
+TEST_F(RunCommand, UprightIsMeasuredWhereItIsAskedFor) {
+  const std::vector<std::string> plain{"--random", "voxel:2", "--seconds", "0.2"};
+  const json without = run_json(plain);
+  std::vector<std::string> arguments = plain;
+  arguments.push_back("--upright");
+  const json with = run_json(arguments);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_TRUE(without["robots"][i]["upright"].is_null());
+    EXPECT_GT(with["robots"][i]["upright"], 0.9) << "in water, without time to turn";
+    EXPECT_LT(with["robots"][i]["upright"], 1.000001);
+    EXPECT_EQ(with["robots"][i]["hash"], without["robots"][i]["hash"]);
+  }
+}
+
 // The usual limits ask for it, and others need not.
 TEST_F(RunCommand, FoldingOfRealBodiesIsMeasured) {
   const std::vector<std::string> real{"--random", "voxel:2", "--physics", "real", "--seconds", "0.2"};

@@ -36,7 +36,8 @@ class OneTrial : public testing::Test {
                         .largest_strain = 0.25,
                         .strained_share = 0.125,
                         .inverted = 0.0625,
-                        .overlap = 0.5};
+                        .overlap = 0.5,
+                        .upright = -0.75};
 };
 
 TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
@@ -52,6 +53,7 @@ TEST_F(OneTrial, MovementIsThatOfTheCenterOfMass) {
   EXPECT_DOUBLE_EQ(value("strained_share"), 0.125);
   EXPECT_DOUBLE_EQ(value("inverted"), 0.0625);
   EXPECT_DOUBLE_EQ(value("overlap"), 0.5);
+  EXPECT_DOUBLE_EQ(value("upright"), -0.75);
   EXPECT_DOUBLE_EQ(value("work"), 52);
   EXPECT_DOUBLE_EQ(value("positive_work"), 65);
   EXPECT_DOUBLE_EQ(value("absolute_work"), 65 + 13);  // what the muscles took back is 65 - 52
