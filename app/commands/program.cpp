@@ -178,6 +178,8 @@ class Program {
     if (!scene_->attached().empty() && !command.find_option("--attach"))
       warn(fmt::format("{}: pins and attached springs are left out; only mercury view has them",
                        scene_->path().string()));
+    if (!scene_->driven().empty() && !command.find_option("--drive"))
+      warn(fmt::format("{}: drives by hand are left out; only mercury view has them", scene_->path().string()));
     scene_options_ = scene_->arguments(command, arguments);
     const auto place = arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(places.front()));
     arguments.insert(place, scene_->robots().begin(), scene_->robots().end());

@@ -65,6 +65,7 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.view = options.view.settings(Layout::cells);
   if (result.view.background) throw InputError("--background", "is of a still; mercury render draws figures");
   result.attached = options.attachments.attached();
+  result.driven = options.attachments.driven();
   return result;
 }
 

@@ -238,6 +238,7 @@ void append_attachments(const SceneDocument& document, CommandText& command) {
   std::stable_partition(named.robots.begin(), named.robots.end(),
                         [](const auto& robot) { return !robot.source.file.empty(); });
   for (const AttachedMass& one : attached_in(named)) command.text += " --attach=" + text_of(one);
+  for (const DrivenActuator& one : driven_in(named)) command.text += " --drive=" + shell_quoted(text_of(one));
 }
 
 }  // namespace
@@ -250,7 +251,7 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
       command.notes.push_back(name + " is in no file; save it first");
     else if (robot.body.materials)
       command.notes.push_back(name + ": the changed materials are not in the command; save it first");
-    if (robot.body.by_hand)
+    if (robot.body.by_hand && (subcommand != "view" || !held_neurons(robot.body).empty()))
       command.notes.push_back(name + ": the muscles and neurons that are held by hand are not in the command");
     if (robot.source.file.empty()) continue;
     const std::string& file = robot.source.file;

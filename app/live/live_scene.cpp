@@ -58,7 +58,9 @@ void LiveScene::frame(float aspect) {
   parts.selection.keep(parts.document);
   const std::optional<LivePerturbation>& pull = parts.pulls.by_mouse();
   if (pull && !parts.document.find(pull->robot)) end_perturbation();
-  parts.pulls.attach_opened(parts.background.work().empty(), parts.messages);
+  const bool complete = parts.background.work().empty();
+  if (parts.drive_opened(complete)) parts.apply_document();
+  parts.pulls.attach_opened(complete, parts.messages);
   parts.pulls.update(*parts.snapshot);
   parts.update_ghosts();
   ViewSettings shown = parts.view;

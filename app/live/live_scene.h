@@ -199,7 +199,7 @@ class LiveScene {
   bool scale_materials(const std::vector<RobotId>& robots, const MaterialScale& scale);
   void reset_materials(const std::vector<RobotId>& robots);  // to those of the robot's file
   // Drives the actuators of this name by hand, in place of their sines and brains: u in [-1, 1]; none = releases them.
-  // Like the materials, drives belong to undo and the timeline; no file keeps them.
+  // Like the materials, drives belong to undo and the timeline; scene files keep them.
   void drive_actuator(const std::vector<RobotId>& robots, const std::string& actuator, std::optional<float> drive);
   void release_actuators(const std::vector<RobotId>& robots);
   // The neuron of its brain has this value whatever it reads (0 silences it), none = it thinks again; kept as drives
@@ -233,6 +233,8 @@ class LiveScene {
   std::vector<PerturbationDetails> attachments() const;
   // Attaches these as soon as the robots that are being opened or made are there; no edit of its own.
   void attach_opened(std::vector<AttachedMass> attached);
+  // The same with actuators that are driven by hand.
+  void drive_opened(std::vector<DrivenActuator> driven);
 
   // Comparison (comparison.h). The second side shows the same robots under other settings, from the moment shown on;
   // all that changes robots or time acts on both. nullopt ends it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "app/live/live_scene_parts.h"
 #include "mercury/brain.h"
@@ -276,6 +277,35 @@ void LiveScene::drive_actuator(const std::vector<RobotId>& robots, const std::st
                           return hold(robot.body, &ByHand::drives, actuators.size(),
                                       static_cast<std::size_t>(found - actuators.begin()), drive);
                         });
+}
+
+void LiveScene::drive_opened(std::vector<DrivenActuator> driven) { parts_->to_drive = std::move(driven); }
+
+bool LiveScene::Parts::drive_opened(bool complete) {
+  if (to_drive.empty()) return false;
+  bool changed = false;
+  for (const DrivenActuator& one : std::exchange(to_drive, {})) {
+    if (one.robot >= document.robots.size()) {
+      if (!complete)
+        to_drive.push_back(one);
+      else
+        report(Severity::warning, fmt::format("drive {}: robot {} is out of range, the scene has {}", text_of(one),
+                                              one.robot, robot_count_text(document.robots.size())));
+      continue;
+    }
+    LiveRobot& body = document.robots[one.robot].body;
+    const std::vector<Actuator> actuators = actuators_of(*body.robot);
+    const auto found = std::ranges::find(actuators, one.actuator, &Actuator::name);
+    if (found == actuators.end()) {
+      report(Severity::warning,
+             fmt::format("drive {}: {} has no actuator \"{}\"", text_of(one), body.name, one.actuator));
+      continue;
+    }
+    changed =
+        hold(body, &ByHand::drives, actuators.size(), static_cast<std::size_t>(found - actuators.begin()), one.drive) ||
+        changed;
+  }
+  return changed;
 }
 
 void LiveScene::release_actuators(const std::vector<RobotId>& robots) {

@@ -258,6 +258,7 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
         parts.open_scene(*opened->scene, pointers_to(opened->robots));
         for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
         parts.pulls.attach_later(opened->scene->attached());
+        parts.to_drive = opened->scene->driven();
         parts.apply_document();
         for (const RandomRobots& random : opened->scene->random()) generate(random);
         return;

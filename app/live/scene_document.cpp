@@ -2,6 +2,7 @@
 #include "app/live/scene_document.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -21,6 +22,18 @@ std::vector<AttachedMass> attached_in(const SceneDocument& document) {
     one.robot = static_cast<std::size_t>(robot - document.robots.begin());
     one.mass = spring.mass;
     if (spring.kind == LivePerturbation::Kind::spring) one.spring = {spring.target, spring.stiffness};
+  }
+  return all;
+}
+
+std::vector<DrivenActuator> driven_in(const SceneDocument& document) {
+  std::vector<DrivenActuator> all;
+  for (std::size_t i = 0; i < document.robots.size(); ++i) {
+    const LiveRobot& body = document.robots[i].body;
+    if (!body.by_hand) continue;
+    const std::vector<Actuator> actuators = actuators_of(*body.robot);
+    for (std::size_t a = 0; a < std::min(actuators.size(), body.by_hand->drives.size()); ++a)
+      if (const float drive = body.by_hand->drives[a]; !std::isnan(drive)) all.push_back({i, actuators[a].name, drive});
   }
   return all;
 }

@@ -53,6 +53,9 @@ struct SceneDocument {
 // The attachments as options and scenes have them.
 std::vector<AttachedMass> attached_in(const SceneDocument& document);
 
+// The drives by hand, the same.
+std::vector<DrivenActuator> driven_in(const SceneDocument& document);
+
 // The robot with its name and materials in the window, as it is saved.
 Robot whole_robot(const LiveRobot& robot);
 inline Robot whole_robot(const DocumentRobot& robot) { return whole_robot(robot.body); }

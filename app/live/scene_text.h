@@ -23,14 +23,14 @@ struct SceneRobot {
 // What is to be written for a scene: the scene file last, and before it a file for each robot that is in no other.
 // Those are robots that only the window has, random ones before robots of files (a scene names files first), and random
 // ones of a kind whose options differ from those of the first. `beside` are the indices of those robots, in the order
-// of their files. `attached`: pins and springs, by the robots' places in `robots`. Throws InputError for a robot or a
-// name that cannot be written.
+// of their files. `attached` and `driven`: pins and springs, and drives by hand, by the robots' places in `robots`.
+// Throws InputError for a robot or a name that cannot be written.
 struct SceneFiles {
   std::vector<FileToSave> files;
   std::vector<std::size_t> beside;
 };
 SceneFiles scene_files(const std::filesystem::path& path, const std::vector<SceneRobot>& robots,
                        const Configuration& configuration, const ViewSettings& view,
-                       const std::vector<AttachedMass>& attached = {});
+                       const std::vector<AttachedMass>& attached = {}, const std::vector<DrivenActuator>& driven = {});
 
 }  // namespace mercury

@@ -12,6 +12,7 @@ namespace mercury {
 namespace {
 
 constexpr const char* form = "ROBOT:MASS[:X,Y,Z:STIFFNESS]";
+constexpr const char* drive_form = "ROBOT:ACTUATOR:U";
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text) {
   throw InputError(option, fmt::format("\"{}\" is not accepted; give {}, as in 0:12 for a pin, or 0:12:0,0.5,1:40 for "
@@ -50,6 +51,30 @@ AttachedMass attached_mass_from(const std::string& option, const std::string& te
   return attached;
 }
 
+std::string text_of(const DrivenActuator& driven) {
+  return fmt::format("{}:{}:{}", driven.robot, driven.actuator, driven.drive);
+}
+
+DrivenActuator driven_actuator_from(const std::string& option, const std::string& text) {
+  const auto refuse = [&] {
+    throw InputError(option, fmt::format("\"{}\" is not accepted; give {}, as in 0:tail:0.5 for the actuator tail of "
+                                         "robot 0 and a drive from -1 to 1",
+                                         text, drive_form));
+  };
+  const std::size_t first = text.find(':'), last = text.rfind(':');
+  if (first == std::string::npos || last <= first + 1) refuse();
+  DrivenActuator driven;
+  try {
+    driven.robot = number_from<std::uint64_t>(option, std::string_view(text).substr(0, first));
+    driven.drive = number_from<float>(option, std::string_view(text).substr(last + 1));
+  } catch (const InputError&) {
+    refuse();
+  }
+  driven.actuator = text.substr(first + 1, last - first - 1);
+  if (!(driven.drive >= -1 && driven.drive <= 1)) refuse();
+  return driven;
+}
+
 void AttachmentOptions::add_to(const Command& command) {
   command
       .add_list("--attach", texts_,
@@ -57,6 +82,19 @@ void AttachmentOptions::add_to(const Command& command) {
       .one_value_each()
       .with_form(form)
       .in_group("Robots");
+  command
+      .add_list("--drive", drives_,
+                "Drive an actuator of a robot by hand, -1 (shortest) to 1 (longest), as the Actuators panel does; may "
+                "be repeated")
+      .one_value_each()
+      .with_form(drive_form)
+      .in_group("Robots");
+}
+
+std::vector<DrivenActuator> AttachmentOptions::driven() const {
+  std::vector<DrivenActuator> all;
+  for (const std::string& text : drives_) all.push_back(driven_actuator_from("--drive", text));
+  return all;
 }
 
 std::vector<AttachedMass> AttachmentOptions::attached() const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masses that are pinned or held by a spring from the start: --attach, and the key `attach` of a scene.
+// What is held from the start: masses that are pinned or held by a spring (--attach, and the key `attach` of a scene),
+// and actuators that are driven by hand (--drive, and `drive`).
 #pragma once
 
 #include <cstddef>
@@ -32,15 +33,29 @@ std::string text_of(const AttachedMass& attached);
 // Throws InputError.
 AttachedMass attached_mass_from(const std::string& option, const std::string& text);
 
+// An actuator that has this drive in place of its sine or brain.
+struct DrivenActuator {
+  std::size_t robot = 0;  // its number in the scene, from 0
+  std::string actuator;   // its name
+  float drive = 0;        // u in [-1, 1]
+  friend bool operator==(const DrivenActuator&, const DrivenActuator&) = default;
+};
+
+// "0:tail:0.5".
+std::string text_of(const DrivenActuator& driven);
+// The name may have colons. Throws InputError.
+DrivenActuator driven_actuator_from(const std::string& option, const std::string& text);
+
 class AttachmentOptions {
  public:
-  // Adds the option to a command. The object must outlive it.
+  // Adds the options to a command. The object must outlive it.
   void add_to(const Command& command);
-  // Throws InputError.
+  // Throw InputError.
   std::vector<AttachedMass> attached() const;
+  std::vector<DrivenActuator> driven() const;
 
  private:
-  std::vector<std::string> texts_;
+  std::vector<std::string> texts_, drives_;
 };
 
 }  // namespace mercury

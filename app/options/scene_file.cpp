@@ -88,6 +88,7 @@ SceneFile::SceneFile(const std::filesystem::path& path) : parts_(std::make_uniqu
     (void)random();
     (void)view();
     (void)attached();
+    (void)driven();
     (void)parts.simulation.seconds();
     // Without an environment of its own, its parameters are those of the environment that its robots choose.
     if (!parts.simulation.chosen_environment().empty()) (void)parts.simulation.configuration(parts.robots.physics());
@@ -102,6 +103,7 @@ const std::filesystem::path& SceneFile::path() const { return parts_->path; }
 const std::vector<std::string>& SceneFile::robots() const { return parts_->file->robots(); }
 std::vector<RandomRobots> SceneFile::random() const { return parts_->robots.random(); }
 std::vector<AttachedMass> SceneFile::attached() const { return parts_->attachments.attached(); }
+std::vector<DrivenActuator> SceneFile::driven() const { return parts_->attachments.driven(); }
 ViewSettings SceneFile::view(Layout usual) const { return parts_->view.settings(usual); }
 
 void SceneFile::give_body(Robot& robot, const std::string& file) const {

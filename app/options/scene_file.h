@@ -35,6 +35,8 @@ class SceneFile {
   std::vector<RandomRobots> random() const;
   // Masses that are pinned or held by a spring; robots are counted as in the file, random ones last.
   std::vector<AttachedMass> attached() const;
+  // Actuators that are driven by hand; the same.
+  std::vector<DrivenActuator> driven() const;
   // Gives a robot of one of its files a real body if the scene says so. Throws InputError.
   void give_body(Robot& robot, const std::string& file) const;
   // `files` = the robots of its files. Without `environment` in the scene, they and the random ones choose. Appends to

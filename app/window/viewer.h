@@ -21,6 +21,7 @@ struct ViewerOptions {
   std::vector<std::filesystem::path> files;  // read once the window is open
   std::vector<RandomRobots> generations;     // made once the window is open
   std::vector<AttachedMass> attached;        // pins and springs
+  std::vector<DrivenActuator> driven;        // by hand
   std::filesystem::path run;                 // of an evolution, opened with the window; empty = none
   Configuration configuration;
   ViewSettings view;

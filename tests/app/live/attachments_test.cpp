@@ -2,12 +2,16 @@
 // Pins and springs that stay attached: undo, scene files, commands and the timeline.
 #include <gmock/gmock.h>
 
+#include <iterator>
+#include <set>
+
 #include "app/options/scene_file.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
+#include "tests/same_bits.h"
 
 namespace mercury {
 namespace {
@@ -167,6 +171,89 @@ TEST_F(Attachments, WhatDoesNotExistIsReported) {
   EXPECT_THAT(texts, testing::UnorderedElementsAre("attach 1:0: robot 1 is out of range, the scene has 1 robot",
                                                    "attach 0:8: mass 8 is out of range, voxel-1-0 has 8"));
   EXPECT_THAT(texts_of(scene), IsEmpty());
+}
+
+// Drives by hand, of the Actuators panel.
+
+class Drives : public Attachments {
+ protected:
+  Drives() {
+    Robot robot = random_voxel_robot({}, 1);
+    std::set<MaterialId> muscles;
+    for (const Spring& spring : robot.springs)
+      if (materials_of(robot)[spring.material].amplitude != 0) muscles.insert(spring.material);
+    robot.actuators = {{.name = "left: \"fin\"", .materials = {*muscles.begin()}}, {.name = "tail", .materials = {}}};
+    robot.actuators[1].materials.assign(std::next(muscles.begin()), muscles.end());
+    save_robot(path("fins.json"), robot);
+  }
+  static std::vector<std::string> drives_of(const LiveScene& scene) {
+    std::vector<std::string> texts;
+    for (const DrivenActuator& one : driven_in(scene.document())) texts.push_back(text_of(one));
+    return texts;
+  }
+};
+
+TEST_F(Drives, ASceneFileKeepsThem) {
+  LiveScene scene(test::on_cpu());
+  scene.open({path("fins.json"), path("fins.json")});
+  scene.wait_until_done();
+  const std::vector<RobotId> ids = ids_of(scene);
+  scene.drive_actuator(ids, "left: \"fin\"", -0.25f);
+  scene.drive_actuator({ids[1]}, "tail", 1);
+  ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
+  LiveScene again(test::on_cpu());
+  again.open({path("held.toml")});
+  again.wait_until_done();
+  EXPECT_THAT(drives_of(again), ElementsAre("0:left: \"fin\":-0.25", "1:left: \"fin\":-0.25", "1:tail:1"));
+  EXPECT_THAT(again.take_messages(), IsEmpty());
+  // The physics has them from the first step on.
+  scene.reset();
+  for (LiveScene* one : {&scene, &again}) {
+    one->step(200);
+    one->wait_until_done();
+  }
+  EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), again.snapshot().positions.host()));
+  LiveScene free(test::on_cpu());
+  free.open({path("fins.json"), path("fins.json")});
+  free.wait_until_done();
+  free.step(200);
+  free.wait_until_done();
+  EXPECT_FALSE(same_bits(free.snapshot().positions.host(), again.snapshot().positions.host()));
+  EXPECT_THAT(again.command("view").text, HasSubstr(" --drive="));
+}
+
+TEST_F(Drives, WhatDoesNotExistIsReported) {
+  write("bad.toml",
+        "format = \"mercury-scene\"\nversion = 1\nrobots = [\"fins.json\"]\ndrive = [\"1:tail:0\", \"0:wing:1\"]\n");
+  LiveScene scene(test::on_cpu());
+  scene.open({path("bad.toml")});
+  scene.wait_until_done();
+  scene.frame();
+  std::vector<std::string> texts;
+  for (const Message& message : scene.take_messages()) texts.push_back(message.text);
+  EXPECT_THAT(texts, testing::UnorderedElementsAre("drive 1:tail:0: robot 1 is out of range, the scene has 1 robot",
+                                                   testing::AllOf(testing::StartsWith("drive 0:wing:1: "),
+                                                                  testing::EndsWith(" has no actuator \"wing\""))));
+  EXPECT_THAT(drives_of(scene), IsEmpty());
+}
+
+TEST_F(Drives, BadTextIsRefused) {
+  for (const std::string text :
+       {"", "0", "0:", "0:tail", "0::1", ":tail:1", "0:tail:2", "0:tail:nan", "0:tail:", "-1:tail:0", "a:tail:0"})
+    try {
+      driven_actuator_from("--drive", text);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(),
+                  testing::StartsWith("--drive: \"" + text + "\" is not accepted; give ROBOT:ACTUATOR:U"));
+    }
+  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\ndrive = [\"0:tail:1.5\"]\n");
+  try {
+    const SceneFile scene(path("bad.toml"));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith(path("bad.toml") + ":3: --drive: \"0:tail:1.5\" is not accepted"));
+  }
 }
 
 TEST_F(Attachments, BadTextIsRefused) {
