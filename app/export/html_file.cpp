@@ -319,9 +319,9 @@ std::string shaders_json() {
       for (const std::string_view extension : {".glsl", ".vert", ".frag"})
         if (file.name.substr(dot) == extension) shaders[std::string(file.name)] = compact(file.contents);
   constexpr std::array of_program{
-      "fullscreen.vert", "sand.frag",  "backdrop.frag",  "caustics.vert",  "caustics.frag", "particle.vert",
-      "particle.frag",   "frame.glsl", "caustics.glsl",  "floor.glsl",     "shading.glsl",  "shadow.glsl",
-      "skin_light.glsl", "bevel.glsl", "direction.glsl", "seen_face.glsl", "tone.glsl",     "ribbon.glsl"};
+      "fullscreen.vert", "sand.frag",      "backdrop.frag",  "caustics.vert", "caustics.frag", "particle.frag",
+      "frame.glsl",      "caustics.glsl",  "floor.glsl",     "shading.glsl",  "shadow.glsl",   "skin_light.glsl",
+      "bevel.glsl",      "direction.glsl", "seen_face.glsl", "tone.glsl",     "ribbon.glsl"};
   for (const render::ShaderSource& shader : render::shader_sources())
     if (std::ranges::find(of_program, shader.name) != of_program.end())
       shaders[std::string(shader.name)] = compact(shader.text);

@@ -356,7 +356,7 @@ ${defines}${text}`;
   }
 
   drawParticles(orbit, time, set) {
-    const { gl, page } = this, particles = set(this.program("particle.vert", "particle.frag", { shown: true }));
+    const { gl, page } = this, particles = set(this.program("page_particle.vert", "particle.frag", { shown: true }));
     const half = 1.1 * 2 ** Math.floor(Math.log2(orbit.range) + 0.5), count = 1500, exposure = 1 / 24;
     const middle = add(orbit.target, scaled(orbit.back, 0.2 * half));
     gl.uniform4f(particles.at("box"), ...middle, half);
