@@ -32,6 +32,8 @@ std::string made_of(const std::string& name) { return name.substr(0, name.rfind(
 // The actuators of a real body for another one of the same materials, whose table has other numbers.
 std::vector<Actuator> actuators_for(const Robot& other, const Robot& robot) {
   std::vector<Actuator> actuators = robot.actuators;
+  if (!actuators.empty() && robot.material_names.empty())
+    throw InputError("damage", "actuators of a real body need the names of its materials");
   for (Actuator& actuator : actuators) {
     std::set<std::string> driven;
     for (const MaterialId id : actuator.materials) driven.insert(made_of(robot.material_names[id]));

@@ -124,11 +124,14 @@ class DistributedAssessor : public Assessor {
 
   std::optional<std::vector<Assessment>> assess(std::span<const GenomePointer> candidates,
                                                 std::span<const double> interim_limits, const Watch& watch) override {
-    if (!deals_.empty() && !std::ranges::equal(deals_.front().candidates, candidates)) forget();
+    stopped_at_.reset();  // a previous stop says nothing of what was dealt out since
+    if (!deals_.empty() && !std::ranges::equal(deals_.front().candidates, candidates)) {
+      forget();
+      stopped_at_.reset();
+    }
     if (deals_.empty()) prepare(candidates, interim_limits);
     Deal& deal = deals_.front();
     std::exception_ptr failure;
-    stopped_at_.reset();
     const auto go_on = [&](std::size_t done) {
       receive_answers();
       if (deal.failure || (watch && !watch(std::min(done, candidates.size()), candidates.size()))) stop();

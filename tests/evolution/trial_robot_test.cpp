@@ -134,6 +134,9 @@ TEST(TrialRobot, DamagedRealBodiesAreThoseOfTheVoxelsThatAreLeft) {
     EXPECT_EQ(damaged.actuators, expected.actuators);
     EXPECT_EQ(damaged.mass, expected.mass);
   }
+  Robot nameless = real;
+  nameless.material_names.clear();
+  EXPECT_THROW(trial_robot(nameless, {.damage = 0.2}, 1, 0), InputError);
 }
 
 TEST(TrialRobot, RobotsWithoutVoxelsCannotBeDamaged) {
