@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "app/base/progress.h"
-#include "app/commands/run_evaluation.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/scene/hero_style.h"
 #include "app/video/frame_writer.h"
@@ -160,9 +159,7 @@ void require_moment(const VideoOptions& video, const Subject& subject) {
 
 // A recording begins where it does.
 void require_start(const TrialSettings& start, const Subject& subject) {
-  if (subject.recording && begins_elsewhere(start))
-    throw InputError(start.target_radius > 0 ? "--target-radius" : "--turned",
-                     "a recording has its own start; give robots to simulate");
+  if (subject.recording) require_start_of_recording(start);
 }
 
 // The first robot, with the others or copies of itself behind it.
@@ -182,7 +179,7 @@ void show_as_hero(const RenderOptions& options, RenderTask& task) {
 
 Simulation Subject::simulation(const Configuration& in, const Clip& clip) const {
   Simulation simulation(in, clip.robots, shown_work());
-  begin_first_trial(simulation, start, seed);
+  if (start.is_elsewhere()) begin_at(simulation, start);
   return simulation;
 }
 
@@ -216,12 +213,8 @@ RenderTask render_task(RenderOptions& options) {
   task.subject = subject_of(options, task.view);
   for (const Subject& other : task.subject.others) require_start(options.start, other);
   require_start(options.start, task.subject);
-  task.subject.start = options.start;
-  task.subject.seed = options.robots.seed_or_default();
-  for (Subject& other : task.subject.others) {
-    other.start = task.subject.start;
-    other.seed = task.subject.seed;
-  }
+  task.subject.start = {options.start, options.robots.seed_or_default()};
+  for (Subject& other : task.subject.others) other.start = task.subject.start;
   if ((task.subject.recording || !task.subject.others.empty()) && task.view.compare)
     throw InputError("--compare", "not together with a recording, which has one side; give its robots' files");
   task.plan = options.video.plan(task.subject.seconds);

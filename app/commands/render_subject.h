@@ -10,11 +10,11 @@
 #include "app/options/output_options.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
+#include "app/options/trial_start.h"
 #include "app/options/video_options.h"
 #include "app/options/view_options.h"
 #include "app/recording/trajectory_playback.h"
 #include "app/video/video_pipeline.h"
-#include "mercury/trials.h"
 
 namespace mercury {
 
@@ -33,8 +33,7 @@ struct Subject {
   std::vector<Clip> clips;                      // one after another
   std::shared_ptr<TrajectoryReader> recording;  // of the only clip, which has no robots then; or nothing
   double seconds = 0;                           // of each clip
-  TrialSettings start = one_trial();            // robots begin as its first trial does,
-  std::uint64_t seed = 1;                       // of this seed
+  TrialStart start;                             // where robots begin
   std::vector<std::string> notes;
   std::string title;            // above it, if there are others
   std::vector<Subject> others;  // beside it, each of one clip; empty = none

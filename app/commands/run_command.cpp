@@ -24,6 +24,7 @@
 #include "app/options/parameter_options.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
+#include "app/options/trial_start.h"
 #include "app/recording/recorder.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
@@ -285,7 +286,7 @@ int run_in_one(const RunOptions& options, const RobotSequence& robots, const Con
   GatheredRobots gathered = gather(robots);
   Simulation simulation(configuration, std::move(gathered.robots), shown_work());
   print_notes(simulation.notes());
-  begin_first_trial(simulation, trials, seed);
+  if (const TrialStart start{trials, seed}; start.is_elsewhere()) begin_at(simulation, start);
   std::optional<Checkpoints> checkpoints =
       checkpoints_of(options, notes_of(options, configuration, trials, gathered.identities, gathered.failed));
   return run_watched(options, open_recorder(options, simulation), std::move(checkpoints), std::move(gathered.failed),

@@ -221,18 +221,6 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   return report;
 }
 
-void begin_first_trial(Simulation& simulation, const TrialSettings& trials, std::uint64_t seed) {
-  if (!begins_elsewhere(trials)) return;
-  std::vector<Vec3> positions;
-  for (std::size_t i = 0; i < simulation.size(); ++i) {
-    const std::vector<Vec3>& rest = simulation.robot(i).masses;
-    positions.insert(positions.end(), rest.begin(), rest.end());
-    begin_trial(simulation.robot(i), trials, simulation.configuration().environment, seed, 0,
-                std::span(positions).last(rest.size()));
-  }
-  simulation.reset_to(positions);
-}
-
 RunReport simulate(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,
                    const StepObservers& observers) {
   return measure(simulation, std::move(identities), trials, observers, simulation.steps(), {});

@@ -49,9 +49,6 @@ struct StepObservers {
 // Says that the recording ended, and why.
 void warn_without_recording(const RecordingFailure& failure);
 
-// Puts the masses of robots that are at rest where the first trial of the settings begins.
-void begin_first_trial(Simulation& simulation, const TrialSettings& trials, std::uint64_t seed);
-
 // Simulates the robots of a simulation, `identities`, from where it stands, as one trial. If the user interrupts while
 // they settle, the report holds no robot.
 RunReport simulate(Simulation& simulation, std::vector<RobotIdentity> identities, const TrialSettings& trials,

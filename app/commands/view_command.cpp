@@ -15,6 +15,7 @@
 #include "app/options/output_options.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
+#include "app/options/trial_start.h"
 #include "app/options/view_options.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_reader.h"
@@ -35,6 +36,7 @@ struct ViewCommandOptions {
   SimulationOptions simulation;
   ViewOptions view;
   AttachmentOptions attachments;
+  TrialSettings start = one_trial();
   OutputOptions output;
   std::string size, quality = "auto", report;
   double speed = 1;
@@ -62,7 +64,9 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.speed = options.speed;
   result.interop = !options.no_interop;
   result.paced = !options.unpaced;
-  result.view = options.view.settings(Layout::cells);
+  validate(options.start);
+  result.start = {options.start, options.robots.seed_or_default()};
+  result.view = options.view.settings(usual_layout(result.start));
   if (result.view.background) throw InputError("--background", "is of a still; mercury render draws figures");
   result.attached = options.attachments.attached();
   result.driven = options.attachments.driven();
@@ -118,11 +122,13 @@ int view(const ViewCommandOptions& options) {
     return window::run_viewer(std::move(viewer));
   }
   if (const auto file = options.robots.repro()) {
+    require_start_of_recording(options.start);
     load_repro(*file);  // throws for an invalid file, before the window opens
     viewer.files = {*file};
     return window::run_viewer(std::move(viewer));
   }
   if (const auto file = options.robots.recording()) {
+    require_start_of_recording(options.start);
     const TrajectoryReader recording(*file, shown_work());  // throws for an invalid file, before the window opens
     const Device device = viewer.configuration.device;
     viewer.configuration = recording.configuration();
@@ -183,6 +189,7 @@ void add_view_command(const Command& program, const Choose& choose) {
   options->output.add_force_to(command);
   options->view.add_to(command);
   options->simulation.add_to(command);
+  add_start_options(command, options->start);
   command.set_footer(
       "Without ROBOTS the window shows the sample robots. Press F1 for a list of all keys.\n"
       "A RUN of mercury evolve opens with its scores, champions and families; it may still be running.\n"

@@ -176,6 +176,17 @@ OptionValues options_of(const EvolutionSettings& settings) {
   return values;
 }
 
+OptionValues options_of(const TrialStart& start) {
+  if (!start.is_elsewhere()) return {};
+  Options options;
+  constexpr TrialSettings usual = one_trial();
+  for_each_parameter(start.trials, [&](const auto& parameter, const auto& value) {
+    if (is_of_start(parameter.name)) add_parameter(options, parameter, value, usual.*parameter.member);
+  });
+  options.number("--seed", start.seed, TrialStart{}.seed);
+  return options.take();
+}
+
 OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usual) {
   Options options;
   const ViewSettings defaults;
@@ -263,6 +274,7 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
     append_attachments(document, command);
   else if (!document.attachments.empty())
     command.notes.push_back("pins and attached springs are not in the command; only mercury view has them");
+  append(command.text, options_of(document.start));
   append(command.text, options_of(document.configuration));
   append(command.text, options_of(settings, subcommand == "view" ? Layout::cells : Layout::grid));
   if (subcommand == "render") command.text += " -o scene.mp4";

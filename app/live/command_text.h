@@ -23,6 +23,8 @@ using OptionValues = std::vector<std::pair<std::string, std::string>>;  // "--dt
 OptionValues options_of(const Configuration& configuration);
 // The same, but the algorithm and the objectives are always given.
 OptionValues options_of(const EvolutionSettings& settings);
+// Nothing for robots that begin at rest.
+OptionValues options_of(const TrialStart& start);
 // `usual`: the layout that is left out; absent = none.
 OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usual = {});
 

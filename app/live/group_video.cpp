@@ -62,11 +62,11 @@ struct GroupVideo::Parts {
                                            .expected_frames = timing.frames,
                                            .comment = comment_of(*robots.front().robot, configuration)});
     view.speed = options.speed;
-    Simulation simulation = simulation_of(robots, configuration);
+    Simulation simulation = simulation_of(robots, configuration, options.start);
     OffscreenRenderer offscreen = make_offscreen_renderer(options.context, size, options.quality);
     std::vector<FilmedGroup> groups;
     groups.push_back({std::move(simulation)});
-    if (view.compare) groups.push_back({simulation_of(robots, view.compare->over(configuration))});
+    if (view.compare) groups.push_back({simulation_of(robots, view.compare->over(configuration), options.start)});
     VideoPipeline pipeline(offscreen, std::move(groups), view);
     const VideoResult result = pipeline.run(*writer, pixel_format_of(kind), timing, true, &control);
     if (control.stop || result.interrupted) return false;

@@ -34,6 +34,7 @@ struct GroupVideoOptions {
   double frames_per_second = 30;
   double seconds = 10;  // simulated
   double speed = 1;     // simulated seconds per second of video
+  TrialStart start;     // where robots begin
   render::Quality quality = render::Quality::automatic;
   render::ContextKind context = render::ContextKind::automatic;
 };

@@ -76,12 +76,14 @@ void LiveBatch::perturb(std::vector<LivePerturbation> perturbations) {
 }
 
 bool LiveBatch::copy(const LiveBatch& first, const std::vector<LiveRobot>& wanted, const Configuration& configuration) {
+  set_start(first.start());
   configure(first.configuration());
   const bool changed = follow(wanted);
   population_.forget_departed();
   surroundings_ = first.surroundings_;
-  simulation_.reset();
-  const bool began = first.steps() > 0;
+  population_.return_to_start();
+  // Also before the first step: a target that was moved since leaves robots where they are.
+  const bool began = first.steps() > 0 || start().is_elsewhere();
   if (began) {
     simulation_.set_clock(first.simulation_.clock());
     for (std::size_t i = 0; i < robots()->size(); ++i)
@@ -90,7 +92,7 @@ bool LiveBatch::copy(const LiveBatch& first, const std::vector<LiveRobot>& wante
   }
   configure(configuration);
   if (!began)
-    simulation_.reset();
+    population_.return_to_start();
   else if (comes_to_ground(first.configuration(), configuration))
     population_.settle();
   sample();
@@ -99,7 +101,7 @@ bool LiveBatch::copy(const LiveBatch& first, const std::vector<LiveRobot>& wante
 }
 
 void LiveBatch::reset() {
-  simulation_.reset();
+  population_.return_to_start();
   population_.forget_departed();
   ++jumps_;
 }

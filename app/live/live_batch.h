@@ -38,14 +38,17 @@ class LiveBatch {
   // The same in these surroundings: robots get the states that they had there, or are set down on ground.
   bool move(const std::vector<LiveRobot>& robots, const Configuration& configuration, std::uint64_t surroundings);
   void perturb(std::vector<LivePerturbation> perturbations);
+  // Where robots begin that are new, and all after a reset; the others stay where they are.
+  void set_start(const TrialStart& start) { population_.set_start(start); }
+  const TrialStart& start() const { return population_.start(); }
   // Simulates these robots in the states of their partners in `first`, those of the same id, at its time. Robots that
-  // are not joined as their partner is are at rest. At step 0, all are as a reset leaves them. Returns whether the list
-  // changed.
+  // are not joined as their partner is are where they begin. At step 0, robots that begin at rest are as a reset leaves
+  // them. Returns whether the list changed.
   bool copy(const LiveBatch& first, const std::vector<LiveRobot>& robots, const Configuration& configuration);
 
   // States. A jump in time is counted; snapshots say how many there were.
   void step(std::int64_t count) { simulation_.step(count); }
-  void reset();                                        // time 0 and rest; forgets removed robots
+  void reset();                                        // time 0, where robots begin; forgets removed ones
   void begin(const Clock& clock, const State& state);  // of the only robot
   void restore(const BatchState& state, bool jumps = true);
 

@@ -23,6 +23,8 @@ constexpr std::array speeds{0.001, 0.002, 0.005, 0.01, 0.02,  0.05,           0.
 
 LiveScene::LiveScene(const LiveSceneOptions& options) : parts_(std::make_unique<Parts>(options)) {
   parts_->document.configuration = options.configuration;
+  parts_->document.start = options.start;
+  parts_->physics.set_start(options.start);
   parts_->physics.set_view(options.view);
   parts_->physics.set_second(options.view.compare);
   frame();
@@ -105,10 +107,7 @@ void LiveScene::step(std::int64_t count) {
   parts_->playing = false;
   parts_->physics.step(count);
 }
-void LiveScene::reset() {
-  parts_->pulls.before_reset(*parts_->snapshot);
-  parts_->physics.reset();
-}
+void LiveScene::reset() { parts_->reset(); }
 
 void LiveScene::set_speed(double speed) {
   if (std::isnan(speed)) return;

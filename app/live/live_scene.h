@@ -32,6 +32,7 @@ namespace mercury {
 
 struct LiveSceneOptions {
   Configuration configuration;
+  TrialStart start;
   ViewSettings view;
 };
 
@@ -192,7 +193,11 @@ class LiveScene {
   // it was before the change.
   const Configuration& configuration() const;
   bool set_configuration(const Configuration& configuration);  // keeps the device
-  std::span<const Material> materials(RobotId robot) const;    // in use; empty if the robot is unknown
+  // Where robots begin: at rest, or as the first trial of a run does. New ones do so, and all after a reset; at time 0
+  // all move there at once. An edit.
+  const TrialStart& start() const;
+  bool set_start(const TrialStart& start);
+  std::span<const Material> materials(RobotId robot) const;  // in use; empty if the robot is unknown
   bool set_material(const std::vector<RobotId>& robots, MaterialId id, const Material& material);
   // Changes all materials but air: multiplies stiffness, amplitude and frequency of the robot's file, adds to the
   // phase.

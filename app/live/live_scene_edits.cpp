@@ -134,18 +134,19 @@ void LiveScene::forget_edits() { parts_->history.clear(); }
 void LiveScene::end_edit() { parts_->history.end_edit(); }
 
 void LiveScene::undo() {
-  if (!can_undo()) return;
-  const std::vector<Attachment> before = parts_->document.attachments;
-  parts_->history.undo(parts_->document);
-  parts_->apply_document();
-  parts_->pulls.aim_pins(before, *parts_->snapshot);
+  if (can_undo()) parts_->travel(&EditHistory::undo);
 }
 void LiveScene::redo() {
-  if (!can_redo()) return;
-  const std::vector<Attachment> before = parts_->document.attachments;
-  parts_->history.redo(parts_->document);
-  parts_->apply_document();
-  parts_->pulls.aim_pins(before, *parts_->snapshot);
+  if (can_redo()) parts_->travel(&EditHistory::redo);
+}
+
+void LiveScene::Parts::travel(void (EditHistory::*travel_in)(SceneDocument&)) {
+  const std::vector<Attachment> before = document.attachments;
+  const TrialStart start_before = document.start;
+  (history.*travel_in)(document);
+  apply_document();
+  pulls.aim_pins(before, *snapshot);
+  if (document.start != start_before) follow_start();
 }
 
 const Configuration& LiveScene::configuration() const { return parts_->document.configuration; }
@@ -169,6 +170,23 @@ bool LiveScene::set_configuration(const Configuration& configuration) {
   parts_->document.configuration = wanted;
   parts_->apply_document();
   if (!parts_->document.attachments.empty()) parts_->pulls.send();
+  return true;
+}
+
+const TrialStart& LiveScene::start() const { return parts_->document.start; }
+
+bool LiveScene::set_start(const TrialStart& start) {
+  if (start == parts_->document.start) return true;
+  try {
+    validate(start.trials);
+  } catch (const InputError& error) {
+    parts_->report(Severity::warning, error.what());
+    return false;
+  }
+  parts_->edit("change the start", "start");
+  parts_->document.start = start;
+  parts_->apply_document();
+  parts_->follow_start();
   return true;
 }
 

@@ -50,13 +50,6 @@ std::optional<Vec3> position_of(const Snapshot& snapshot, RobotId robot, std::ui
   return snapshot.positions_of(*index)[mass];
 }
 
-// Where a mass of a robot is at the start: on the ground, robots are set down with their lowest mass at z = 0.
-Vec3 start_of(const Robot& robot, std::uint16_t mass, const Environment& environment) {
-  Vec3 start = robot.masses[mass];
-  if (has_ground(environment)) start.z -= std::ranges::min(robot.masses, {}, &Vec3::z).z;
-  return start;
-}
-
 }  // namespace
 
 std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
@@ -237,7 +230,7 @@ void ScenePulls::attach_opened(bool complete, Messages& messages) {
       spring.stiffness = one.spring->stiffness;
       spring.kind = Kind::spring;
     } else {
-      spring.target = start_of(*body.robot, one.mass, document_.configuration.environment);
+      spring.target = start_of(*body.robot, document_.configuration.environment, document_.start)[one.mass];
       spring.stiffness = stiffest_pin(document_.configuration);
       spring.kind = Kind::pin;
     }

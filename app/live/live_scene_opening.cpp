@@ -289,7 +289,8 @@ void LiveScene::Parts::open_scene(const SceneFile& scene, std::span<const Robot*
   const Device device = document.configuration.device;
   document.configuration = scene.configuration(robots, notes);
   document.configuration.device = device;
-  view = scene.view(Layout::cells);
+  document.start = scene.start();
+  view = scene.view(usual_layout(document.start));
   camera = view.camera;
   physics.set_view(view);
   physics.set_second(view.compare);

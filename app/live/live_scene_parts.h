@@ -160,10 +160,21 @@ struct LiveScene::Parts {
   void apply_document() {
     drive_opened(false);                   // first, so that no step is made without it
     pulls.attach_opened(false, messages);  // the same
+    physics.set_start(document.start);
     std::vector<LiveRobot> bodies;
     for (const DocumentRobot& robot : document.robots) bodies.push_back(robot.body);
     physics.set_scene(std::move(bodies), document.configuration, document.surroundings);
   }
+  void reset() {
+    pulls.before_reset(*snapshot);
+    physics.reset();
+  }
+  // The start of the document is another one. Robots that have not left theirs begin again.
+  void follow_start() {
+    if (snapshot->steps == 0 && !snapshot->timeline.recording) reset();
+  }
+  // Undo or redo.
+  void travel(void (EditHistory::*travel_in)(SceneDocument&));
   // Call it before the document changes: records the edit, to be undone later.
   void edit(std::string name, std::string key = {}) {
     adopt_moment();

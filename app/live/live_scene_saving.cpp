@@ -61,11 +61,11 @@ void require_going(const WorkControl& control) {
 }
 
 // Simulates the robots from time 0. Returns the number of frames.
-std::int64_t record(const std::vector<Exported>& exported, const Configuration& configuration, const fs::path& path,
-                    double seconds, WorkControl& control) {
+std::int64_t record(const std::vector<Exported>& exported, const Configuration& configuration, const TrialStart& start,
+                    const fs::path& path, double seconds, WorkControl& control) {
   std::vector<LiveRobot> robots;
   for (const Exported& one : exported) robots.push_back(one.live);
-  Simulation simulation = simulation_of(robots, configuration);
+  Simulation simulation = simulation_of(robots, configuration, start);
   return record_motion(simulation, seconds, path, std::nullopt,
                        [&](std::int64_t frames) {
                          require_going(control);
@@ -149,7 +149,7 @@ SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
   if (robots.empty()) return not_saved("there is no robot to save in a scene");
   try {
     const SceneFiles wanted = scene_files(path, robots, parts.document.configuration, parts.view,
-                                          attached_in(parts.document), driven_in(parts.document));
+                                          attached_in(parts.document), driven_in(parts.document), parts.document.start);
     const SaveResult result = save_files(wanted.files, overwrite);
     for (std::size_t i = 0; i < wanted.beside.size() && result.ok(); ++i) {
       parts.saved.note(robots[wanted.beside[i]].robot->body, wanted.files[i].path.string());
@@ -239,7 +239,9 @@ std::unique_ptr<GroupVideo> LiveScene::export_video(const GroupVideoOptions& opt
   std::vector<LiveRobot> robots;
   for (const DocumentRobot& robot : parts_->document.robots)
     if (!parts_->hidden.contains(robot.body.id)) robots.push_back(robot.body);
-  return std::make_unique<GroupVideo>(std::move(robots), parts_->document.configuration, parts_->view, options);
+  GroupVideoOptions wanted = options;
+  wanted.start = parts_->document.start;
+  return std::make_unique<GroupVideo>(std::move(robots), parts_->document.configuration, parts_->view, wanted);
 }
 
 SaveResult LiveScene::save_repro(RobotId robot, const fs::path& folder, bool overwrite) {
@@ -299,11 +301,11 @@ SaveResult LiveScene::export_motion(const std::vector<RobotId>& robots, const fs
     const auto all = static_cast<std::int64_t>(exported.size()) * frames;
     parts_->background.begin("exporting " + path.filename().string(), frames + all,
                              [&messages = parts_->messages, &format, exported = std::move(exported), configuration,
-                              path, seconds](WorkControl& control) {
+                              start = parts_->document.start, path, seconds](WorkControl& control) {
                                try {
                                  const TemporaryRecording recording(path);
                                  const std::int64_t recorded =
-                                     record(exported, configuration, recording.path(), seconds, control);
+                                     record(exported, configuration, start, recording.path(), seconds, control);
                                  write_motions(format, exported, configuration, recording.path(), path, messages,
                                                [&](std::size_t done, std::size_t) {
                                                  require_going(control);

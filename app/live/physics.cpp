@@ -27,6 +27,7 @@ struct PendingCommands {
     std::uint64_t surroundings = 0;
   };
   std::optional<Scene> scene;
+  std::optional<TrialStart> start;
   std::optional<ViewSettings> view;
   std::optional<std::vector<LivePerturbation>> perturbations;
   std::optional<std::shared_ptr<PositionBridge>> bridge;
@@ -42,9 +43,9 @@ struct PendingCommands {
   std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
 
   bool any() const {
-    return scene || view || perturbations || bridge || playing || pause_on_explosion || speed || seek || seek_first ||
-           loop || difference || ghosts || timeline_budget || brain || steps > 0 || steps_back > 0 || reset || go_on ||
-           quit || ticket > 0;
+    return scene || start || view || perturbations || bridge || playing || pause_on_explosion || speed || seek ||
+           seek_first || loop || difference || ghosts || timeline_budget || brain || steps > 0 || steps_back > 0 ||
+           reset || go_on || quit || ticket > 0;
   }
   // Forgets the moments that were asked for.
   void drop_timeline() {
@@ -240,6 +241,9 @@ void PhysicsThread::set_loop(std::optional<std::pair<double, double>> times) {
 void PhysicsThread::set_timeline_budget(std::size_t bytes) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.timeline_budget = bytes; });
 }
+void PhysicsThread::set_start(const TrialStart& start) {
+  parts_->exchange.request([&](PendingCommands& pending) { pending.start = start; });
+}
 void PhysicsThread::set_view(const ViewSettings& settings) {
   parts_->exchange.request([&](PendingCommands& pending) { pending.view = settings; });
 }
@@ -345,6 +349,7 @@ void PhysicsThread::Parts::carry_out(PendingCommands& taken) {
   dirty = true;
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
   prepare_changes(taken);
+  if (taken.start) batch.set_start(*taken.start);
   bool robots_changed = false;
   const bool scene_changed = taken.scene.has_value();
   if (taken.scene && !guarded([&] { robots_changed = set_scene(*taken.scene); })) {
@@ -445,7 +450,7 @@ void PhysicsThread::Parts::forget_all() {
   batch.restart_measures();
 }
 
-// Returns all robots to rest at time 0, or a replay to its start.
+// Returns all robots to where they begin, at time 0, or a replay to its start.
 void PhysicsThread::Parts::restart() {
   batch.reset();
   stepping.forget_cost();  // exploded robots cost nothing until now

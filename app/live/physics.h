@@ -62,7 +62,7 @@ class PhysicsThread {
 
   // Replaces the robots and the configuration. The robots must be valid, and the device must be that of the
   // constructor. A robot that is already simulated keeps its state. A robot that was removed and comes back continues
-  // from its last state, unless reset() was called in between. A new robot starts at rest at the current time. If the
+  // from its last state, unless reset() was called in between. A new robot begins at the current time. If the
   // robots cannot be simulated, for example for lack of memory, a message says so and no robot is simulated until the
   // next call.
   // `surroundings` names what the robots live in. With a new number, robots that come to land are set down at rest;
@@ -77,6 +77,8 @@ class PhysicsThread {
   // go_on() ends it, and so does the next set_scene().
   void set_recording(std::vector<LiveRobot> robots, const Configuration& configuration, std::uint64_t surroundings,
                      std::shared_ptr<TrajectoryReader> recording);
+  // Where robots begin: new ones, and all after a reset().
+  void set_start(const TrialStart& start);
   void set_view(const ViewSettings& settings);  // selects the details that snapshots hold
   // Replaces all perturbations. Those on missing robots or masses are ignored.
   void set_perturbations(std::vector<LivePerturbation> perturbations);
@@ -84,7 +86,7 @@ class PhysicsThread {
   void pause();
   void set_speed(double speed);   // simulated seconds per second, above 0, or unlimited_speed
   void step(std::int64_t count);  // pauses, then makes `count` steps; several calls add up
-  void reset();                   // back to time 0 and rest; drops pending steps
+  void reset();                   // back to time 0 and to where robots begin; drops pending steps
   void pause_on_explosion(bool pause);
 
   // The timeline. Snapshot::timeline says which moments there are; others become the nearest one. Whatever changes the

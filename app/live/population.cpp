@@ -159,6 +159,7 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
     indices[added[k]] = first + k;
     const auto before = departed_.find(wanted[added[k]].id);
     if (before == departed_.end()) {
+      begin_at(simulation_, first + k, start_);
       begin_as(wanted, indices, added[k]);
       continue;
     }
@@ -167,6 +168,8 @@ void Population::arrange(const std::vector<LiveRobot>& wanted) {
       simulation_.set_state(first + k, before->second.state);
     else if (const auto carried = carried_state(then, before->second.state, now))
       simulation_.set_state(first + k, *carried);
+    else
+      begin_at(simulation_, first + k, start_);
     forget(wanted[added[k]].id);
   }
   if (!std::ranges::is_sorted(indices)) simulation_.keep(indices);

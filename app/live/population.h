@@ -26,6 +26,11 @@ class Population {
   // Adds, removes and orders the robots of the simulation as in `wanted`, and sets their materials and what is held of
   // them by hand. Returns whether the list changed; materials and what is held do not count.
   bool follow(const std::vector<LiveRobot>& wanted);
+  // Where new robots begin, and all after return_to_start().
+  void set_start(const TrialStart& start) { start_ = start; }
+  const TrialStart& start() const { return start_; }
+  // Puts all robots to where they begin, at time 0.
+  void return_to_start() { begin_at(simulation_, start_); }
   // Keeps the clock and the states of all robots under a number, in place of those that it had. The oldest numbers are
   // forgotten if the states fill the memory.
   void keep_surroundings(std::uint64_t number);
@@ -65,6 +70,7 @@ class Population {
     std::map<RobotId, Departed> states;
   };
   std::map<std::uint64_t, Surroundings> surroundings_;
+  TrialStart start_;
   bool held_ = false;  // drives were held by hand
   std::size_t departed_masses_ = 0;
 };

@@ -44,6 +44,7 @@ struct SceneDocument {
   std::vector<DocumentRobot> robots;
   std::vector<Attachment> attachments;
   Configuration configuration;
+  TrialStart start;  // where robots begin
   // Grows with each change of environment; an undo brings the old number back, and with it the states that robots had.
   std::uint64_t surroundings = 0;
 

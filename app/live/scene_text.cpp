@@ -131,7 +131,7 @@ bool is_of_scene(const std::pair<std::string, std::string>& option) {
 
 SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robots, const Configuration& configuration,
                        const ViewSettings& view, const std::vector<AttachedMass>& attached,
-                       const std::vector<DrivenActuator>& driven) {
+                       const std::vector<DrivenActuator>& driven, const TrialStart& start) {
   std::vector<Form> forms = forms_of(robots);
   keep_one_shape_per_kind(robots, forms);
   const fs::path folder = fs::absolute(path).parent_path(), beside = path.stem().string() + "-robots";
@@ -153,7 +153,7 @@ SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robo
   }
   OptionValues options;
   const std::vector<std::string> random = joined(robots, forms, options);
-  for (const OptionValues& more : {options_of(configuration), options_of(view)})
+  for (const OptionValues& more : {options_of(start), options_of(configuration), options_of(view)})
     std::ranges::copy_if(more, std::back_inserter(options), is_of_scene);
   std::string text = "# A scene of Mercury, for mercury view, render, run and info.\n";
   text += "format = \"mercury-scene\"\nversion = 1\n";

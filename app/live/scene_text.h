@@ -31,6 +31,7 @@ struct SceneFiles {
 };
 SceneFiles scene_files(const std::filesystem::path& path, const std::vector<SceneRobot>& robots,
                        const Configuration& configuration, const ViewSettings& view,
-                       const std::vector<AttachedMass>& attached = {}, const std::vector<DrivenActuator>& driven = {});
+                       const std::vector<AttachedMass>& attached = {}, const std::vector<DrivenActuator>& driven = {},
+                       const TrialStart& start = {});
 
 }  // namespace mercury

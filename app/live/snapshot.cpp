@@ -35,7 +35,7 @@ std::vector<HeldDrive> held_drives(std::span<const LiveRobot> robots) {
   return held;
 }
 
-Simulation simulation_of(std::span<const LiveRobot> live, const Configuration& configuration) {
+Simulation simulation_of(std::span<const LiveRobot> live, const Configuration& configuration, const TrialStart& start) {
   std::vector<Robot> robots;
   for (const LiveRobot& robot : live) {
     robots.push_back(*robot.robot);
@@ -47,6 +47,7 @@ Simulation simulation_of(std::span<const LiveRobot> live, const Configuration& c
       simulation.set_material(i, static_cast<MaterialId>(id), (*live[i].materials)[id]);
   simulation.hold_drives(held_drives(live));
   for (std::size_t i = 0; i < live.size(); ++i) clamp_neurons(simulation, i, {}, held_neurons(live[i]));
+  if (start.is_elsewhere()) begin_at(simulation, start);
   return simulation;
 }
 

@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "app/options/trial_start.h"
 #include "app/scene/robot_shape.h"
 #include "app/scene/scene_details.h"
 #include "app/video/position_bridge.h"
@@ -39,7 +40,7 @@ struct LiveRobot {
   std::shared_ptr<const Robot> robot;
   std::shared_ptr<const std::vector<Material>> materials;  // replaces its table, same length; or null
   std::shared_ptr<const ByHand> by_hand = {};              // null = nothing is held
-  RobotId begins_as = 0;  // a new robot begins in the state of this one, if it is the same body; 0 = at rest
+  RobotId begins_as = 0;  // a new robot begins in the state of this one, if it is the same body; 0 = of none
   friend bool operator==(const LiveRobot&, const LiveRobot&) = default;
 };
 
@@ -54,8 +55,9 @@ std::span<const float> held_neurons(const LiveRobot& robot);
 void clamp_neurons(Simulation& simulation, std::size_t robot, std::span<const float> before,
                    std::span<const float> now);
 
-// The robots as the window has them, at rest: with their names, materials and what is held by hand.
-Simulation simulation_of(std::span<const LiveRobot> robots, const Configuration& configuration);
+// The robots as the window has them, where they begin: with their names, materials and what is held by hand.
+Simulation simulation_of(std::span<const LiveRobot> robots, const Configuration& configuration,
+                         const TrialStart& start = {});
 
 // The robots of a snapshot, in the order of the window's list of robots.
 struct LiveRobots {

@@ -7,15 +7,11 @@
 #include <cctype>
 #include <iterator>
 
+#include "app/options/trial_start.h"
+
 namespace mercury {
 namespace {
 
-constexpr const char* trials_group = "Trials";
-
-bool is_of_start(std::string_view name) {
-  constexpr std::string_view names[] = {"target_radius", "target_spread", "target_sphere", "turned"};
-  return std::ranges::find(names, name) != std::end(names);
-}
 // --seconds is an option of the simulation; what else is left out has no option.
 bool is_of_every_measurement(std::string_view name) {
   constexpr std::string_view names[] = {"settle",         "trials",         "jitter",        "strain_limit",
@@ -44,10 +40,6 @@ std::string form_of(std::string_view unit, bool whole) {
 
 void add_trial_options(const Command& command, TrialSettings& trials) {
   add_parameters(command, trials, trials_group, is_of_every_measurement);
-}
-
-void add_start_options(const Command& command, TrialSettings& trials) {
-  add_parameters(command, trials, trials_group, is_of_start);
 }
 
 void add_mean_option(const Command& command, TrialSettings& trials) {

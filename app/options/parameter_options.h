@@ -52,10 +52,10 @@ void add_parameters(const Command& command, Struct& values, const char* group) {
   add_parameters(command, values, group, [](std::string_view) { return true; });
 }
 
+// The group of options that says how robots are tried.
+inline constexpr const char* trials_group = "Trials";
 // How often robots are tried, from when on, and what counts. They mean the same everywhere.
 void add_trial_options(const Command& command, TrialSettings& trials);
-// Those of where a trial begins, for commands that show one.
-void add_start_options(const Command& command, TrialSettings& trials);
 // --mean, for commands whose trials have a score; add_evolution_trial_options() has it.
 void add_mean_option(const Command& command, TrialSettings& trials);
 // Sets what the options leave to others: without --jitter, several trials have the usual one, and one trial none.

@@ -25,6 +25,7 @@ struct SceneFile::Parts {
     simulation.add_to(command);
     view.add_to(command);
     attachments.add_to(command);
+    add_start_options(command, start);
     // Where a scene is computed, and how a list of files is read, is not part of it.
     for (const char* name : {"--device", "--threads", "--recursive", "--keep-going", "--follow"})
       command.remove_option(name);
@@ -36,6 +37,7 @@ struct SceneFile::Parts {
   SimulationOptions simulation;
   ViewOptions view;
   AttachmentOptions attachments;
+  TrialSettings start = one_trial();
   std::optional<ConfigFile> file;
 };
 
@@ -89,6 +91,7 @@ SceneFile::SceneFile(const std::filesystem::path& path) : parts_(std::make_uniqu
     (void)view();
     (void)attached();
     (void)driven();
+    validate(parts.start);
     (void)parts.simulation.seconds();
     // Without an environment of its own, its parameters are those of the environment that its robots choose.
     if (!parts.simulation.chosen_environment().empty()) (void)parts.simulation.configuration(parts.robots.physics());
@@ -104,6 +107,7 @@ const std::vector<std::string>& SceneFile::robots() const { return parts_->file-
 std::vector<RandomRobots> SceneFile::random() const { return parts_->robots.random(); }
 std::vector<AttachedMass> SceneFile::attached() const { return parts_->attachments.attached(); }
 std::vector<DrivenActuator> SceneFile::driven() const { return parts_->attachments.driven(); }
+TrialStart SceneFile::start() const { return {parts_->start, parts_->robots.seed_or_default()}; }
 ViewSettings SceneFile::view(Layout usual) const { return parts_->view.settings(usual); }
 
 void SceneFile::give_body(Robot& robot, const std::string& file) const {

@@ -10,6 +10,7 @@
 
 #include "app/options/attachment_options.h"
 #include "app/options/command.h"
+#include "app/options/trial_start.h"
 #include "app/scene/view_settings.h"
 #include "mercury/configuration.h"
 #include "mercury/generator.h"
@@ -37,6 +38,8 @@ class SceneFile {
   std::vector<AttachedMass> attached() const;
   // Actuators that are driven by hand; the same.
   std::vector<DrivenActuator> driven() const;
+  // Where its robots begin.
+  TrialStart start() const;
   // Gives a robot of one of its files a real body if the scene says so. Throws InputError.
   void give_body(Robot& robot, const std::string& file) const;
   // `files` = the robots of its files. Without `environment` in the scene, they and the random ones choose. Appends to

@@ -137,7 +137,8 @@ Viewer::Viewer(ViewerOptions options)
       window_("Mercury", preferences_.size, options_.paced),
       imgui_(window_, folder_.empty() ? folder_ : folder_ / "window.ini"),
       viewport_(window_.gl_context(), preferences_.quality), second_(window_.gl_context()),
-      scene_({.configuration = options_.configuration, .view = options_.view}), pacing_(options_.paced) {
+      scene_({.configuration = options_.configuration, .start = options_.start, .view = options_.view}),
+      pacing_(options_.paced) {
   if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_device)
     scene_.set_bridge(std::move(chosen.bridge));
   mouse_.set_actions({.click = [this](const Hit& hit) { return edit_body_at(context_, hit); },

@@ -24,6 +24,7 @@ struct ViewerOptions {
   std::vector<DrivenActuator> driven;        // by hand
   std::filesystem::path run;                 // of an evolution, opened with the window; empty = none
   Configuration configuration;
+  TrialStart start;  // where robots begin
   ViewSettings view;
   render::Quality quality = render::Quality::automatic;
   WindowSize size{0, 0};           // 0 = as last time

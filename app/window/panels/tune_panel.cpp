@@ -162,6 +162,41 @@ bool solver_section(Configuration& configuration, EventLog& log) {
   return changed;
 }
 
+// Where robots begin. It changes the scene itself.
+void start_section(PanelContext& context) {
+  heading("Start");
+  TrialStart edited = context.scene.start();
+  constexpr TrialSettings usual = one_trial();
+  bool changed = false;
+  for_each_parameter(edited.trials, [&](const auto& parameter, auto& value) {
+    if (!is_of_start(parameter.name)) return;
+    const std::string label = label_of(parameter.name),
+                      help = fmt::format("{}; acts when robots begin", parameter.help);
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, bool>) {
+      changed |= edit(label, help, value);
+    } else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, double>) {
+      auto number = static_cast<float>(value);
+      const std::string format = parameter.unit.empty() ? "%.2f" : fmt::format("%.2f {}", unit_text(parameter.unit));
+      if (slider(label.c_str(), help.c_str(), number, static_cast<float>(usual.*parameter.member),
+                 {parameter.typical.low, parameter.typical.high, format.c_str()})) {
+        value = static_cast<double>(number);
+        changed = true;
+      }
+    }
+    context.log.item(fmt::format("tune.{}", parameter.name));
+  });
+  if (edited.is_elsewhere()) {
+    auto seed = static_cast<int>(edited.seed);
+    row("seed", "of the direction and the distance, and of the turn: that of mercury run");
+    if (ImGui::InputInt("##seed", &seed) && seed >= 0) {
+      edited.seed = static_cast<std::uint64_t>(seed);
+      changed = true;
+    }
+    context.log.item("tune.start_seed");
+  }
+  if (changed) context.scene.set_start(edited);
+}
+
 bool environment_section(PanelContext& context, EnvironmentChoice& choice, Configuration& configuration) {
   heading("Environment");
   bool changed = choice.draw(context, configuration);
@@ -377,6 +412,7 @@ bool EnvironmentChoice::draw_hint(PanelContext& context, Configuration& configur
 void TunePanel::draw(PanelContext& context) {
   Configuration configuration = context.scene.configuration();
   if (draw_physics_sliders(context, environment_, configuration)) context.scene.set_configuration(configuration);
+  start_section(context);
   materials_.draw(context);
   // All changes until the mouse button is released are one undo step.
   if (ImGui::IsMouseReleased(0)) context.scene.end_edit();

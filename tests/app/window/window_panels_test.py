@@ -200,6 +200,25 @@ class PanelsTest(WindowCase):
         window.frame(lambda frame: near(frame["where"][0], window.items["target.handle"]))
         self.finish(window)
 
+    def test_a_robot_begins_around_the_target_and_returns_there(self):
+        window = self.open(str(SAMPLES.parent / "hunter.json"), "--paused", "--target-radius", "2", "--turned", "--seed", "4")
+        self.assertEqual(window.frame(lambda frame: frame["where"])["layout"], "grid")
+
+        def offset():
+            """From the target to the robot on the screen, when nothing moves any more."""
+            return numpy.array(window.standing()["where"][0]) - numpy.array(window.place("target.handle"))
+
+        begins = offset()
+        self.assertGreater(numpy.hypot(*begins), 100)
+        window.key("space")
+        window.frame(lambda frame: frame["steps"] > 1000)
+        window.key("space")
+        self.assertGreater(numpy.hypot(*(offset() - begins)), 5)
+        window.key("r")
+        window.frame(lambda frame: frame["steps"] == 0)
+        self.assertLess(numpy.hypot(*(offset() - begins)), 2)
+        self.finish(window)
+
     def test_a_brain_is_watched(self):
         window = self.small("--paused")
         window.open("Brain")
