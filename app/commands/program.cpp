@@ -175,11 +175,14 @@ class Program {
     if (!scene_->random().empty() && !command.find_option("--random"))
       throw InputError(scene_->path().string(),
                        fmt::format("has random robots, which {} does not take; give robot files", command.full_name()));
-    if (!scene_->attached().empty() && !command.find_option("--attach"))
-      warn(fmt::format("{}: pins and attached springs are left out; only mercury view has them",
-                       scene_->path().string()));
-    if (!scene_->driven().empty() && !command.find_option("--drive"))
-      warn(fmt::format("{}: drives by hand are left out; only mercury view has them", scene_->path().string()));
+    const auto leave_out = [&](const char* what, bool are_held, const char* option) {
+      if (are_held && !command.find_option(option))
+        warn(fmt::format("{}: {} are left out; only mercury view has them", scene_->path().string(), what));
+    };
+    const HeldParts held = scene_->held();
+    leave_out("pins and attached springs", !held.attached.empty(), "--attach");
+    leave_out("drives by hand", !held.drives.empty(), "--drive");
+    leave_out("neurons that are held by hand", !held.neurons.empty(), "--neuron");
     scene_options_ = scene_->arguments(command, arguments);
     const auto place = arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(places.front()));
     arguments.insert(place, scene_->robots().begin(), scene_->robots().end());

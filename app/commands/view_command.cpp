@@ -68,8 +68,7 @@ window::ViewerOptions viewer_options(const ViewCommandOptions& options) {
   result.start = {options.start, options.robots.seed_or_default()};
   result.view = options.view.settings(usual_layout(result.start));
   if (result.view.background) throw InputError("--background", "is of a still; mercury render draws figures");
-  result.attached = options.attachments.attached();
-  result.driven = options.attachments.driven();
+  result.held = options.attachments.held();
   return result;
 }
 

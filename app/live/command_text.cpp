@@ -243,13 +243,15 @@ OptionValues append_random_robots(const SceneDocument& document, CommandText& co
 }
 
 // The command names files first, and leaves out robots that are in none.
-void append_attachments(const SceneDocument& document, CommandText& command) {
+void append_held(const SceneDocument& document, CommandText& command) {
   SceneDocument named = document;
   std::erase_if(named.robots, [](const auto& robot) { return robot.source.file.empty() && !robot.source.generation; });
   std::stable_partition(named.robots.begin(), named.robots.end(),
                         [](const auto& robot) { return !robot.source.file.empty(); });
-  for (const AttachedMass& one : attached_in(named)) command.text += " --attach=" + text_of(one);
-  for (const DrivenActuator& one : driven_in(named)) command.text += " --drive=" + shell_quoted(text_of(one));
+  const HeldParts held = held_in(named);
+  for (const AttachedMass& one : held.attached) command.text += " --attach=" + text_of(one);
+  for (const HeldValue& one : held.drives) command.text += " --drive=" + shell_quoted(text_of(one));
+  for (const HeldValue& one : held.neurons) command.text += " --neuron=" + shell_quoted(text_of(one));
 }
 
 }  // namespace
@@ -262,7 +264,7 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
       command.notes.push_back(name + " is in no file; save it first");
     else if (robot.body.materials)
       command.notes.push_back(name + ": the changed materials are not in the command; save it first");
-    if (robot.body.by_hand && (subcommand != "view" || !held_neurons(robot.body).empty()))
+    if (robot.body.by_hand && subcommand != "view")
       command.notes.push_back(name + ": the muscles and neurons that are held by hand are not in the command");
     if (robot.source.file.empty()) continue;
     const std::string& file = robot.source.file;
@@ -271,7 +273,7 @@ CommandText command_text(const SceneDocument& document, const ViewSettings& sett
   const OptionValues options = append_random_robots(document, command);
   append(command.text, options);
   if (subcommand == "view")
-    append_attachments(document, command);
+    append_held(document, command);
   else if (!document.attachments.empty())
     command.notes.push_back("pins and attached springs are not in the command; only mercury view has them");
   append(command.text, options_of(document.start));

@@ -61,7 +61,7 @@ void LiveScene::frame(float aspect) {
   const std::optional<LivePerturbation>& pull = parts.pulls.by_mouse();
   if (pull && !parts.document.find(pull->robot)) end_perturbation();
   const bool complete = parts.background.work().empty();
-  if (parts.drive_opened(complete)) parts.apply_document();
+  if (parts.hold_opened(complete)) parts.apply_document();
   parts.pulls.attach_opened(complete, parts.messages);
   parts.pulls.update(*parts.snapshot);
   parts.update_ghosts();

@@ -236,10 +236,8 @@ class LiveScene {
   bool has_attachments(const std::vector<RobotId>& robots) const;
   void remove_attachments(const std::vector<RobotId>& robots);
   std::vector<PerturbationDetails> attachments() const;
-  // Attaches these as soon as the robots that are being opened or made are there; no edit of its own.
-  void attach_opened(std::vector<AttachedMass> attached);
-  // The same with actuators that are driven by hand.
-  void drive_opened(std::vector<DrivenActuator> driven);
+  // Holds these as soon as the robots that are being opened or made are there; no edit of its own.
+  void hold_opened(HeldParts held);
 
   // Comparison (comparison.h). The second side shows the same robots under other settings, from the moment shown on;
   // all that changes robots or time acts on both. nullopt ends it.

@@ -297,32 +297,38 @@ void LiveScene::drive_actuator(const std::vector<RobotId>& robots, const std::st
                         });
 }
 
-void LiveScene::drive_opened(std::vector<DrivenActuator> driven) { parts_->to_drive = std::move(driven); }
+void LiveScene::hold_opened(HeldParts held) {
+  parts_->pulls.attach_later(std::move(held.attached));
+  parts_->to_hold = std::move(held);
+}
 
-bool LiveScene::Parts::drive_opened(bool complete) {
-  if (to_drive.empty()) return false;
+bool LiveScene::Parts::hold_opened(bool complete) {
   bool changed = false;
-  for (const DrivenActuator& one : std::exchange(to_drive, {})) {
-    if (one.robot >= document.robots.size()) {
-      if (!complete)
-        to_drive.push_back(one);
-      else
-        report(Severity::warning, fmt::format("drive {}: robot {} is out of range, the scene has {}", text_of(one),
-                                              one.robot, robot_count_text(document.robots.size())));
-      continue;
+  // `what` is held: an element of ByHand::*list by the name that it has among the `names` of a robot.
+  const auto hold_all = [&](std::vector<HeldValue>& waiting, const char* option, const char* what,
+                            std::vector<float> ByHand::*list, const auto& names_of) {
+    for (const HeldValue& one : std::exchange(waiting, {})) {
+      if (one.robot >= document.robots.size()) {
+        if (!complete)
+          waiting.push_back(one);
+        else
+          report(Severity::warning, fmt::format("{} {}: robot {} is out of range, the scene has {}", option,
+                                                text_of(one), one.robot, robot_count_text(document.robots.size())));
+        continue;
+      }
+      LiveRobot& body = document.robots[one.robot].body;
+      const std::vector<std::string> names = names_of(*body.robot);
+      const auto found = std::ranges::find(names, one.name);
+      if (found == names.end()) {
+        report(Severity::warning,
+               fmt::format("{} {}: {} has no {} \"{}\"", option, text_of(one), body.name, what, one.name));
+        continue;
+      }
+      changed = hold(body, list, names.size(), static_cast<std::size_t>(found - names.begin()), one.value) || changed;
     }
-    LiveRobot& body = document.robots[one.robot].body;
-    const std::vector<Actuator> actuators = actuators_of(*body.robot);
-    const auto found = std::ranges::find(actuators, one.actuator, &Actuator::name);
-    if (found == actuators.end()) {
-      report(Severity::warning,
-             fmt::format("drive {}: {} has no actuator \"{}\"", text_of(one), body.name, one.actuator));
-      continue;
-    }
-    changed =
-        hold(body, &ByHand::drives, actuators.size(), static_cast<std::size_t>(found - actuators.begin()), one.drive) ||
-        changed;
-  }
+  };
+  hold_all(to_hold.drives, "drive", "actuator", &ByHand::drives, actuator_names);
+  hold_all(to_hold.neurons, "neuron", "neuron", &ByHand::neurons, neuron_names);
   return changed;
 }
 

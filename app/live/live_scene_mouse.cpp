@@ -239,8 +239,6 @@ void ScenePulls::attach_opened(bool complete, Messages& messages) {
   send();
 }
 
-void LiveScene::attach_opened(std::vector<AttachedMass> attached) { parts_->pulls.attach_later(std::move(attached)); }
-
 void LiveScene::attach_perturbation() {
   if (!parts_->pulls.by_mouse()) return;
   parts_->edit("attach a spring");

@@ -257,8 +257,7 @@ void LiveScene::open(const std::vector<fs::path>& paths) {
       if (opened->scene) {
         parts.open_scene(*opened->scene, pointers_to(opened->robots));
         for (OpenedRobot& robot : opened->robots) parts.append(std::move(robot.robot), {.file = robot.file});
-        parts.pulls.attach_later(opened->scene->attached());
-        parts.to_drive = opened->scene->driven();
+        hold_opened(opened->scene->held());
         parts.apply_document();
         for (const RandomRobots& random : opened->scene->random()) generate(random);
         return;

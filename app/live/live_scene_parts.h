@@ -145,20 +145,20 @@ struct LiveScene::Parts {
   TimelineMarks marks;
   bool goes_on = false;  // the moment shown becomes the present; physics has not done so yet
   std::uint64_t last_surroundings = 0;
-  std::filesystem::path scene_file;      // opened or saved last
-  std::vector<DrivenActuator> to_drive;  // of a scene whose robots are not all there yet
+  std::filesystem::path scene_file;  // opened or saved last
+  HeldParts to_hold;                 // of a scene whose robots are not all there yet; pulls has the attached ones
   RobotId watched_brain = 0;
   int brain_frames = 0;       // until snapshots stop reading it
   mutable int described = 0;  // frames until snapshots stop reading velocities for describe()
 
   Background background;  // last: its tasks end before the members that they use
 
-  // Drives the actuators that wait for it, of robots that are there. `complete`: no more will come, report what is
-  // missing. Returns whether the document has changed.
-  bool drive_opened(bool complete);
+  // Holds the actuators and neurons that wait for it, of robots that are there. `complete`: no more will come, report
+  // what is missing. Returns whether the document has changed.
+  bool hold_opened(bool complete);
   // Sends the document to the physics thread.
   void apply_document() {
-    drive_opened(false);                   // first, so that no step is made without it
+    hold_opened(false);                    // first, so that no step is made without it
     pulls.attach_opened(false, messages);  // the same
     physics.set_start(document.start);
     std::vector<LiveRobot> bodies;

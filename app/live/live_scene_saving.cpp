@@ -149,7 +149,7 @@ SaveResult LiveScene::save_scene(const fs::path& path, bool overwrite) {
   if (robots.empty()) return not_saved("there is no robot to save in a scene");
   try {
     const SceneFiles wanted = scene_files(path, robots, parts.document.configuration, parts.view,
-                                          attached_in(parts.document), driven_in(parts.document), parts.document.start);
+                                          held_in(parts.document), parts.document.start);
     const SaveResult result = save_files(wanted.files, overwrite);
     for (std::size_t i = 0; i < wanted.beside.size() && result.ok(); ++i) {
       parts.saved.note(robots[wanted.beside[i]].robot->body, wanted.files[i].path.string());

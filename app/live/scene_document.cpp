@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "mercury/brain.h"
+
 namespace mercury {
 
 const DocumentRobot* SceneDocument::find(RobotId id) const {
@@ -13,29 +15,35 @@ const DocumentRobot* SceneDocument::find(RobotId id) const {
   return found == robots.end() ? nullptr : &*found;
 }
 
-std::vector<AttachedMass> attached_in(const SceneDocument& document) {
-  std::vector<AttachedMass> all;
+std::vector<std::string> actuator_names(const Robot& robot) {
+  std::vector<std::string> names;
+  for (const Actuator& actuator : actuators_of(robot)) names.push_back(actuator.name);
+  return names;
+}
+std::vector<std::string> neuron_names(const Robot& robot) { return brain_layout(robot).neurons; }
+
+HeldParts held_in(const SceneDocument& document) {
+  HeldParts held;
   for (const auto& [spring, resets] : document.attachments) {
     const auto robot = std::ranges::find(document.robots, spring.robot, [](const auto& one) { return one.body.id; });
     if (robot == document.robots.end()) continue;
-    AttachedMass& one = all.emplace_back();
+    AttachedMass& one = held.attached.emplace_back();
     one.robot = static_cast<std::size_t>(robot - document.robots.begin());
     one.mass = spring.mass;
     if (spring.kind == LivePerturbation::Kind::spring) one.spring = {spring.target, spring.stiffness};
   }
-  return all;
-}
-
-std::vector<DrivenActuator> driven_in(const SceneDocument& document) {
-  std::vector<DrivenActuator> all;
+  const auto add = [](std::size_t robot, std::span<const float> values, const std::vector<std::string>& names,
+                      std::vector<HeldValue>& to) {
+    for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i)
+      if (!std::isnan(values[i])) to.push_back({robot, names[i], values[i]});
+  };
   for (std::size_t i = 0; i < document.robots.size(); ++i) {
     const LiveRobot& body = document.robots[i].body;
     if (!body.by_hand) continue;
-    const std::vector<Actuator> actuators = actuators_of(*body.robot);
-    for (std::size_t a = 0; a < std::min(actuators.size(), body.by_hand->drives.size()); ++a)
-      if (const float drive = body.by_hand->drives[a]; !std::isnan(drive)) all.push_back({i, actuators[a].name, drive});
+    add(i, body.by_hand->drives, actuator_names(*body.robot), held.drives);
+    add(i, body.by_hand->neurons, neuron_names(*body.robot), held.neurons);
   }
-  return all;
+  return held;
 }
 
 Robot whole_robot(const LiveRobot& robot) {

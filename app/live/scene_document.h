@@ -51,11 +51,12 @@ struct SceneDocument {
   const DocumentRobot* find(RobotId id) const;  // null if it is unknown
 };
 
-// The attachments as options and scenes have them.
-std::vector<AttachedMass> attached_in(const SceneDocument& document);
+// What may be held of a robot by hand, in the order of ByHand.
+std::vector<std::string> actuator_names(const Robot& robot);
+std::vector<std::string> neuron_names(const Robot& robot);
 
-// The drives by hand, the same.
-std::vector<DrivenActuator> driven_in(const SceneDocument& document);
+// What is held by hand, as options and scenes have it.
+HeldParts held_in(const SceneDocument& document);
 
 // The robot with its name and materials in the window, as it is saved.
 Robot whole_robot(const LiveRobot& robot);

@@ -130,8 +130,7 @@ bool is_of_scene(const std::pair<std::string, std::string>& option) {
 }  // namespace
 
 SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robots, const Configuration& configuration,
-                       const ViewSettings& view, const std::vector<AttachedMass>& attached,
-                       const std::vector<DrivenActuator>& driven, const TrialStart& start) {
+                       const ViewSettings& view, const HeldParts& held, const TrialStart& start) {
   std::vector<Form> forms = forms_of(robots);
   keep_one_shape_per_kind(robots, forms);
   const fs::path folder = fs::absolute(path).parent_path(), beside = path.stem().string() + "-robots";
@@ -159,13 +158,14 @@ SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robo
   text += "format = \"mercury-scene\"\nversion = 1\n";
   text += fmt::format("robots = {}\n", list_of(files));
   if (!random.empty()) text += fmt::format("random = {}\n", list_of(random));
-  const auto add_list = [&](const char* key, const auto& held) {
+  const auto add_list = [&](const char* key, const auto& parts) {
     std::vector<std::string> texts;
-    for (const auto& one : held) texts.push_back(text_of(one));
+    for (const auto& one : parts) texts.push_back(text_of(one));
     if (!texts.empty()) text += fmt::format("{} = {}\n", key, list_of(texts));
   };
-  add_list("attach", attached);
-  add_list("drive", driven);
+  add_list("attach", held.attached);
+  add_list("drive", held.drives);
+  add_list("neuron", held.neurons);
   for (const auto& [name, value] : options) {
     json_text(value);
     text += fmt::format("{} = {}\n", name.substr(2), value.empty() ? "true" : toml_value(value));

@@ -30,8 +30,7 @@ struct SceneFiles {
   std::vector<std::size_t> beside;
 };
 SceneFiles scene_files(const std::filesystem::path& path, const std::vector<SceneRobot>& robots,
-                       const Configuration& configuration, const ViewSettings& view,
-                       const std::vector<AttachedMass>& attached = {}, const std::vector<DrivenActuator>& driven = {},
+                       const Configuration& configuration, const ViewSettings& view, const HeldParts& held = {},
                        const TrialStart& start = {});
 
 }  // namespace mercury

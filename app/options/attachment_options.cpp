@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "app/options/option_values.h"
 #include "mercury/robot.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr const char* form = "ROBOT:MASS[:X,Y,Z:STIFFNESS]";
 constexpr const char* drive_form = "ROBOT:ACTUATOR:U";
+constexpr const char* neuron_form = "ROBOT:NEURON:VALUE";
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text) {
   throw InputError(option, fmt::format("\"{}\" is not accepted; give {}, as in 0:12 for a pin, or 0:12:0,0.5,1:40 for "
@@ -51,33 +53,47 @@ AttachedMass attached_mass_from(const std::string& option, const std::string& te
   return attached;
 }
 
-std::string text_of(const DrivenActuator& driven) {
-  return fmt::format("{}:{}:{}", driven.robot, driven.actuator, driven.drive);
-}
+std::string text_of(const HeldValue& held) { return fmt::format("{}:{}:{}", held.robot, held.name, held.value); }
 
-DrivenActuator driven_actuator_from(const std::string& option, const std::string& text) {
-  const auto refuse = [&] {
-    throw InputError(option, fmt::format("\"{}\" is not accepted; give {}, as in 0:tail:0.5 for the actuator tail of "
-                                         "robot 0 and a drive from -1 to 1",
-                                         text, drive_form));
-  };
+namespace {
+
+// `accepted`: what follows "give". `largest`: of the value, with either sign.
+HeldValue held_value_from(const std::string& option, const std::string& text, const std::string& accepted,
+                          float largest) {
+  const auto refuse = [&] { throw InputError(option, fmt::format("\"{}\" is not accepted; give {}", text, accepted)); };
   const std::size_t first = text.find(':'), last = text.rfind(':');
   if (first == std::string::npos || last <= first + 1) refuse();
-  DrivenActuator driven;
+  HeldValue held;
   try {
-    driven.robot = number_from<std::uint64_t>(option, std::string_view(text).substr(0, first));
-    driven.drive = number_from<float>(option, std::string_view(text).substr(last + 1));
+    held.robot = number_from<std::uint64_t>(option, std::string_view(text).substr(0, first));
+    held.value = number_from<float>(option, std::string_view(text).substr(last + 1));
   } catch (const InputError&) {
     refuse();
   }
-  driven.actuator = text.substr(first + 1, last - first - 1);
-  if (!(driven.drive >= -1 && driven.drive <= 1)) refuse();
-  return driven;
+  held.name = text.substr(first + 1, last - first - 1);
+  if (!(std::abs(held.value) <= largest)) refuse();
+  return held;
+}
+
+}  // namespace
+
+HeldValue drive_from(const std::string& option, const std::string& text) {
+  return held_value_from(
+      option, text,
+      fmt::format("{}, as in 0:tail:0.5 for the actuator tail of robot 0 and a drive from -1 to 1", drive_form), 1);
+}
+
+HeldValue neuron_from(const std::string& option, const std::string& text) {
+  return held_value_from(
+      option, text,
+      fmt::format("{}, as in \"0:hidden 3:0\" for neuron 3 of the layer hidden of robot 0, which is 0 then",
+                  neuron_form),
+      std::numeric_limits<float>::max());
 }
 
 void AttachmentOptions::add_to(const Command& command) {
   command
-      .add_list("--attach", texts_,
+      .add_list("--attach", attached_,
                 "Pin a mass of a robot, both counted from 0, or hold it by a spring; may be repeated")
       .one_value_each()
       .with_form(form)
@@ -89,18 +105,20 @@ void AttachmentOptions::add_to(const Command& command) {
       .one_value_each()
       .with_form(drive_form)
       .in_group("Robots");
+  command
+      .add_list("--neuron", neurons_,
+                "Hold a neuron of a robot's brain at a value, as the Brain panel does; 0 silences it; may be repeated")
+      .one_value_each()
+      .with_form(neuron_form)
+      .in_group("Robots");
 }
 
-std::vector<DrivenActuator> AttachmentOptions::driven() const {
-  std::vector<DrivenActuator> all;
-  for (const std::string& text : drives_) all.push_back(driven_actuator_from("--drive", text));
-  return all;
-}
-
-std::vector<AttachedMass> AttachmentOptions::attached() const {
-  std::vector<AttachedMass> all;
-  for (const std::string& text : texts_) all.push_back(attached_mass_from("--attach", text));
-  return all;
+HeldParts AttachmentOptions::held() const {
+  HeldParts held;
+  for (const std::string& text : attached_) held.attached.push_back(attached_mass_from("--attach", text));
+  for (const std::string& text : drives_) held.drives.push_back(drive_from("--drive", text));
+  for (const std::string& text : neurons_) held.neurons.push_back(neuron_from("--neuron", text));
+  return held;
 }
 
 }  // namespace mercury

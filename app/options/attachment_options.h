@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is held from the start: masses that are pinned or held by a spring (--attach, and the key `attach` of a scene),
-// and actuators that are driven by hand (--drive, and `drive`).
+// actuators that are driven by hand (--drive, and `drive`), and neurons (--neuron, and `neuron`).
 #pragma once
 
 #include <cstddef>
@@ -33,29 +33,35 @@ std::string text_of(const AttachedMass& attached);
 // Throws InputError.
 AttachedMass attached_mass_from(const std::string& option, const std::string& text);
 
-// An actuator that has this drive in place of its sine or brain.
-struct DrivenActuator {
+// An actuator or a neuron that is held by hand.
+struct HeldValue {
   std::size_t robot = 0;  // its number in the scene, from 0
-  std::string actuator;   // its name
-  float drive = 0;        // u in [-1, 1]
-  friend bool operator==(const DrivenActuator&, const DrivenActuator&) = default;
+  std::string name;       // of the actuator or the neuron
+  float value = 0;        // u of an actuator, in [-1, 1]; of a neuron, any finite number
+  friend bool operator==(const HeldValue&, const HeldValue&) = default;
 };
 
 // "0:tail:0.5".
-std::string text_of(const DrivenActuator& driven);
-// The name may have colons. Throws InputError.
-DrivenActuator driven_actuator_from(const std::string& option, const std::string& text);
+std::string text_of(const HeldValue& held);
+// The name may have colons. Throw InputError.
+HeldValue drive_from(const std::string& option, const std::string& text);
+HeldValue neuron_from(const std::string& option, const std::string& text);
+
+struct HeldParts {
+  std::vector<AttachedMass> attached;
+  std::vector<HeldValue> drives;   // of actuators, in place of their sines and brains
+  std::vector<HeldValue> neurons;  // have these values whatever they read
+};
 
 class AttachmentOptions {
  public:
   // Adds the options to a command. The object must outlive it.
   void add_to(const Command& command);
-  // Throw InputError.
-  std::vector<AttachedMass> attached() const;
-  std::vector<DrivenActuator> driven() const;
+  // Throws InputError.
+  HeldParts held() const;
 
  private:
-  std::vector<std::string> texts_, drives_;
+  std::vector<std::string> attached_, drives_, neurons_;
 };
 
 }  // namespace mercury

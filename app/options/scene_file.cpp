@@ -89,8 +89,7 @@ SceneFile::SceneFile(const std::filesystem::path& path) : parts_(std::make_uniqu
     parts.tree.parse(parts.file->arguments());
     (void)random();
     (void)view();
-    (void)attached();
-    (void)driven();
+    (void)held();
     validate(parts.start);
     (void)parts.simulation.seconds();
     // Without an environment of its own, its parameters are those of the environment that its robots choose.
@@ -105,8 +104,7 @@ SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
 const std::filesystem::path& SceneFile::path() const { return parts_->path; }
 const std::vector<std::string>& SceneFile::robots() const { return parts_->file->robots(); }
 std::vector<RandomRobots> SceneFile::random() const { return parts_->robots.random(); }
-std::vector<AttachedMass> SceneFile::attached() const { return parts_->attachments.attached(); }
-std::vector<DrivenActuator> SceneFile::driven() const { return parts_->attachments.driven(); }
+HeldParts SceneFile::held() const { return parts_->attachments.held(); }
 TrialStart SceneFile::start() const { return {parts_->start, parts_->robots.seed_or_default()}; }
 ViewSettings SceneFile::view(Layout usual) const { return parts_->view.settings(usual); }
 

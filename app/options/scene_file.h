@@ -34,10 +34,8 @@ class SceneFile {
   // Robot files, as paths from the working folder, and random robots, which follow them.
   const std::vector<std::string>& robots() const;
   std::vector<RandomRobots> random() const;
-  // Masses that are pinned or held by a spring; robots are counted as in the file, random ones last.
-  std::vector<AttachedMass> attached() const;
-  // Actuators that are driven by hand; the same.
-  std::vector<DrivenActuator> driven() const;
+  // What is held by hand; robots are counted as in the file, random ones last.
+  HeldParts held() const;
   // Where its robots begin.
   TrialStart start() const;
   // Gives a robot of one of its files a real body if the scene says so. Throws InputError.

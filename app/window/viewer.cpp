@@ -155,8 +155,7 @@ void Viewer::fill_scene() {
   if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
   if (!options_.files.empty()) scene_.open(options_.files);
   for (const RandomRobots& generation : options_.generations) scene_.generate(generation);
-  if (!options_.attached.empty()) scene_.attach_opened(options_.attached);
-  if (!options_.driven.empty()) scene_.drive_opened(options_.driven);
+  scene_.hold_opened(options_.held);
   if (!options_.run.empty()) open_first_run(context_, options_.run);
   for (const std::string& line : options_.notes) toasts_.show(Tone::info, line);
   scene_.set_speed(options_.speed);

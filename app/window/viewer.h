@@ -20,8 +20,7 @@ struct ViewerOptions {
   bool welcome = false;                      // they are the samples: the camera shows one of them, then all
   std::vector<std::filesystem::path> files;  // read once the window is open
   std::vector<RandomRobots> generations;     // made once the window is open
-  std::vector<AttachedMass> attached;        // pins and springs
-  std::vector<DrivenActuator> driven;        // by hand
+  HeldParts held;                            // by hand
   std::filesystem::path run;                 // of an evolution, opened with the window; empty = none
   Configuration configuration;
   TrialStart start;  // where robots begin

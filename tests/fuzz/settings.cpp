@@ -98,7 +98,9 @@ std::string written_scene(const std::string& path, const SceneFile& scene) {
   document.body.robot = std::make_shared<const Robot>(robot);
   std::vector<std::string> notes;
   const std::vector<SceneRobot> robots{{&document, "point.json"}};
-  return scene_files(path, robots, scene.configuration({}, notes), scene.view(), scene.attached()).files.back().content;
+  return scene_files(path, robots, scene.configuration({}, notes), scene.view(), scene.held(), scene.start())
+      .files.back()
+      .content;
 }
 
 }  // namespace
@@ -125,7 +127,10 @@ std::vector<std::string> scene_seeds() {
       "format = \"mercury-scene\"\nversion = 1\nrobots = []\ncut = \"y:0.2\"\nscale = \"-1,1\"\nplain = true\n\n"
       "[camera]\nmode = \"still\"\nazimuth = -1.3\nelevation = 0.2\ntarget = [0, 0.5, 1.0]\ndistance = 3\n",
       "format = \"mercury-scene\"\nversion = 1\nrobots = [\"x.json\"]\nattach = [\"0:12\", "
-      "\"3:4:0.5,-1e-3,2:40\"]\n",
+      "\"3:4:0.5,-1e-3,2:40\"]\ndrive = [\"0:left: fin:-0.5\"]\nneuron = [\"0:hidden 3:0\", \"1:motor 0 of "
+      "tail:1e-3\"]\n",
+      "format = \"mercury-scene\"\nversion = 1\nrobots = [\"x.json\"]\ntarget-radius = 2.5\ntarget-spread = 0.5\n"
+      "target-sphere = true\nturned = true\nseed = 7\n",
       "format = \"mercury-scene\"\nversion = 1\nrobots = [\"x.json\"]\ncamera = \"follow:eel\"\n"};
 }
 

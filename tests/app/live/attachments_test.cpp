@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pins and springs that stay attached: undo, scene files, commands and the timeline.
+// Pins and springs that stay attached, actuators and neurons that are held by hand: undo, scene files, commands and the
+// timeline.
 #include <gmock/gmock.h>
 
 #include <iterator>
@@ -36,7 +37,7 @@ class Attachments : public test::FolderTest {
   }
   static std::vector<std::string> texts_of(const LiveScene& scene) {
     std::vector<std::string> texts;
-    for (const AttachedMass& one : attached_in(scene.document())) texts.push_back(text_of(one));
+    for (const AttachedMass& one : held_in(scene.document()).attached) texts.push_back(text_of(one));
     return texts;
   }
   static std::string refusal(const std::string& text) {
@@ -188,7 +189,7 @@ class Drives : public Attachments {
   }
   static std::vector<std::string> drives_of(const LiveScene& scene) {
     std::vector<std::string> texts;
-    for (const DrivenActuator& one : driven_in(scene.document())) texts.push_back(text_of(one));
+    for (const HeldValue& one : held_in(scene.document()).drives) texts.push_back(text_of(one));
     return texts;
   }
 };
@@ -241,7 +242,7 @@ TEST_F(Drives, BadTextIsRefused) {
   for (const std::string text :
        {"", "0", "0:", "0:tail", "0::1", ":tail:1", "0:tail:2", "0:tail:nan", "0:tail:", "-1:tail:0", "a:tail:0"})
     try {
-      driven_actuator_from("--drive", text);
+      drive_from("--drive", text);
       ADD_FAILURE() << "accepted: " << text;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(),
@@ -254,6 +255,111 @@ TEST_F(Drives, BadTextIsRefused) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::StartsWith(path("bad.toml") + ":3: --drive: \"0:tail:1.5\" is not accepted"));
   }
+}
+
+// Neurons that are held by hand, of the Brain panel.
+
+class HeldNeurons : public Attachments {
+ protected:
+  HeldNeurons() {
+    Robot robot = random_voxel_robot({}, 9);
+    const auto muscles = static_cast<std::uint32_t>(actuators_of(robot).size());
+    robot.sensors = {{.kind = SensorKind::clock, .frequency = 9}};
+    robot.brain.emplace().layers = {{.name = "left: a", .neurons = 2}, {.name = "motor", .neurons = muscles}};
+    robot.brain->layers[0].inputs = {{.from = "senses", .weights = {0.9f, -0.4f, 0.3f, 0.7f}}};
+    robot.brain->layers[1].inputs = {{.from = "left: a", .weights = std::vector<float>(2 * muscles, 0.8f)}};
+    save_robot(path("thinker.json"), robot);
+  }
+  static std::vector<std::string> neurons_of(const LiveScene& scene) {
+    std::vector<std::string> texts;
+    for (const HeldValue& one : held_in(scene.document()).neurons) texts.push_back(text_of(one));
+    return texts;
+  }
+  // Where the masses are after that many steps.
+  static std::vector<Vec3> positions_after(LiveScene& scene, std::int64_t steps) {
+    scene.step(steps);
+    scene.wait_until_done();
+    const std::span<const Vec3> positions = scene.snapshot().positions.host();
+    return {positions.begin(), positions.end()};
+  }
+};
+
+TEST_F(HeldNeurons, ASceneFileKeepsThem) {
+  LiveScene scene(test::on_cpu());
+  scene.open({path("thinker.json"), path("thinker.json")});
+  scene.wait_until_done();
+  const std::vector<RobotId> ids = ids_of(scene);
+  scene.clamp_neuron(ids[0], 1, 0.0f);
+  scene.clamp_neuron(ids[1], 0, -0.25f);
+  scene.clamp_neuron(ids[1], 3, 1e-3f);
+  ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
+  LiveScene again(test::on_cpu());
+  again.open({path("held.toml")});
+  again.wait_until_done();
+  EXPECT_THAT(neurons_of(again), ElementsAre("0:left: a 1:0", "1:left: a 0:-0.25", "1:motor 1:0.001"));
+  EXPECT_THAT(again.take_messages(), IsEmpty());
+  EXPECT_THAT(again.command("view").text, HasSubstr(" --neuron='0:left: a 1:0' "));
+  EXPECT_THAT(again.command("view").notes, IsEmpty());
+  EXPECT_THAT(again.command("render").notes, testing::Contains(HasSubstr("held by hand are not in the command")));
+  // The physics has them from the first step on.
+  scene.reset();
+  const std::vector<Vec3> held = positions_after(again, 200);
+  EXPECT_TRUE(same_bits(positions_after(scene, 200), held));
+  Robot thinker = load_robot(path("thinker.json"));
+  Simulation alone(again.configuration(), std::vector{thinker, thinker});
+  alone.clamp_neuron(0, 1, 0.0f);
+  alone.clamp_neuron(1, 0, -0.25f);
+  alone.clamp_neuron(1, 3, 1e-3f);
+  alone.step(200);
+  std::vector<Vec3> positions(alone.mass_count());
+  alone.read_positions(positions);
+  EXPECT_TRUE(same_bits(positions, held));
+  Simulation free(again.configuration(), std::vector{thinker, thinker});
+  free.step(200);
+  free.read_positions(positions);
+  EXPECT_FALSE(same_bits(positions, held));
+}
+
+TEST_F(HeldNeurons, WhatDoesNotExistIsReported) {
+  write("bad.toml",
+        "format = \"mercury-scene\"\nversion = 1\nrobots = [\"thinker.json\"]\n"
+        "neuron = [\"1:motor 0:0\", \"0:motor 99:1\"]\n");
+  LiveScene scene(test::on_cpu());
+  scene.open({path("bad.toml")});
+  scene.wait_until_done();
+  scene.frame();
+  std::vector<std::string> texts;
+  for (const Message& message : scene.take_messages()) texts.push_back(message.text);
+  EXPECT_THAT(texts, testing::UnorderedElementsAre("neuron 1:motor 0:0: robot 1 is out of range, the scene has 1 robot",
+                                                   testing::AllOf(testing::StartsWith("neuron 0:motor 99:1: "),
+                                                                  testing::EndsWith(" has no neuron \"motor 99\""))));
+  EXPECT_THAT(neurons_of(scene), IsEmpty());
+}
+
+TEST_F(HeldNeurons, BadTextIsRefused) {
+  for (const std::string text : {"", "0", "0:", "0:motor 0", "0::1", ":motor 0:1", "0:motor 0:inf", "0:motor 0:nan",
+                                 "0:motor 0:", "0:motor 0:1e39", "-1:motor 0:0", "a:motor 0:0"})
+    try {
+      neuron_from("--neuron", text);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(),
+                  testing::StartsWith("--neuron: \"" + text + "\" is not accepted; give ROBOT:NEURON:VALUE"));
+    }
+  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\nneuron = [\"0:motor 0:x\"]\n");
+  try {
+    const SceneFile scene(path("bad.toml"));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith(path("bad.toml") + ":3: --neuron: \"0:motor 0:x\" is not accepted"));
+  }
+  // Other commands leave them out, and say so.
+  write("held.toml",
+        "format = \"mercury-scene\"\nversion = 1\nrobots = [\"thinker.json\"]\nneuron = [\"0:motor 0:0\"]\n");
+  const test::Outcome run = test::mercury({"run", path("held.toml"), "--seconds", "0.01", "--device", "cpu"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_THAT(run.messages,
+              HasSubstr("held.toml: neurons that are held by hand are left out; only mercury view has them\n"));
 }
 
 TEST_F(Attachments, BadTextIsRefused) {

@@ -238,7 +238,7 @@ TEST_F(Start, BadValuesInASceneAreRefusedWithTheirLine) {
 // A pin of a scene holds its mass where it begins.
 TEST_F(Start, PinsHoldMassesWhereTheyBegin) {
   LiveScene scene(options(around(0.6)));
-  scene.attach_opened({{.robot = 0, .mass = 2, .spring = {}}});
+  scene.hold_opened({.attached = {{.robot = 0, .mass = 2, .spring = {}}}});
   test::make_robots(scene, 1);
   const Vec3 start = positions_of(scene)[2];
   make_steps(scene, 500);
