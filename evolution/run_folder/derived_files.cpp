@@ -253,11 +253,13 @@ void write_generations(const RunHistory& run) {
   for (std::size_t i = 0; i < objectives; ++i)
     for (const char* name : {"best_", "upper_quartile_", "median_", "lower_quartile_"})
       csv.cell(name + score_name(i, objectives));
-  for (const char* name : {"sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed", "lines",
-                           "cells", "coverage", "qd_score", "physics", "seconds", "robots_per_second", "device"})
+  for (const char* name :
+       {"sound", "stopped", "exploded", "overstretched", "too_small", "undefined", "failed", "lines", "species",
+        "cells", "coverage", "qd_score", "physics", "seconds", "robots_per_second", "device"})
     csv.cell(name);
   for (std::size_t i = 0; i < islands_of(run); ++i) csv.cell("best_of_island_" + std::to_string(i));
   csv.end_line();
+  const std::vector<std::size_t> species = run.species();
   for (const GenerationSummary& generation : run.generations()) {
     csv.cell(generation.number).cell(generation.born).cell(generation.living).cell(generation.best);
     for (const ScoreSpread& scores : generation.scores)
@@ -270,7 +272,8 @@ void write_generations(const RunHistory& run) {
         .cell(generation.too_small)
         .cell(generation.undefined)
         .cell(generation.failed)
-        .cell(generation.lines);
+        .cell(generation.lines)
+        .cell(species.empty() ? std::string() : std::to_string(species[static_cast<std::size_t>(generation.number)]));
     if (has_map(run))
       csv.cell(generation.scored).cell(generation.coverage).cell(generation.score_sum);
     else

@@ -10,6 +10,7 @@
 
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/generation_record.h"
+#include "evolution/selection/islands.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
 #include "mercury/spread.h"
@@ -249,6 +250,29 @@ GenomePointer RunHistory::Parts::genome(std::uint64_t id) const {
   }
 }
 
+std::vector<std::size_t> RunHistory::Parts::species() const {
+  const AlgorithmSettings& algorithm = file.settings.evolution.algorithm;
+  if (!algorithm_of(algorithm).of_species) return {};
+  const std::lock_guard lock(species_mutex_);
+  const Islands islands(algorithm);
+  while (species_.size() < generations.size()) {
+    const auto number = static_cast<int>(species_.size());
+    const auto lives_on = [&](std::uint64_t id) { return died[id] == alive || died[id] > number; };
+    std::map<std::uint64_t, GenomePointer> living_then;
+    for (const auto& [id, genome] : species_living_)
+      if (lives_on(id)) living_then.emplace(id, genome);
+    std::uint64_t next = species_next_;
+    for (; next < individuals.size() && individuals[next].generation == number; ++next)
+      if (lives_on(next)) living_then.emplace(next, genome(next));
+    std::vector<Individual> all;
+    for (const auto& [id, genome] : living_then) all.emplace_back(individuals[id]).genome = genome;
+    species_.push_back(islands.species(all));
+    species_living_ = std::move(living_then);
+    species_next_ = next;
+  }
+  return species_;
+}
+
 RunHistory::RunHistory(const std::filesystem::path& folder, GenomeSpaceMaker make_space)
     : parts_(std::make_unique<Parts>(folder, std::move(make_space))) {}
 RunHistory::~RunHistory() = default;
@@ -270,6 +294,7 @@ std::optional<int> RunHistory::died(std::uint64_t id) const {
   return parts_->died[id] < 0 ? std::nullopt : std::optional(parts_->died[id]);
 }
 
+std::vector<std::size_t> RunHistory::species() const { return parts_->species(); }
 GenomePointer RunHistory::genome(std::uint64_t id) const { return parts_->genome(id); }
 
 Robot RunHistory::grow(std::uint64_t id) const { return run_robot(*this, id); }

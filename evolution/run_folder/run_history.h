@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -61,6 +62,7 @@ struct RunHistory::Parts {
   bool refresh(JournalReader::Check check = JournalReader::Check::all);
   const GenomeSpace& space() const;
   GenomePointer genome(std::uint64_t id) const;
+  std::vector<std::size_t> species() const;
   // Throws InputError for an individual that was never born.
   void check(std::uint64_t id) const;
 
@@ -87,6 +89,11 @@ struct RunHistory::Parts {
   bool same_quantities_ = true;               // the journal has those of this program, in the same order
   mutable std::once_flag space_made_;
   mutable std::unique_ptr<GenomeSpace> space_;
+  // Of species(): those counted so far, who lived after the last of these generations, and the first one born later.
+  mutable std::mutex species_mutex_;
+  mutable std::vector<std::size_t> species_;
+  mutable std::map<std::uint64_t, GenomePointer> species_living_;
+  mutable std::uint64_t species_next_ = 0;
 };
 
 }  // namespace mercury

@@ -104,4 +104,14 @@ std::vector<std::size_t> Islands::survivors(std::span<const Individual> pool, st
   return order;
 }
 
+std::size_t Islands::species(std::span<const Individual> living) const {
+  if (algorithms_.size() == 1) return algorithm().species(living);
+  std::vector<Group> groups(algorithms_.size());
+  for (std::size_t i = 0; i < living.size(); ++i) groups[living[i].island].add(living, i);
+  std::size_t count = 0;
+  for (std::size_t island = 0; island < groups.size(); ++island)
+    count += algorithms_[island]->species(groups[island].individuals);
+  return count;
+}
+
 }  // namespace mercury

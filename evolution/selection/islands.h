@@ -35,6 +35,8 @@ class Islands {
   std::vector<ChildPlan> plan(int generation, std::span<const Individual> living, std::size_t children,
                               std::uint64_t seed) const;
   std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t living) const;
+  // Of all islands together.
+  std::size_t species(std::span<const Individual> living) const;
 
  private:
   // How many of `count` places are those of an island.

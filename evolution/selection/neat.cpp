@@ -72,6 +72,8 @@ class Neat : public Algorithm {
     return chosen;
   }
 
+  std::size_t species(std::span<const Individual> living) const override { return species_of(living).size(); }
+
  private:
   using Species = std::vector<std::size_t>;  // the best first
 

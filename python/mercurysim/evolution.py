@@ -458,8 +458,8 @@ class Run(_Asked):
         """One element per generation: generation, born, living, best (an id), best_score, lower_quartile, median,
         upper_quartile and highest of the scores of the living (best_score2, ... of further objectives), how many of
         those born exploded, overstretched, too_small, undefined, stopped, failed; lines, the number of first ancestors of
-        the living; of a map cells (filled), coverage and qd_score (the sum of their scores); best_of_island_0 and so on, if
-        there are several; and seconds."""
+        the living; of neat species, the number of those into which the living are divided; of a map cells (filled), coverage
+        and qd_score (the sum of their scores); best_of_island_0 and so on, if there are several; and seconds."""
         table: Table = self._history.generations()
         return table
 

@@ -95,6 +95,9 @@ nb::dict generations_of(const RunHistory& self) {
   column("stopped", Integer{}, [](const GenerationSummary& one) { return one.stopped; });
   column("failed", Integer{}, [](const GenerationSummary& one) { return one.failed; });
   column("lines", Integer{}, [](const GenerationSummary& one) { return one.lines; });
+  if (const std::vector<std::size_t> species = self.species(); !species.empty())
+    column("species", Integer{},
+           [&](const GenerationSummary& one) { return species[static_cast<std::size_t>(one.number)]; });
   if (algorithm_of(self.settings().evolution.algorithm).has_map) {
     column("cells", Integer{}, [](const GenerationSummary& one) { return one.scored; });
     column("coverage", double{}, [](const GenerationSummary& one) { return one.coverage; });

@@ -143,6 +143,8 @@ def test_growth_of_brains_is_a_setting(tmp_path):
     run = evolution.start(tmp_path / "grown", "voxel", SIZE, genes="body,brain", **settings).go_on()
     assert run.settings["brain_growth"] is True and run.settings["new_neurons"] == 0.5
     assert run.settings["species"] == 12
+    species = run.generations()["species"]
+    assert len(species) == 4 and (species >= 1).all() and (species <= 12).all()
     layers = [len(run.robot(id).brain["layers"]) for id in range(len(run)) if run.robot(id).brain]
     assert min(layers) == 1 and max(layers) > 1
     with pytest.raises(mercurysim.InputError, match="brain_growth: brains do not change"):

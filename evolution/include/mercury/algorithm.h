@@ -107,6 +107,9 @@ class Algorithm {
   // assessed; the best first. In generation 0, `living` is 0. The order of equal ones is that of their ids.
   virtual std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t living) const = 0;
 
+  // Into how many species it divides individuals; 0 if it has none.
+  virtual std::size_t species(std::span<const Individual> /*living*/) const { return 0; }
+
   // Of algorithms that learn; others have nothing to do.
   // Begins: at these numbers, with children about `step` from them in each, if it searches among numbers.
   virtual void begin(std::span<const double> /*numbers*/, double /*step*/) {}

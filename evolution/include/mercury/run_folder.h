@@ -83,6 +83,9 @@ class RunHistory {
   const std::filesystem::path& folder() const;
   const RunSettings& settings() const;
   std::span<const GenerationSummary> generations() const;
+  // Into how many species the living were divided after each generation; empty if the algorithm has none. Reads the
+  // genomes of those who lived, once. Throws as genome().
+  std::vector<std::size_t> species() const;
   const GenomeSpace& space() const;  // made at the first call; throws as make_genome_space
   // Every individual that was ever born, by id, without its genome (nullptr).
   std::span<const Individual> individuals() const;

@@ -12,6 +12,7 @@
 
 #include "evolution/run_folder/champion_checks.h"
 #include "mercury/cuda_devices.h"
+#include "mercury/genome.h"
 #include "mercury/quantity.h"
 #include "mercury/robot_file.h"
 #include "mercury/samples.h"
@@ -289,6 +290,35 @@ TEST_F(EvolveCommand, GrowthOfBrainsIsASettingOfARun) {
           "--algorithm: neat divides robots into species by brains that grow; let brains grow");
   refused({"--genes", "body,brain", "--brain-growth", "--algorithm", "neat", "--species", "0"},
           "--species: 0 is not accepted; give 1 to 10000");
+}
+
+// Counted again from the genomes, by the definition of species in NEAT.
+TEST_F(EvolveCommand, GenerationsHaveTheNumberOfSpecies) {
+  const Arguments settings{"--species-distance", "0.4", "--species", "1000"};
+  ASSERT_EQ(evolve("whole", joined(growing("4"), settings)).status, 0);
+  ASSERT_EQ(evolve("parts", joined(growing("2"), settings)).status, 0);
+  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  const RunHistory run(path("whole"));
+  const auto rows = rows_of(read("whole/generations.csv")), of_parts = rows_of(read("parts/generations.csv"));
+  ASSERT_EQ(rows.size(), 5u);
+  std::set<std::string> counts;
+  for (int generation = 0; generation < 5; ++generation) {
+    std::vector<GenomePointer> oldest;
+    for (const Individual& one : run.individuals()) {
+      const std::optional<int> died = run.died(one.id);
+      if (one.generation > generation || (died && *died <= generation)) continue;
+      const GenomePointer genome = run.genome(one.id);
+      if (std::ranges::none_of(oldest, [&](const auto& other) { return *other->distance(*genome) < 0.4; }))
+        oldest.push_back(genome);
+    }
+    const std::string& count = rows[static_cast<std::size_t>(generation)].at("species");
+    EXPECT_EQ(count, std::to_string(oldest.size())) << generation;
+    EXPECT_EQ(of_parts[static_cast<std::size_t>(generation)].at("species"), count) << generation;
+    counts.insert(count);
+  }
+  EXPECT_GT(counts.size(), 1u);  // it is no constant
+  ASSERT_EQ(evolve("ga", small("1")).status, 0);
+  EXPECT_EQ(rows_of(read("ga/generations.csv")).back().at("species"), "");
 }
 
 TEST_F(EvolveCommand, NoveltyAgesIslandsAndEmittersGoOnBitForBit) {

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "evolution/selection/behavior.h"
+#include "evolution/selection/islands.h"
 #include "mercury/algorithm.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
@@ -548,6 +549,21 @@ TEST(Neat, RobotsAreOfTheFirstSpeciesWhoseOldestMemberIsNear) {
   // Of 0, 10 and 20 there may be two: at 3 * 1.25^6 = 11.4, 10 joins 0.
   EXPECT_THAT(children_of({{0, 1}, {10, 3}, {20, 6}}, {.species = 2}), ElementsAre(0, 150, 450));
   EXPECT_THAT(children_of({{0, 1}, {1e30, 3}, {2e30, 6}}, {.species = 1}), ElementsAre(0, 0, 600));
+}
+
+TEST(Neat, ItsSpeciesAreCounted) {
+  const auto species = [](const std::vector<Placed>& robots, AlgorithmSettings settings) {
+    return make_algorithm(settings)->species(placed(robots));
+  };
+  EXPECT_EQ(species({{0, 1}, {2, 1}, {4, 2}, {6.9, 4}}, {.name = "neat"}), 2u);
+  EXPECT_EQ(species({{0, 1}, {2, 1}, {4, 2}, {6.9, 4}}, {.name = "neat", .species_distance = 2.5}), 3u);
+  EXPECT_EQ(species({{0, 1}, {10, 3}, {20, 6}}, {.name = "neat", .species = 2}), 2u);
+  EXPECT_EQ(species({}, {.name = "neat"}), 0u);
+  EXPECT_EQ(species({{0, 1}, {10, 3}}, {.name = "ga"}), 0u);
+  // Robots of two islands are never of one species.
+  std::vector<Individual> living = placed({{0, 1}, {1, 1}, {20, 2}, {1, 4}});
+  living[3].island = 1;
+  EXPECT_EQ(Islands({.name = "neat", .islands = 2}).species(living), 3u);
 }
 
 TEST(Neat, SpeciesThatDoNotImproveDieOutButForTheBest) {
