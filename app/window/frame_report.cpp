@@ -16,10 +16,11 @@ namespace {
 constexpr double interval = 0.05;       // between frames that are written [s]
 constexpr std::size_t max_robots = 20;  // whose positions are written
 
-// The centers of the robots, in window coordinates.
+// The centers of the robots in the last frame, in window coordinates.
 std::vector<std::array<float, 2>> places(LiveScene& scene, const ShownView& shown) {
   const ViewportArea& area = shown.area;
   std::vector<std::array<float, 2>> places;
+  if (shown.drawn == 0) return places;
   for (const render::Bounds& box : scene.drawn().bounds()) {
     if (places.size() == max_robots) break;
     const render::Vector3 p =

@@ -39,6 +39,8 @@ using Clock = std::chrono::steady_clock;
 
 // Between frames while nothing moves [s]. Whoever reads a report waits for frames.
 constexpr double idle_time = 0.2, reported_idle_time = 0.03;
+// While the first robots are prepared, their surroundings are not drawn without them, for this long [s].
+constexpr double longest_blank = 0.5;
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 // True for key presses that a text field handles while the user types in it.
@@ -114,10 +116,12 @@ class Viewer {
   bool camera_moved_ = false;                 // between the last two frames
   bool camera_placed_ = false;                // the camera has been placed before the first robots
   bool began_ = false;                        // what the window was started with is there
-  bool begins_close_ = false;                 // it shows one robot before the group
-  int frames_due_ = 3;                        // frames of the panels to draw even if nothing changes
-  int redraws_ = 3;                           // of the robots
-  std::uint64_t shown_changes_ = 0;           // of the scene, in the last frame of the robots
+  bool expects_robots_ = false;               // it was started with some
+  Clock::time_point run_begin_;
+  bool begins_close_ = false;        // it shows one robot before the group
+  int frames_due_ = 3;               // frames of the panels to draw even if nothing changes
+  bool redraw_ = true;               // the robots, even if they rest: their area or bodies are new
+  std::uint64_t shown_changes_ = 0;  // of the scene, in the last frame of the robots
 
   // The last frame.
   std::int64_t shown_steps_ = -1;
@@ -152,6 +156,8 @@ Viewer::~Viewer() { save_session(context_, folder_); }
 
 void Viewer::fill_scene() {
   begins_close_ = options_.welcome && options_.playing;
+  expects_robots_ =
+      !options_.robots.empty() || !options_.files.empty() || !options_.generations.empty() || !options_.run.empty();
   if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
   if (!options_.files.empty()) scene_.open(options_.files);
   for (const RandomRobots& generation : options_.generations) scene_.generate(generation);
@@ -164,7 +170,7 @@ void Viewer::fill_scene() {
 
 int Viewer::run() {
   session_.begin();
-  auto last = Clock::now();
+  auto last = run_begin_ = Clock::now();
   while (!interrupted() && !panels_.quit_confirmed()) {
     if (window_.close_requested()) {
       window_.cancel_close();
@@ -184,7 +190,7 @@ int Viewer::run() {
 }
 
 bool Viewer::anything_moves() const {
-  return frames_due_ > 0 || redraws_ > 0 || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking ||
+  return frames_due_ > 0 || redraw_ || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking ||
          camera_.gliding() || camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() ||
          thumbnails_.busy() || recorder_.busy() || screenshot_.busy() || !scene_.work().empty() || mouse_.busy() ||
          viewport_.coarse() || second_.coarse();
@@ -258,7 +264,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   use_mouse();
   times_.mouse = since(mouse_begin);
   // In a steady view, the GPU draws the robots while the panels are made.
-  const bool early = camera_placed_ && redraws_ == 0 && scene_.playing();
+  const bool early = camera_placed_ && !redraw_ && scene_.playing();
   bool draws = early && !left_out && draw_picture(dt);
   const auto panels_begin = Clock::now();
   split_area(panels_.draw_frame());
@@ -290,11 +296,11 @@ void Viewer::split_area(const ViewportArea& whole) {
   const ViewportArea before = std::exchange(whole_area_, whole);
   if (before.low.x != whole.low.x || before.low.y != whole.low.y || before.high.x != whole.high.x ||
       before.high.y != whole.high.y)
-    redraws_ = 3;
+    redraw_ = true;
   area_ = second_.split(scene_, whole);
   context_.aspect = area_.aspect();
   if (second_.changed()) {
-    redraws_ = 3;
+    redraw_ = true;
     scene_.drawn().lay_out(area_.aspect());
     if (DrawnScene* second = scene_.second_drawn()) second->lay_out(area_.aspect());
   }
@@ -364,14 +370,14 @@ void Viewer::update_renderer() {
   DrawnScene& live = scene_.drawn();
   if (preferences_.quality != render::Quality::automatic && preferences_.quality != viewport_.renderer().quality()) {
     viewport_.renderer().set_quality(preferences_.quality);
-    redraws_ = 3;
+    redraw_ = true;
   }
   if (bodies_revision_ != live.bodies_revision()) {
     live.set_bodies(viewport_.renderer());
     bodies_revision_ = live.bodies_revision();
-    redraws_ = 3;
+    redraw_ = true;
   }
-  if (second_.update(scene_, viewport_.renderer().quality())) redraws_ = 3;
+  if (second_.update(scene_, viewport_.renderer().quality())) redraw_ = true;
   if (!camera_placed_ && !live.bounds().empty()) {
     CameraPlan plan = scene_.view().camera;
     plan.mode = camera_.mode();  // unless the user has changed it, that of the scene
@@ -399,7 +405,7 @@ void Viewer::begin_close() {
 
 bool Viewer::leaves_gpu_to_steps() const {
   if (!scene_.playing() || std::isfinite(scene_.speed()) || scene_.cuda_device() < 0) return false;
-  return redraws_ == 0 && !mouse_.busy() && !camera_.gliding() && !recorder_.busy();
+  return !redraw_ && !mouse_.busy() && !camera_.gliding() && !recorder_.busy();
 }
 
 // Returns whether it draws the robots.
@@ -413,15 +419,19 @@ bool Viewer::draw_picture(double dt) {
   camera_.free.right = legend.high.x > legend.low.x ? share(area_.high.x - legend.low.x, area_.width()) : 0;
   camera_.free.bottom = steps.high.y > steps.low.y ? share(area_.high.y - steps.low.y, area_.height()) : 0;
   const render::Camera camera = camera_.at(live.camera_boxes(), area_.aspect(), dt);
+  if (drawn_ == 0 && expects_robots_ && live.bounds().empty() && since(run_begin_) < longest_blank) return false;
   // A glide ends with moves too small to see, which must not keep the view coarse.
   const float least = 2e-4f * (camera.eye - camera.target).norm();
+  const bool moved_before = camera_moved_;
   camera_moved_ = (camera.eye - shown_camera_.eye).norm() > least ||
                   (camera.target - shown_camera_.target).norm() > least ||
                   camera.field_of_view != shown_camera_.field_of_view;
   const bool stepped = shown_steps_ != scene_.snapshot().steps || shown_time_ != live.scene().time;
   const bool changed = shown_changes_ != changes_of(scene_);
-  const bool moving = camera_moved_ || (stepped && scene_.playing()) || mouse_.busy();
-  if (!moving && !stepped && !changed && redraws_ == 0 && !viewport_.coarse() && !second_.coarse()) return false;
+  // A new area or new bodies move the camera once.
+  const bool jumps = redraw_ && !moved_before;
+  const bool moving = (camera_moved_ && !jumps) || (stepped && scene_.playing()) || mouse_.busy();
+  if (!moving && !stepped && !changed && !redraw_ && !viewport_.coarse() && !second_.coarse()) return false;
   if (pacing_.keeps_robots(leaves_gpu_to_steps())) return false;
   const auto begin = Clock::now();
   live.show_positions(viewport_.renderer());
@@ -434,7 +444,7 @@ bool Viewer::draw_picture(double dt) {
   shown_steps_ = scene_.snapshot().steps;
   shown_changes_ = changes_of(scene_);
   shown_time_ = live.scene().time;
-  redraws_ = std::max(0, redraws_ - 1);
+  redraw_ = false;
   return true;
 }
 
@@ -442,7 +452,7 @@ bool Viewer::draw_picture(double dt) {
 void Viewer::present(bool draws) {
   const bool exposed = window_.take_exposure(), looks_new = imgui_.end_frame();
   times_.waiting = 0;
-  if (!draws && !exposed && !looks_new && redraws_ == 0 && !recorder_.busy() && !screenshot_.busy() &&
+  if (!draws && !exposed && !looks_new && !redraw_ && !recorder_.busy() && !screenshot_.busy() &&
       !context_.screenshot_requested)
     return;
   const WindowSize pixels = window_.pixels();
@@ -450,7 +460,7 @@ void Viewer::present(bool draws) {
   glViewport(0, 0, pixels.width, pixels.height);
   glClearColor(0.08f, 0.10f, 0.13f, 1);
   glClear(GL_COLOR_BUFFER_BIT);
-  if (pixels.width > 0 && pixels.height > 0) {
+  if (pixels.width > 0 && pixels.height > 0 && drawn_ > 0) {
     viewport_.present(pixels.height);
     second_.present(pixels.height);
   }

@@ -30,6 +30,7 @@ Texture make_sand() {
   const Framebuffer framebuffer = make_framebuffer({sand.get()});
   glDisable(GL_BLEND);
   Fullscreen("sand.frag").draw_into(framebuffer.get(), sand_side, sand_side);
+  glUseProgram(0);  // whoever restores the current program would find that it is gone
   glGenerateTextureMipmap(sand.get());
   return sand;
 }
