@@ -153,7 +153,8 @@ bool CudaBackend::set_actuation(const ActuationSources& sources) {
     if (std::ranges::any_of(sources.actuator_of.subspan(i * std::size_t{max_materials}, max_materials),
                             [](std::uint8_t actuator) { return actuator != ActuationSources::no_actuator; }))
       robots_of[places_[i].size_class].push_back(i);
-  std::vector<DrivenMaterial> driven;
+  std::vector<DrivenMaterial>& driven = owned_->driven;
+  driven.clear();
   driven_of_.assign(places_.size(), {});
   for (std::size_t c = 0; c < robots_of.size(); ++c) {
     SizeClass& robots = owned_->classes[c];
@@ -189,11 +190,13 @@ bool CudaBackend::set_brains(std::span<const BrainPlan* const> plans) {
                           .order = &class_of(i).order_of(places_[i].number),
                           .size_class = places_[i].size_class,
                           .place = places_[i].number,
-                          .first_driven = driven_of_[i].first,
-                          .driven = driven_of_[i].second});
+                          .driven = std::span(owned_->driven).subspan(driven_of_[i].first, driven_of_[i].second),
+                          .phases = class_of(i).view().phases + std::size_t{places_[i].number} * max_materials,
+                          .columns = owned_->actuators.sources().columns});
   std::vector<std::uint32_t> class_sizes;
   for (const auto& robots : classes()) class_sizes.push_back(robots->size());
   owned_->brains.set(thinkers, class_sizes, main().get());
+  choose_launches();
   return true;
 }
 
@@ -240,11 +243,15 @@ void CudaBackend::begin_exchange() {
 void CudaBackend::choose_launches() {
   views_valid_ = false;
   real_bodies_ = std::ranges::any_of(classes(), [](const auto& robots) { return robots->has_real_bodies(); });
-  for (const auto& robots : classes()) {
-    if (robots->size() == 0) continue;
-    robots->choose_launch(configuration_, places_.size());
-    prepare_steps(configuration_.solver, model_for(*robots), robots->launch());
+  bool brains_elsewhere = false;
+  for (std::uint32_t c = 0; c < owned_->classes.size(); ++c) {
+    SizeClass& robots = owned_->classes[c];
+    if (robots.size() == 0) continue;
+    robots.choose_launch(configuration_, places_.size(), owned_->brains.bytes(c));
+    prepare_steps(configuration_.solver, model_for(robots), robots.launch());
+    brains_elsewhere = brains_elsewhere || robots.launch().brain.total() == 0;
   }
+  if (brains_elsewhere) owned_->brains.reserve_workspace();
   // Reports of the classes follow one another.
   first_report_.assign(1, 0);
   for (const auto& robots : classes()) first_report_.push_back(first_report_.back() + robots->size());

@@ -92,6 +92,7 @@ class CudaBackend final : public Backend {
     DeviceArray<RobotView> views;          // [robot], if views_valid_
     DeviceArray<float> rest;               // [mass][6], positions and velocities at the start, if rest_valid_
     Actuators actuators;                   // none are driven if it is empty
+    std::vector<DrivenMaterial> driven;    // what these drive
     DeviceBrains brains;                   // none think if it is empty
     MappedArray<DeviceTelemetry> reports;  // of the current state if report_valid_
     DeviceArray<DeviceTelemetry> samples;  // of step_and_report()

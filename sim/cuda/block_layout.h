@@ -8,12 +8,12 @@
 //   tiles        | 0  1  2  3 | 4  5  6  7 | 8  9      | 0  1  2  3 | 4  5  6  7 | 8  9      |
 //
 //   shared memory, from its first byte to `total`:
-//   +-----------------+----------+--------------+----------+-----------------+-----------------+
-//   | material tables | failures | rest lengths | contacts | tiles           | tiles           |
-//   | one, or one per | one per  | one table    | one list | of the first    | of the second   |
-//   | robot; copies   | robot    | per robot    | per robot| robot           | robot           |
-//   +-----------------+----------+--------------+----------+-----------------+-----------------+
-//                                  if records    if any      working memory (tile.h)
+//   +-----------------+----------+--------------+-----------+-----------+-----------+-----------+
+//   | material tables | failures | rest lengths | contacts  | brains    | tiles     | tiles     |
+//   | one, or one per | one per  | one table    | one list  | one per   | of the    | of the    |
+//   | robot; copies   | robot    | per robot    | per robot | robot     | first     | second    |
+//   +-----------------+----------+--------------+-----------+-----------+-----------+-----------+
+//                                  if records    if any      if any      working memory (tile.h)
 //                                  have one word
 //
 //   After the rest lengths come the relaxation times of the materials if springs have any, one table, or one per robot.
@@ -62,7 +62,7 @@ static_assert(sizeof(SpringParameters<Solver::xpbd>) == parameter_bytes);
 
 // Ends of the parts of shared memory [bytes].
 struct BlockLayout {
-  std::uint32_t tables, failures, lengths, relaxation_times, contacts, total;
+  std::uint32_t tables, failures, lengths, relaxation_times, contacts, brains, total;
 };
 
 // Pairs of near masses that are listed. If there are more, every step searches the cell grid.
@@ -104,7 +104,8 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
   layout.contacts = layout.relaxation_times;
   if (launch.contacts_on_chip)
     layout.contacts += launch.robots_per_block * contact_bytes(launch.contact_buckets, tiles);
-  layout.total = layout.contacts;
+  layout.brains = layout.contacts + launch.robots_per_block * launch.brain.total();
+  layout.total = layout.brains;
   if (launch.on_chip) layout.total += launch.robots_per_block * tiles * fields * field_bytes;
   return layout;
 }

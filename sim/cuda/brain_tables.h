@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brains in device memory. Plans that several robots share are there once; states stand in the order of the batch.
+// Brains in device memory, and what the step kernel keeps of each robot's brain through a launch:
+//
+//   +---------------+----------+------+-----------------------+---------+--------+----------------+---------+
+//   | ThinkingRobot | measures | sums | senses, neurons, sums | muscles | clamps | plan and body  | weights |
+//   +---------------+----------+------+-----------------------+---------+--------+----------------+---------+
+//                                                                                  if they fit on the chip
+//
+// A thought is a chain of short sums that wait for one another. So that they need not wait for device memory too, all
+// of this lies in shared memory if there is room (BrainBytes), and results are stored to device memory besides. Plans
+// that several robots have are in device memory once; states stand in the order of the batch.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +26,19 @@ struct SensedSpring {
 
 // BrainPlan::Place with slots.
 struct SensedPlace {
-  std::uint32_t first_row;                   // of its sums among those of the robot
+  std::uint32_t first_row;                   // of its sums
   std::uint32_t mass_shares, spring_shares;  // first come the rows of masses, then those of springs
   std::uint32_t masses, springs;
   double mass;  // of its masses together [kg]
 };
 
-// What a warp adds up for a place at once, in floats, into a row of sums; of tiles of a body that senses how it turns,
-// into two. The rows are then added up in double precision. The cut depends on the robot and not on the number of
-// warps, nor do the sums.
+// What a warp adds up for a place at once, in floats, into a row of sums: every `tiles_per_share` tiles of the whole
+// body, into two rows if it senses how it turns, and entries of lists. The rows are then added up in double precision.
+// The cut depends on the robot and not on the number of warps, nor do the sums.
 struct SensingShare {
-  enum Kind : std::uint32_t { tiles, masses, springs };
-  Kind kind;
+  bool of_springs;  // else of masses
   std::uint32_t row, count;
-  std::uint64_t first;  // tile of the robot, or entry of the lists
+  std::uint64_t first;  // in the lists
 };
 inline constexpr std::uint32_t tiles_per_share = 3, entries_per_share = 256, sums_per_row = 16;
 
@@ -38,56 +46,64 @@ struct BrainLayer : BrainPlan::Layer {
   bool reads_itself;  // a neuron has inputs from neurons of its layer
 };
 
-// Where the parts of a brain begin in the tables.
-struct ThinkingRobot {
-  std::uint32_t robot;  // in the batch
-  std::uint32_t brain;  // among the brains
-  float period;
-  std::uint64_t seed;
-  std::uint64_t first_sense, first_neuron, first_run, first_gate, first_learning, first_layer,
-      first_output;  // of the plan
-  std::uint32_t senses, neurons, layers, outputs, samples, weights;
-  std::uint64_t first_place, first_share, first_row, first_rest, first_activation, first_sample, first_weight,
-      first_driven, first_scratch;
-  std::uint32_t places, shares, driven;
-  bool uses_frame, uses_turn_rate;
+// How a brain drives a material of its robot.
+struct BrainMuscle {
+  float amplitude;
+  std::uint32_t neuron;  // or none
+};
+struct BrainMaterial {
+  const Material* own;
+  std::uint32_t setting;  // index in the shared arrays
+  std::uint32_t neuron;   // or BrainPlan::none
 };
 
-// Pointers to all of them.
-struct BrainTables {
-  const ThinkingRobot* robots;
-  const BrainPlan::Sense* senses;
-  const BrainPlan::Neuron* neurons;
-  const BrainPlan::Run* runs;
-  const BrainPlan::Gate* gates;
-  const BrainPlan::Learning* learnings;
-  const BrainLayer* layers;
-  const BrainPlan::Output* outputs;
-  const SensedPlace* places;
-  const SensingShare* shares;
+// The parts of a brain's memory begin here [bytes], from its own beginning, or from that of the plan or the body.
+struct BrainOffsets {
+  std::uint32_t measures, sums, values, muscles, clamps;
+  std::uint32_t neurons, runs, gates, learnings, layers, outputs;  // of the plan, after the senses
+  std::uint32_t shares;                                            // of the body, after the places
+};
+
+// The head of a brain's memory. Device memory has it as set by the host; a launch copies it and completes it.
+struct ThinkingRobot {
+  BrainOffsets at;
+  std::uint32_t robot;  // in the batch
+  float period;
+  std::uint32_t senses, neurons, layers, outputs, samples, weight_count;
+  std::uint32_t places, tile_shares, listed_shares, materials;
+  std::uint32_t plan_bytes, body_bytes;
+  bool uses_frame, uses_turn_rate;
+  // In device memory, plan, body and weights in the brain's memory if they fit.
+  const char *plan, *body;
+  float* weights;
+  float *stored_weights, *activations, *samples_of_senses;
+  const float* clamps;
+  const Vec3 *rest, *target;  // rest: [slot], from the center [m]
   const std::uint16_t* slots;
   const SensedSpring* springs;
-  const Vec3* rest;  // [slot], from the center [m]
-  float *activations, *samples, *weights;
-  const float* clamps;
-  const Vec3* targets;
+  const std::uint64_t* noise_seed;
   std::uint64_t* thoughts;
-  const std::uint64_t* noise_seeds;
-  // For the time of a thought.
-  float (*sums)[sums_per_row];
-  PlaceMeasures* measures;  // one per place
-  BodyMeasures* bodies;     // one per brain
-  float* scratch;           // senses, neurons, sums of neurons, of each brain
+  const BrainMaterial* material_sources;  // [materials]
+  Material* materials_now;                // [materials], as the three that follow
+  MusclePhase* phases;
+  MuscleSwing* swings;
+  std::uint64_t seed;
+  // Completed by a launch.
+  SensedWorld world;
+  std::uint64_t thought;
+  double mass;  // [kg]
+  std::uint32_t masses;
 };
 
 // What a launch of steps needs of brains.
 struct Thoughts {
   static constexpr std::uint32_t none = 0xffffffffu;
-  const std::uint32_t* thinkers = nullptr;  // by place: which of tables.robots it is, or none; null = no robot thinks
-  BrainTables tables{};
+  const std::uint32_t* thinkers = nullptr;  // by place: which of `robots` it is, or none; null = no robot thinks
+  const ThinkingRobot* robots = nullptr;
+  char* workspace = nullptr;  // [robots], of brains whose memory is not on the chip
+  std::uint32_t workspace_stride = 0;
   SensedWorld world{};
   ActuationSources sources{};
-  const DrivenMaterial* driven = nullptr;
 };
 
 }  // namespace mercury::cuda

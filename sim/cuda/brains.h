@@ -12,6 +12,7 @@
 #include "mercury/shared_array.h"
 #include "sim/cuda/actuation.h"
 #include "sim/cuda/brain_tables.h"
+#include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/slot_order.h"
 #include "sim/physics/brain_plan.h"
 
@@ -26,10 +27,16 @@ class DeviceBrains {
     const BrainPlan* plan;
     const SlotOrder* order;
     std::uint32_t size_class, place;
-    std::size_t first_driven, driven;  // among the driven materials
+    std::span<const DrivenMaterial> driven;  // in the order of their phases
+    MusclePhase* phases;                     // of the robot's first material
+    std::size_t columns;                     // of the shared arrays
   };
 
   bool empty() const { return thinkers_.size() == 0; }
+  // What the launches of a class would keep of each robot's brain.
+  BrainBytes bytes(std::uint32_t size_class) const { return empty() ? BrainBytes{} : bytes_[size_class]; }
+  // Makes room in device memory for what launches keep elsewhere than on the chip.
+  void reserve_workspace();
   // In the order of the batch. All states are zeros.
   // `class_sizes` = how many places each class has.
   void set(std::span<const Thinker> thinkers, std::span<const std::uint32_t> class_sizes, cudaStream_t stream);
@@ -45,30 +52,22 @@ class DeviceBrains {
 
  private:
   std::vector<DeviceArray<std::uint32_t>> thinkers_of_;  // [class][place]
-  BrainTables tables_{};
-  // What the tables point to.
+  std::vector<BrainBytes> bytes_;                        // [class]
   DeviceArray<ThinkingRobot> thinkers_;
-  DeviceArray<BrainPlan::Sense> senses_;
-  DeviceArray<BrainPlan::Neuron> neurons_;
-  DeviceArray<BrainPlan::Run> runs_;
-  DeviceArray<BrainPlan::Gate> gates_;
-  DeviceArray<BrainPlan::Learning> learnings_;
-  DeviceArray<BrainLayer> layers_;
-  DeviceArray<BrainPlan::Output> outputs_;
-  DeviceArray<SensedPlace> places_;
-  DeviceArray<SensingShare> shares_;
+  DeviceArray<char> workspace_;
+  std::uint32_t workspace_stride_ = 0;
+  // What the robots point to.
+  DeviceArray<std::byte> plans_, bodies_;
+  DeviceArray<BrainMaterial> materials_;
   DeviceArray<std::uint16_t> slots_;
   DeviceArray<SensedSpring> springs_;
   DeviceArray<Vec3> rest_;
   using SharedNumbers = std::shared_ptr<DeviceArray<float>>;
   SharedNumbers activations_, samples_, weights_;
   bool shared_ = false;
-  DeviceArray<float> clamps_, scratch_;
+  DeviceArray<float> clamps_;
   DeviceArray<Vec3> targets_;
   DeviceArray<std::uint64_t> thoughts_, noise_seeds_;
-  DeviceArray<float> sums_;
-  DeviceArray<PlaceMeasures> measures_;
-  DeviceArray<BodyMeasures> bodies_;
 };
 
 }  // namespace mercury::cuda

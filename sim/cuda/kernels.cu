@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "sim/cuda/actuate.cuh"
 #include "sim/cuda/stream.h"
+#include "sim/physics/actuation.h"
 
 namespace mercury::cuda {
 namespace {
@@ -123,9 +123,16 @@ __global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, 
                                bool before_step) {
   const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
   if (i >= count) return;
-  const bool works = ActuatedMaterial(driven[i], sources).set(sources, clock);
+  const DrivenMaterial to = driven[i];
+  const float drive = sources.drive[to.setting];
+  const ActuatorSetting setting{sources.amplitude[to.setting], sources.frequency[to.setting], sources.phase[to.setting],
+                                drive, is_driven(sources.driven[to.setting], drive)};
+  const Material now = actuated(*to.own, setting);
+  *to.now = now;
+  *to.phase = muscle_phase(now, clock);
+  *to.swing = MuscleSwing::of(now);
   // Several threads may write the same step.
-  if (!works && before_step && driven[i].status->exploded_step < 0) driven[i].status->exploded_step = clock.step;
+  if (has_failed(setting) && before_step && to.status->exploded_step < 0) to.status->exploded_step = clock.step;
 }
 
 }  // namespace

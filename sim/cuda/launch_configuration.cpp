@@ -18,8 +18,8 @@ bool writes_more_than_it_reads(const LaunchConfiguration& launch, std::uint32_t 
 
 // Takes as many copies of the material table as leave room for `blocks` blocks on a multiprocessor. Returns false if
 // not even one copy does.
-bool fit(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
-         std::uint32_t blocks) {
+bool fit_tables(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
+                std::uint32_t blocks) {
   const std::uint32_t tiles = robots.tile_stride;
   const std::uint32_t whole = limits.shared_per_multiprocessor;
   const auto fits = [&](std::uint32_t bits, std::uint32_t most) {
@@ -38,30 +38,51 @@ bool fit(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fie
   return false;
 }
 
+// The same with as much of a brain as there is room for. Weights that leave less than an eighth to cache with are
+// cached instead.
+bool fit(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
+         std::uint32_t blocks, const BrainBytes& brain) {
+  const std::uint32_t most = limits.shared_per_multiprocessor / 8 * 7;
+  LaunchConfiguration without = launch;
+  if (!fit_tables(without, robots, fields, limits, blocks)) return false;
+  for (const BrainBytes& part : {brain, BrainBytes{brain.scratch, brain.tables, 0}, BrainBytes{brain.scratch, 0, 0}}) {
+    if (part.total() == 0) break;
+    LaunchConfiguration with = launch;
+    with.brain = part;
+    if (!fit_tables(with, robots, fields, limits, blocks) || with.table_copy_bits < without.table_copy_bits) continue;
+    if (part.weights > 0 && blocks * (with.shared_bytes + limits.reserved_per_block) > most) continue;
+    launch = with;
+    return true;
+  }
+  launch = without;
+  return true;
+}
+
 // Small robots: several per block, as long as at least two blocks fill the multiprocessor's warps.
-bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields,
-                 const DeviceLimits& limits) {
+bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
+                 const BrainBytes& brain) {
   launch.warps_per_robot = even_warps(robots.tile_stride, resident_warps / 2);
   for (std::uint32_t n = std::min(resident_warps / 2 / launch.warps_per_robot, robots.robot_count); n > 0; --n) {
     launch.robots_per_block = n;
-    if (fit(launch, robots, fields, limits, resident_warps / (n * launch.warps_per_robot))) return true;
+    if (fit(launch, robots, fields, limits, resident_warps / (n * launch.warps_per_robot), brain)) return true;
   }
   return false;
 }
 
 // Large robots: one per block and multiprocessor.
-bool fit_one(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits) {
+bool fit_one(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
+             const BrainBytes& brain) {
   const std::uint32_t tiles = robots.tile_stride;
   launch.robots_per_block = 1;
   launch.warps_per_robot = divide_up(tiles, divide_up(tiles, resident_warps));
-  return fit(launch, robots, fields, limits, 1);
+  return fit(launch, robots, fields, limits, 1, brain);
 }
 
 }  // namespace
 
 LaunchConfiguration choose_launch_configuration(const Configuration& configuration, const BatchView& robots,
                                                 bool same_materials, bool viscous, std::size_t batch_size,
-                                                std::uint32_t table_chunks) {
+                                                std::uint32_t table_chunks, const BrainBytes& brain) {
   const DeviceLimits limits = device_limits();
   const std::uint32_t tiles = robots.tile_stride;
   LaunchConfiguration launch;
@@ -73,16 +94,16 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
   const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip); };
   // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
-  if (batch_size > limits.multiprocessors && fit_several(launch, robots, fields(), limits)) return launch;
+  if (batch_size > limits.multiprocessors && fit_several(launch, robots, fields(), limits, brain)) return launch;
   for (const bool contacts_on_chip : {true, false})
     for (const bool valence_on_chip : {true, false}) {
       launch.contacts_on_chip = contacts_on_chip;
       launch.valence_on_chip = valence_on_chip;
-      if (fit_one(launch, robots, fields(), limits)) return launch;
+      if (fit_one(launch, robots, fields(), limits, brain)) return launch;
     }
   launch.on_chip = false;
   launch.valence_on_chip = true;
-  fit_one(launch, robots, fields(), limits);
+  fit_one(launch, robots, fields(), limits, brain);
   return launch;
 }
 

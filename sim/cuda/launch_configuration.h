@@ -8,9 +8,20 @@
 #include <cstdint>
 
 #include "mercury/configuration.h"
+#include "mercury/host_device.h"
 #include "sim/cuda/layout.h"
 
 namespace mercury::cuda {
+
+// What a launch keeps of a robot's brain (brain_tables.h) [bytes].
+struct BrainBytes {
+  std::uint32_t scratch = 0, tables = 0, weights = 0;
+  MERCURY_HOST_DEVICE std::uint32_t total() const { return scratch + tables + weights; }
+  // The larger of each.
+  BrainBytes with(const BrainBytes& other) const {
+    return {std::max(scratch, other.scratch), std::max(tables, other.tables), std::max(weights, other.weights)};
+  }
+};
 
 struct LaunchConfiguration {
   std::uint32_t robots_per_block = 1;
@@ -24,6 +35,7 @@ struct LaunchConfiguration {
   std::uint32_t record_words = 2;                      // of the batch
   bool viscous = false;                                // springs have relaxation times
   bool contacts_on_chip = true;                        // else after the working memory in the workspace
+  BrainBytes brain;                                    // of each robot on the chip; 0 = in device memory
   std::size_t shared_bytes = 0;
   // Of a multiprocessor's memory, what its blocks need; the rest caches what they read in every step. But kernels that
   // share a multiprocessor must divide it alike, so a class beside others takes all. [%]
@@ -54,6 +66,7 @@ constexpr std::uint32_t tiles_per_warp(std::uint32_t tiles) {
 // Springs name materials below 32 `table_chunks`.
 LaunchConfiguration choose_launch_configuration(const Configuration& configuration, const BatchView& robots,
                                                 bool same_materials, bool viscous, std::size_t batch_size,
-                                                std::uint32_t table_chunks = max_materials / lanes);
+                                                std::uint32_t table_chunks = max_materials / lanes,
+                                                const BrainBytes& brain = {});
 
 }  // namespace mercury::cuda

@@ -51,10 +51,22 @@ class MaterialTable {
       const std::uint32_t id = chunk * lanes + lane_;
       const MuscleSwing swing = swings_[id];
       const MusclePhase phase = phases_[id];
-      if (step > 0 && !__any_sync(0xffffffffu, swing.amplitude != 0)) continue;
+      // A muscle of frequency 0, as a brain drives it, keeps its length.
+      if (step > 0 && !__any_sync(0xffffffffu, swing.amplitude != 0 && phase.per_step != 0)) continue;
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
       const float sine = sine_of_phase(phase_at(phase, now));
       spread(chunk, &Parameters::length_factor, length_factor(swing.amplitude, sine, swing.highest_sine));
+    }
+  }
+
+  // Calls change(id, factor) for the materials below `count`, each by one lane, and writes those length factors for
+  // which it returns true.
+  template <class Change>
+  __device__ void change_length_factors(std::uint32_t count, const Change& change) {
+    for (std::uint32_t chunk = warp_; chunk * lanes < count; chunk += warps_) {
+      const std::uint32_t id = chunk * lanes + lane_;
+      float factor = table_[id * copies_].length_factor;
+      if (__any_sync(0xffffffffu, id < count && change(id, factor))) spread(chunk, &Parameters::length_factor, factor);
     }
   }
 

@@ -228,12 +228,13 @@ void SizeClass::publish_own_models(const Configuration& configuration) {
   own_models_.write(0, models, urgent_->get());
 }
 
-void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size) {
+void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain) {
   publish_points();
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;
   const bool viscous =
       std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.highest_length_rate > 0; });
-  launch_ = choose_launch_configuration(configuration, view(), same_materials, viscous, batch_size, table_chunks_);
+  launch_ =
+      choose_launch_configuration(configuration, view(), same_materials, viscous, batch_size, table_chunks_, brain);
   const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(address_fields_, launch_.on_chip ? fields : 0);
   address_masses(0, old_fields, address_fields_);

@@ -72,7 +72,7 @@ class SizeClass {
   // One per place; null if the kernel of this class needs none.
   const OwnModel* own_models() const { return own_models_.data(); }
   // Chooses how to launch it beside the other classes; `batch_size` = robots of all classes.
-  void choose_launch(const Configuration& configuration, std::size_t batch_size);
+  void choose_launch(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain = {});
   const LaunchConfiguration& launch() const { return launch_; }
 
   // The table of a place; publish_materials() or publish_all_materials() uploads it.

@@ -69,9 +69,9 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   const auto& thread = part.context.thread;
   std::uint32_t& own = part.context.next_thought[part.context.number];
   if (own == step) {
-    const std::uint32_t next = think<typename Part::Memory>(arguments, thread.masses, thread.robot, thread.warp,
-                                                            Part::Robot::tile_bytes, step);
-    part.materials.update(arguments, step);
+    const std::uint32_t next = think<Part::Robot::solver, typename Part::Memory>(
+        arguments, brain_memory(arguments, Part::Robot::fields, part.context.number, thread.robot), thread.masses,
+        part.context.material_table, thread.robot, thread.warp, Part::Robot::tile_bytes, step);
     if (thread.warp == 0 && thread.lane == 0) own = next;
   }
   __syncthreads();
@@ -99,6 +99,10 @@ __global__ void __maxnreg__(72)
         part.context.next_thought[part.context.number] =
             part.context.has_robot ? first_thought(arguments, thread.robot) : Thoughts::none;
     }
+    if (arguments.thoughts.thinkers && arguments.steps > 0 && part.context.has_robot &&
+        arguments.thoughts.thinkers[thread.robot] != Thoughts::none)
+      load_brain(arguments, brain_memory(arguments, Part::Robot::fields, part.context.number, thread.robot),
+                 thread.robot, thread.warp);
     part.stepper.load_lengths(part.context.lengths);
     part.stepper.load_state();
     __syncthreads();

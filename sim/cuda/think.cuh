@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // A thought of a brain (mercury/brain.h), between two steps, by the warps of its robot:
 //
-//   measure   each warp     sums over a share of the masses or springs            -> BrainTables::sums
+//   measure   each warp     sums over a share of the masses or springs            -> sums
 //   -- barrier of the robot's warps, as after each of the following --
-//   conclude  each warp     a place from its sums, or the frame, or the turn rate -> measures, bodies
-//   sense     each thread   one sense                                             -> samples, scratch
+//   conclude  each warp     a place from its sums, or the frame, or the turn rate -> measures
+//   sense     each thread   one sense                                             -> samples, values
 //   update    8 lanes each  the sum of one neuron after the other
-//             each thread   one neuron, one weight that learns                    -> scratch, activations, weights
-//   drive     each thread   one output, then one driven material                  -> drives, materials
+//             each thread   one neuron, one weight that learns                    -> values, activations, weights
+//   drive     each thread   one output, one driven material                       -> drives, materials, their table
 //
-// The order of every sum depends only on the robot, not on its number of warps. What the threads exchange lies in
-// device memory, of which the cache has little to do meanwhile: so brains take nothing from the robots on the chip.
+// The order of every sum depends only on the robot, not on its number of warps. A thought's time is that of a chain of
+// accesses and of instructions that are fetched once per thought. So all that it reads lies in the brain's memory from
+// the beginning of the launch on (brain_tables.h), what it stores to device memory is not waited for, and loops are
+// short rather than unrolled.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 
 #include "mercury/shared_array.h"
-#include "sim/cuda/actuate.cuh"
+#include "sim/cuda/material_table.cuh"
 #include "sim/cuda/thread_context.cuh"
 #include "sim/physics/activation.h"
+#include "sim/physics/actuation.h"
 
 namespace mercury::cuda {
 
@@ -44,74 +47,143 @@ __device__ inline float sums_of_warp(float (&values)[sums_per_row]) {
   return values[0] + __shfl_xor_sync(0xffffffffu, values[0], 1);
 }
 
-// A robot of a block as its brain sees it.
-template <class Memory>
-struct ThinkingBody {
-  const StepArguments& arguments;
-  typename Memory::Address masses;  // of slot 0
-  std::uint32_t robot, warp, lane;
-  std::uint32_t tile_bytes;
+// Where the memory of a robot's brain is. `number` = of the robot in its block.
+__device__ inline char* brain_memory(const StepArguments& arguments, std::uint32_t fields, std::uint32_t number,
+                                     std::uint32_t place) {
+  const LaunchConfiguration& launch = arguments.launch;
+  const Thoughts& thoughts = arguments.thoughts;
+  if (launch.brain.total() > 0)
+    return shared_memory + block_layout(launch, arguments.batch.tile_stride, fields).contacts +
+           number * launch.brain.total();
+  return thoughts.workspace + std::size_t{thoughts.thinkers[place]} * thoughts.workspace_stride;
+}
 
-  __device__ std::uint32_t warps() const { return arguments.launch.warps_per_robot; }
-  __device__ std::uint32_t threads() const { return warps() * lanes; }
+template <class T>
+__device__ T* part_of(const char* memory, std::uint32_t offset) {
+  return reinterpret_cast<T*>(const_cast<char*>(memory) + offset);
+}
+
+// All warps of a robot that has a brain call this once per launch. Its memory is complete after their next barrier.
+__device__ __noinline__ void load_brain(const StepArguments& arguments, char* memory, std::uint32_t place,
+                                        std::uint32_t warp) {
+  const Thoughts& thoughts = arguments.thoughts;
+  const ThinkingRobot& from = thoughts.robots[thoughts.thinkers[place]];
+  const BrainBytes& room = arguments.launch.brain;
+  const std::uint32_t thread = warp * lanes + threadIdx.x % lanes, threads = arguments.launch.warps_per_robot * lanes;
+  const auto copy = [&]<class T>(T* to, const T* list, std::uint32_t count) {
+#pragma unroll 1
+    for (std::uint32_t i = thread; i < count; i += threads) to[i] = list[i];
+  };
+  const auto copy_bytes = [&](char* to, const char* list, std::uint32_t bytes) {
+    copy(reinterpret_cast<uint4*>(to), reinterpret_cast<const uint4*>(list), bytes / sizeof(uint4));
+  };
+  copy(part_of<std::uint32_t>(memory, 0), reinterpret_cast<const std::uint32_t*>(&from), sizeof(from) / 4);
+  copy(part_of<float>(memory, from.at.values) + from.senses, static_cast<const float*>(from.activations), from.neurons);
+  copy(part_of<float>(memory, from.at.clamps), from.clamps, from.neurons);
+  char* const plan = memory + room.scratch;
+  char* const body = plan + from.plan_bytes;
+  float* const weights = part_of<float>(plan, room.tables);
+  const std::uint32_t measures = sizeof(BodyMeasures) + from.places * sizeof(PlaceMeasures);
+#pragma unroll 1
+  for (std::uint32_t i = thread; i < measures / sizeof(double); i += threads)
+    part_of<double>(memory, from.at.measures)[i] = 0;
+  if (room.tables > 0) copy_bytes(plan, from.plan, from.plan_bytes), copy_bytes(body, from.body, from.body_bytes);
+  if (room.weights > 0) copy(weights, static_cast<const float*>(from.stored_weights), from.weight_count);
+  const ActuationSources& sources = thoughts.sources;
+#pragma unroll 1
+  for (std::uint32_t i = thread; i < from.materials; i += threads) {
+    const BrainMaterial source = from.material_sources[i];
+    const bool driven = source.neuron != BrainPlan::none && sources.driven[source.setting] != held_drive;
+    part_of<BrainMuscle>(memory, from.at.muscles)[i] = {
+        driven ? actuated_amplitude(*source.own, sources.amplitude[source.setting]) : 0,
+        driven ? source.neuron : BrainPlan::none};
+  }
+  wait_for_robot(arguments.launch.warps_per_robot);
+  if (thread != 0) return;
+  ThinkingRobot& head = *part_of<ThinkingRobot>(memory, 0);
+  if (room.tables > 0) head.plan = plan, head.body = body;
+  if (room.weights > 0) head.weights = weights;
+  head.world = thoughts.world;
+  if (const Vec3 target = *from.target; !std::isnan(target.x)) head.world.target = target;
+  head.thought = *from.thoughts;
+  head.seed = from.seed + *from.noise_seed;
+  head.mass = arguments.batch.robots[place].mass;
+  head.masses = arguments.batch.robots[place].masses;
+}
+
+// A robot of a block as its brain sees it.
+template <Solver solver_, class Memory>
+struct ThinkingBody {
+  static constexpr Solver solver = solver_;
+  const StepArguments& arguments;
+  char* brain;
+  typename Memory::Address masses;  // of slot 0
+  std::uint32_t place, warp, lane, warps;
+  std::uint32_t tile_bytes;
+  SpringParameters<solver>* material_table;
+
+  __device__ std::uint32_t threads() const { return warps * lanes; }
   __device__ std::uint32_t thread() const { return warp * lanes + lane; }
-  __device__ const RobotHeader& header() const { return arguments.batch.robots[robot]; }
   __device__ Mass<Memory> mass_at(std::uint32_t slot) const {
     return {masses + (slot / lanes * tile_bytes + slot % lanes * 4)};
   }
 };
 
-template <class Memory>
+template <Solver solver, class Memory>
 class Thought {
  public:
-  __device__ Thought(const ThinkingBody<Memory>& robot, const Clock& clock)
-      : robot_(robot), thoughts_(robot.arguments.thoughts), tables_(thoughts_.tables),
-        of_(tables_.robots[thoughts_.thinkers[robot.robot]]), clock_(clock), z_(tables_.scratch + of_.first_scratch) {}
+  __device__ Thought(const ThinkingBody<solver, Memory>& robot, const Clock& clock)
+      : robot_(robot), of_(*part_of<ThinkingRobot>(robot.brain, 0)), clock_(clock),
+        z_(part_of<float>(robot.brain, of_.at.values)) {}
 
   __device__ void think() const {
-    prefetch(tables_.weights + of_.first_weight, of_.weights);
-    prefetch(tables_.senses + of_.first_sense, of_.senses);
-    prefetch(tables_.neurons + of_.first_neuron, of_.neurons);
-    prefetch(tables_.samples + of_.first_sample, of_.senses);
-    prefetch(tables_.activations + of_.first_activation, of_.neurons);
-    prefetch(tables_.clamps + of_.first_activation, of_.neurons);
-    prefetch(thoughts_.driven + of_.first_driven, of_.driven);
-    if (of_.shares > 0) {
-      for (std::uint32_t share = robot_.warp; share < of_.shares; share += robot_.warps()) measure(share);
+    const std::uint32_t shares = of_.tile_shares + of_.listed_shares;
+    if (shares > 0) {
+#pragma unroll 1
+      for (std::uint32_t share = robot_.warp; share < shares; share += robot_.warps)
+        if (share < of_.tile_shares)
+          measure_tiles(share);
+        else
+          measure_list(body_part<SensingShare>(of_.at.shares)[share - of_.tile_shares]);
       wait();
-      for (std::uint32_t task = robot_.warp; task < conclusions(); task += robot_.warps()) conclude(task);
+#pragma unroll 1
+      for (std::uint32_t task = robot_.warp; task < conclusions(); task += robot_.warps) conclude(task);
       wait();
     }
     sense();
     wait();
-    for (std::uint32_t layer = 0; layer < of_.layers; ++layer) update(tables_.layers[of_.first_layer + layer]);
+#pragma unroll 1
+    for (std::uint32_t layer = 0; layer < of_.layers; ++layer) update(plan_part<BrainLayer>(of_.at.layers)[layer]);
     drive();
   }
 
  private:
-  // Of an array that is read later.
+  __device__ void wait() const { wait_for_robot(robot_.warps); }
   template <class T>
-  __device__ void prefetch(const T* array, std::uint32_t count) const {
-    constexpr std::uint32_t line = 128;
-    const auto* const bytes = reinterpret_cast<const char*>(array);
-    for (std::uint32_t at = robot_.thread() * line; at < count * sizeof(T); at += robot_.threads() * line)
-      asm volatile("prefetch.global.L1 [%0];" ::"l"(bytes + at));
+  __device__ const T* plan_part(std::uint32_t offset) const {
+    return part_of<const T>(of_.plan, offset);
   }
-  __device__ void wait() const { wait_for_robot(robot_.warps()); }
+  template <class T>
+  __device__ const T* body_part(std::uint32_t offset) const {
+    return part_of<const T>(of_.body, offset);
+  }
+  __device__ float* row_of_sums(std::uint32_t row) const {
+    return part_of<float>(robot_.brain, of_.at.sums) + row * sums_per_row;
+  }
+  __device__ BodyMeasures& body_measures() const { return *part_of<BodyMeasures>(robot_.brain, of_.at.measures); }
+  __device__ PlaceMeasures& place_measures(std::uint32_t number) const {
+    return part_of<PlaceMeasures>(robot_.brain, of_.at.measures + sizeof(BodyMeasures))[number];
+  }
   __device__ float mass(std::uint32_t slot) const {
     const BatchView& batch = robot_.arguments.batch;
-    return batch.point_masses ? batch.point_masses[std::size_t{robot_.robot} * batch.tile_stride * lanes + slot] : 1;
+    return batch.point_masses ? batch.point_masses[std::size_t{robot_.place} * batch.tile_stride * lanes + slot] : 1;
   }
 
-  __device__ void measure(std::uint32_t number) const {
-    const SensingShare share = tables_.shares[of_.first_share + number];
-    float* const out = tables_.sums[of_.first_row + share.row];
-    if (share.kind == SensingShare::springs)
-      measure_springs(share, out);
-    else if (share.kind == SensingShare::tiles)
-      measure_tiles(share, out);
+  __device__ void measure_list(const SensingShare& share) const {
+    if (share.of_springs)
+      measure_springs(share, row_of_sums(share.row));
     else
-      measure_masses(share, out);
+      measure_masses(share, row_of_sums(share.row));
   }
 
   // m d, m v, and masses on the ground, of the few masses that a lane has: rounding is that of the positions.
@@ -153,18 +225,18 @@ class Thought {
   __device__ Vec3 first_position() const { return robot_.mass_at(0).vector(field_x); }
   __device__ Vec3 first_velocity() const { return robot_.mass_at(0).vector(field_v); }
 
-  __device__ void measure_tiles(const SensingShare& share, float* out) const {
+  __device__ void measure_tiles(std::uint32_t share) const {
     const Vec3 origin = first_position(), moving = first_velocity();
     const bool uses_frame = of_.uses_frame, uses_turn_rate = of_.uses_turn_rate;
-    const std::uint32_t last =
-        min((static_cast<std::uint32_t>(share.first) + share.count) * lanes, robot_.header().masses);
-    const Vec3* const at_rest = tables_.rest + of_.first_rest;
+    const std::uint32_t masses_of_robot = of_.masses;
+    const Vec3* const at_rest = of_.rest;
     MassSums masses;
     TurningSums turning;
     float shape[9] = {};
-#pragma unroll 2
-    for (std::uint32_t slot = static_cast<std::uint32_t>(share.first) * lanes + robot_.lane; slot < last;
-         slot += lanes) {
+#pragma unroll
+    for (std::uint32_t tile = 0; tile < tiles_per_share; ++tile) {
+      const std::uint32_t slot = (share * tiles_per_share + tile) * lanes + robot_.lane;
+      if (slot >= masses_of_robot) break;
       const Vec3 rest = uses_frame ? at_rest[slot] : Vec3{};
       const float m = mass(slot);
       const Vec3 x = robot_.mass_at(slot).vector(field_x), d = x - origin,
@@ -176,6 +248,7 @@ class Thought {
       shape[3] = fmaf(X.y, d.x, shape[3]), shape[4] = fmaf(X.y, d.y, shape[4]), shape[5] = fmaf(X.y, d.z, shape[5]);
       shape[6] = fmaf(X.z, d.x, shape[6]), shape[7] = fmaf(X.z, d.y, shape[7]), shape[8] = fmaf(X.z, d.z, shape[8]);
     }
+    float* const out = row_of_sums(share * (uses_turn_rate ? 2 : 1));
     float sums[sums_per_row];
     masses.to(sums);
 #pragma unroll
@@ -192,7 +265,7 @@ class Thought {
     const Vec3 origin = first_position(), moving = first_velocity();
     MassSums masses;
     for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
-      const std::uint32_t slot = tables_.slots[share.first + i];
+      const std::uint32_t slot = of_.slots[share.first + i];
       const Vec3 x = robot_.mass_at(slot).vector(field_x);
       masses.add(mass(slot), x - origin, robot_.mass_at(slot).vector(field_v) - moving, x.z);
     }
@@ -210,7 +283,7 @@ class Thought {
     float strain = 0, rate = 0;
 #pragma unroll 4
     for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
-      const SensedSpring spring = tables_.springs[share.first + i];
+      const SensedSpring spring = of_.springs[share.first + i];
       const Mass<Memory> a = robot_.mass_at(spring.a), b = robot_.mass_at(spring.b);
       const Vec3 d = b.vector(field_x) - a.vector(field_x), v = b.vector(field_v) - a.vector(field_v);
       const float length = sqrtf(dot(d, d));
@@ -226,12 +299,14 @@ class Thought {
 
   // Of one place, the body's frame, or how it turns: each by a warp of its own.
   __device__ void conclude(std::uint32_t task) const {
-    if (task < of_.places)
-      conclude_place(task);
+    const bool of_place = task < of_.places;
+    const PlaceSums sums(*this, of_place ? task : 0);
+    if (of_place)
+      conclude_place(task, sums);
     else if (task == of_.places)
-      conclude_frame();
+      conclude_frame(sums);
     else
-      conclude_turn_rate();
+      conclude_turn_rate(sums);
   }
   __device__ std::uint32_t conclusions() const {
     return of_.places + (of_.uses_frame ? 1 : 0) + (of_.uses_turn_rate ? 1 : 0);
@@ -250,8 +325,8 @@ class Thought {
       if (lane >= 25) row = place.first_row + rows * place.mass_shares, column = lane - 25, count = place.spring_shares;
       if (lane >= 25) stride = 1;
       if (lane >= 27) count = 0;
-      const float* const sums = thought.tables_.sums[thought.of_.first_row + row] + column;
-#pragma unroll 8
+      const float* const sums = thought.row_of_sums(row) + column;
+#pragma unroll 4
       for (std::uint32_t i = 0; i < count; ++i) sum_ += static_cast<double>(sums[i * stride * sums_per_row]);
     }
     __device__ double of(std::uint32_t column) const {
@@ -266,69 +341,63 @@ class Thought {
     double sum_ = 0;
   };
 
-  __device__ const SensedPlace& place(std::uint32_t number) const { return tables_.places[of_.first_place + number]; }
+  __device__ const SensedPlace& place(std::uint32_t number) const { return body_part<SensedPlace>(0)[number]; }
 
-  __device__ void conclude_place(std::uint32_t number) const {
-    const PlaceSums sums(*this, number);
+  __device__ void conclude_place(std::uint32_t number, const PlaceSums& sums) const {
     const SensedPlace& place = this->place(number);
-    const double share_of_mass = 1 / (number == 0 ? robot_.header().mass : place.mass);
-    const std::uint32_t masses = number == 0 ? robot_.header().masses : place.masses;
+    const double share_of_mass = 1 / (number == 0 ? of_.mass : place.mass);
+    const std::uint32_t masses = number == 0 ? of_.masses : place.masses;
     const double touching = sums.of(6), share_of_springs = place.springs > 0 ? 1.0 / place.springs : 0;
     PlaceMeasures measured;
     measured.center = Double3(first_position()) + share_of_mass * sums.three(0);
     measured.velocity = Double3(first_velocity()) + share_of_mass * sums.three(3);
-    measured.touch = thoughts_.world.ground ? touching / masses : 0;
+    measured.touch = of_.world.ground ? touching / masses : 0;
     measured.strain = share_of_springs * sums.of(25);
     measured.strain_rate = share_of_springs * sums.of(26);
-    if (robot_.lane == 0) tables_.measures[of_.first_place + number] = measured;
+    if (robot_.lane == 0) place_measures(number) = measured;
   }
 
-  __device__ void conclude_frame() const {
-    const PlaceSums sums(*this, 0);
+  __device__ void conclude_frame(const PlaceSums& sums) const {
     double s[9];
 #pragma unroll
     for (std::uint32_t i = 0; i < 9; ++i) s[i] = sums.of(7 + i);
     const Rotation frame = rotation_of(s);
-    if (robot_.lane == 0) tables_.bodies[of_.brain].frame = frame;
+    if (robot_.lane == 0) body_measures().frame = frame;
   }
 
-  __device__ void conclude_turn_rate() const {
-    const PlaceSums sums(*this, 0);
-    const double weight = robot_.header().mass;
-    const Double3 c = (1 / weight) * sums.three(0), mc = sums.three(0),
+  __device__ void conclude_turn_rate(const PlaceSums& sums) const {
+    const Double3 c = (1 / of_.mass) * sums.three(0), mc = sums.three(0),
                   momentum = sums.three(16) - cross(c, sums.three(3));
     const Double3 squares = sums.three(19), products = sums.three(22);
     const double xx = squares.x - mc.x * c.x, yy = squares.y - mc.y * c.y, zz = squares.z - mc.z * c.z;
     const Double3 turn_rate = angular_velocity(momentum, {yy + zz, xx + zz, xx + yy, -(products.x - mc.x * c.y),
                                                           -(products.y - mc.x * c.z), -(products.z - mc.y * c.z)});
-    if (robot_.lane == 0) tables_.bodies[of_.brain].turn_rate = turn_rate;
+    if (robot_.lane == 0) body_measures().turn_rate = turn_rate;
   }
 
   __device__ void sense() const {
-    float* const samples = tables_.samples + of_.first_sample;
-    const float* const neurons = tables_.activations + of_.first_activation;
-    const std::uint64_t thought = tables_.thoughts[of_.brain], seed = of_.seed + tables_.noise_seeds[of_.brain];
-    Vec3 target = tables_.targets[of_.brain];
-    if (std::isnan(target.x)) target = thoughts_.world.target;
+    float* const samples = of_.samples_of_senses;
+    const float* const neurons = z_ + of_.senses;
     // Senses of one kind follow one another: they go to different warps, which compute different kinds at once.
-    for (std::uint32_t i = robot_.warp + robot_.lane * robot_.warps(); i < of_.senses; i += robot_.threads()) {
-      const BrainPlan::Sense sense = tables_.senses[of_.first_sense + i];
+#pragma unroll 1
+    for (std::uint32_t i = robot_.warp + robot_.lane * robot_.warps; i < of_.senses; i += robot_.threads()) {
+      const BrainPlan::Sense& sense = plan_part<BrainPlan::Sense>(0)[i];
       float value = 0;
       if (sense.kind == SensorKind::clock)
         value = clock_sense(sense, clock_);
       else if (sense.kind == SensorKind::neuron || sense.kind == SensorKind::neighbors)
         value = sense.neuron == BrainPlan::none ? 0 : neurons[sense.neuron];
       else
-        value = static_cast<float>(body_sense(sense, tables_.measures[of_.first_place + sense.place],
-                                              tables_.bodies[of_.brain], thoughts_.world, target));
+        value = static_cast<float>(
+            body_sense(sense, place_measures(sense.place), body_measures(), of_.world, of_.world.target));
       value *= sense.gain;
-      if (sense.noise > 0) value = multiply_add(sense.noise, normal_number(seed, thought, i), value);
+      if (sense.noise > 0) value = multiply_add(sense.noise, normal_number(of_.seed, of_.thought, i), value);
+      z_[i] = sense.delay == 0 ? value : samples[(sense.delay - 1) * of_.senses + i];
+#pragma unroll 1
       for (std::uint32_t sample = of_.samples - 1; sample > 0; --sample)
         samples[sample * of_.senses + i] = samples[(sample - 1) * of_.senses + i];
       samples[i] = value;
-      z_[i] = sense.delay == 0 ? value : samples[sense.delay * of_.senses + i];
     }
-    for (std::uint32_t i = robot_.thread(); i < of_.neurons; i += robot_.threads()) z_[of_.senses + i] = neurons[i];
   }
 
   // y <- k y + g act(W z + b). Eight lanes sum up a neuron, and each of them ends one of the eight that they
@@ -336,14 +405,15 @@ class Thought {
   __device__ void update(const BrainLayer& layer) const {
     float* const neurons = z_ + of_.senses;
     float* const sums = neurons + of_.neurons;
-    float* const weights = tables_.weights + of_.first_weight;
     const std::uint32_t groups = robot_.threads() / neuron_lanes, group = robot_.thread() / neuron_lanes,
                         member = robot_.thread() % neuron_lanes;
+#pragma unroll 1
     for (std::uint32_t first = 0; first < layer.count; first += groups * neuron_lanes) {
       float own = 0;
+#pragma unroll 1
       for (std::uint32_t pass = 0; pass < neuron_lanes && first + pass * groups < layer.count; ++pass) {
         const std::uint32_t i = first + pass * groups + group;
-        const float sum = sum_of_lanes(i < layer.count ? part_of_sum(layer.first + i, weights) : 0);
+        const float sum = sum_of_lanes(i < layer.count ? part_of_sum(layer.first + i) : 0);
         own = pass == member ? sum : own;
       }
       const std::uint32_t i = first + member * groups + group;
@@ -356,11 +426,12 @@ class Thought {
       wait();
     }
     if (layer.learnings == 0) return;
+#pragma unroll 1
     for (std::uint32_t i = robot_.thread(); i < layer.learnings; i += robot_.threads()) {
-      const BrainPlan::Learning learning = tables_.learnings[of_.first_learning + layer.first_learning + i];
-      const float y = neurons[learning.neuron];
-      float& weight = weights[learning.weight];
-      weight = multiply_add(learning.rate * y, fnma(y, weight, z_[learning.source]), weight);
+      const BrainPlan::Learning& learning = plan_part<BrainPlan::Learning>(of_.at.learnings)[layer.first_learning + i];
+      const float y = neurons[learning.neuron], weight = of_.weights[learning.weight];
+      of_.stored_weights[learning.weight] = of_.weights[learning.weight] =
+          multiply_add(learning.rate * y, fnma(y, weight, z_[learning.source]), weight);
     }
     wait();
   }
@@ -368,15 +439,15 @@ class Thought {
   // The new activation of a neuron of a layer, of which others know nothing yet: only itself may be gated by it.
   __device__ float updated(const BrainLayer& layer, std::uint32_t i, float sum) const {
     const std::uint32_t number = layer.first + i;
-    const BrainPlan::Neuron neuron = tables_.neurons[of_.first_neuron + number];
-    const float clamped = tables_.clamps[of_.first_activation + number];
+    const BrainPlan::Neuron& neuron = plan_part<BrainPlan::Neuron>(of_.at.neurons)[number];
+    const float clamped = part_of<float>(robot_.brain, of_.at.clamps)[number];
     const float* const neurons = z_ + of_.senses;
     const float y = neurons[number], act = activation_of(neuron.activation, sum);
-    const float changed =
-        layer.first_gate == BrainPlan::none
-            ? changed_activation(neuron, y, act)
-            : gated_activation(tables_.gates[of_.first_gate + layer.first_gate + i], neuron.alpha, neurons, y, act);
-    return tables_.activations[of_.first_activation + number] = std::isnan(clamped) ? changed : clamped;
+    const float changed = layer.first_gate == BrainPlan::none
+                              ? changed_activation(neuron, y, act)
+                              : gated_activation(plan_part<BrainPlan::Gate>(of_.at.gates)[layer.first_gate + i],
+                                                 neuron.alpha, neurons, y, act);
+    return of_.activations[number] = std::isnan(clamped) ? changed : clamped;
   }
 
   // Lanes that add up a neuron's inputs together.
@@ -387,12 +458,15 @@ class Thought {
     return sum;
   }
   // This lane's part: every eighth element of a long run, every eighth short run, and lane 0 has the bias.
-  __device__ float part_of_sum(std::uint32_t number, const float* weights) const {
-    const BrainPlan::Neuron neuron = tables_.neurons[of_.first_neuron + number];
-    const std::uint32_t lane = robot_.thread() % neuron_lanes;
+  __device__ float part_of_sum(std::uint32_t number) const {
+    const BrainPlan::Neuron& neuron = plan_part<BrainPlan::Neuron>(of_.at.neurons)[number];
+    const BrainPlan::Run* const runs = plan_part<BrainPlan::Run>(of_.at.runs) + neuron.first_run;
+    const float* const weights = of_.weights;
+    const std::uint32_t lane = robot_.thread() % neuron_lanes, count = neuron.runs;
     float sum = lane == 0 && neuron.bias != BrainPlan::none ? weights[neuron.bias] : 0;
-    for (std::uint32_t r = 0; r < neuron.runs; ++r) {
-      const BrainPlan::Run run = tables_.runs[of_.first_run + neuron.first_run + r];
+#pragma unroll 1
+    for (std::uint32_t r = 0; r < count; ++r) {
+      const BrainPlan::Run run = runs[r];
       const bool is_long = run.count >= neuron_lanes;
       if (!is_long && r % neuron_lanes != lane) continue;
       const std::uint32_t stride = is_long ? neuron_lanes : 1;
@@ -404,28 +478,39 @@ class Thought {
   }
 
   __device__ void drive() const {
-    const ActuationSources& sources = thoughts_.sources;
+    const float* const neurons = z_ + of_.senses;
+    const ActuationSources& sources = robot_.arguments.thoughts.sources;
+#pragma unroll 1
     for (std::uint32_t i = robot_.thread(); i < of_.outputs; i += robot_.threads()) {
-      const BrainPlan::Output output = tables_.outputs[of_.first_output + i];
+      const BrainPlan::Output output = plan_part<BrainPlan::Output>(of_.at.outputs)[i];
       const std::size_t at = of_.robot * sources.columns + output.actuator;
-      if (sources.driven[at] != held_drive) sources.drive[at] = drive_of(z_[of_.senses + output.neuron]);
+      const std::uint8_t driven = sources.driven[at];
+      if (driven == held_drive) continue;
+      sources.drive[at] = drive_of(neurons[output.neuron]);
+      if (driven == 0) sources.driven[at] = 1;
     }
-    if (robot_.thread() == 0) ++tables_.thoughts[of_.brain];
-    const DrivenMaterial* const driven = thoughts_.driven + of_.first_driven;
-    std::uint32_t i = robot_.thread();
-    ActuatedMaterial first;
-    if (i < of_.driven) first = ActuatedMaterial(driven[i], sources);
-    wait();
-    if (i < of_.driven) (void)first.set(sources, clock_);
-    for (i += robot_.threads(); i < of_.driven; i += robot_.threads())
-      (void)ActuatedMaterial(driven[i], sources).set(sources, clock_);
-    wait();
+    if (robot_.thread() == 0) *of_.thoughts = ++of_.thought;
+    MaterialTable<solver> table(robot_.arguments, robot_.place, robot_.warp, robot_.warps, robot_.lane,
+                                robot_.material_table);
+    table.change_length_factors(of_.materials, [&](std::uint32_t id, float& factor) {
+      const BrainMuscle muscle = part_of<BrainMuscle>(robot_.brain, of_.at.muscles)[id];
+      if (muscle.neuron == BrainPlan::none) return false;
+      Material& now = of_.materials_now[id];
+      now.amplitude = muscle.amplitude;
+      now.frequency = 0;
+      now.phase = arcsine(drive_of(neurons[muscle.neuron]));
+      now.half_wave = false;
+      const MusclePhase phase = held_phase(now.phase);
+      const MuscleSwing swing = MuscleSwing::of(now);
+      of_.phases[id] = phase;
+      of_.swings[id] = swing;
+      factor = length_factor(swing.amplitude, sine_of_phase(phase.at_base), swing.highest_sine);
+      return true;
+    });
   }
 
-  const ThinkingBody<Memory>& robot_;
-  const Thoughts& thoughts_;
-  const BrainTables& tables_;
-  const ThinkingRobot& of_;
+  const ThinkingBody<solver, Memory>& robot_;
+  ThinkingRobot& of_;
   const Clock& clock_;
   float* const z_;  // senses, then neurons
 };
@@ -434,22 +519,24 @@ class Thought {
 __device__ inline std::uint32_t first_thought(const StepArguments& arguments, std::uint32_t place) {
   const std::uint32_t thinker = arguments.thoughts.thinkers[place];
   if (thinker == Thoughts::none) return Thoughts::none;
-  const std::int64_t steps = steps_to_thought(arguments.thoughts.tables.robots[thinker].period, arguments.clock);
+  const std::int64_t steps = steps_to_thought(arguments.thoughts.robots[thinker].period, arguments.clock);
   return static_cast<std::uint32_t>(min(steps, std::int64_t{Thoughts::none}));
 }
 
 // All threads of a robot that thinks before this step of the launch call this. Returns the step of its next thought.
 // Not inline, so that it takes no registers from the steps.
-template <class Memory>
-__device__ __noinline__ std::uint32_t think(const StepArguments& arguments, typename Memory::Address masses,
-                                            std::uint32_t robot, std::uint32_t warp, std::uint32_t tile_bytes,
+template <Solver solver, class Memory>
+__device__ __noinline__ std::uint32_t think(const StepArguments& arguments, char* brain,
+                                            typename Memory::Address masses, SpringParameters<solver>* material_table,
+                                            std::uint32_t place, std::uint32_t warp, std::uint32_t tile_bytes,
                                             std::uint32_t step) {
   Clock clock = arguments.clock;
   clock.step += step;
-  const ThinkingBody<Memory> body{arguments, masses, robot, warp, threadIdx.x % lanes, tile_bytes};
-  Thought<Memory>(body, clock).think();
-  const ThinkingRobot& thinker = arguments.thoughts.tables.robots[arguments.thoughts.thinkers[robot]];
-  const std::int64_t next = step + steps_per_thought(thinker.period, clock.dt);
+  const ThinkingBody<solver, Memory> body{
+      arguments,  brain,         masses, place, warp, threadIdx.x % lanes, arguments.launch.warps_per_robot,
+      tile_bytes, material_table};
+  Thought<solver, Memory>(body, clock).think();
+  const std::int64_t next = step + steps_per_thought(part_of<ThinkingRobot>(brain, 0)->period, clock.dt);
   return static_cast<std::uint32_t>(min(next, std::int64_t{Thoughts::none}));
 }
 

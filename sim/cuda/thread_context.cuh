@@ -75,7 +75,7 @@ struct BlockContext {
     thread.lane = thread_index % lanes;
 
     if constexpr (Memory::on_chip)
-      thread.masses = shared_address(shared_memory) + layout.contacts + number * working_bytes;
+      thread.masses = shared_address(shared_memory) + layout.brains + number * working_bytes;
     else
       thread.masses = batch.workspace + std::size_t{thread.robot} * batch.workspace_stride;
     material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +

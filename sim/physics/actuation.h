@@ -58,11 +58,16 @@ MERCURY_HOST_DEVICE bool has_failed(const ActuatorSetting& setting) {
   return setting.driven && !std::isfinite(setting.drive);
 }
 
+// The amplitude of the material `own` with that of a setting.
+MERCURY_HOST_DEVICE float actuated_amplitude(const Material& own, float amplitude) {
+  return std::isfinite(amplitude) ? std::fmin(std::fmax(amplitude, -max_actuated_amplitude), max_actuated_amplitude)
+                                  : own.amplitude;
+}
+
 // The material that an actuator's springs have while it has this setting.
 MERCURY_HOST_DEVICE Material actuated(const Material& own, const ActuatorSetting& setting) {
   Material now = own;
-  if (std::isfinite(setting.amplitude))
-    now.amplitude = std::fmin(std::fmax(setting.amplitude, -max_actuated_amplitude), max_actuated_amplitude);
+  now.amplitude = actuated_amplitude(own, setting.amplitude);
   if (std::isfinite(setting.frequency)) now.frequency = setting.frequency;
   if (std::isfinite(setting.phase)) now.phase = setting.phase;
   if (setting.driven && std::isfinite(setting.drive)) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "sim/physics/double3.h"
 
@@ -20,6 +21,10 @@ struct Rotation {
   MERCURY_HOST_DEVICE Double3 to_body(Double3 v) const {
     return {r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
             r[2] * v.x + r[5] * v.y + r[8] * v.z};
+  }
+  // One component of it.
+  MERCURY_HOST_DEVICE double to_body(Double3 v, std::uint32_t component) const {
+    return r[component] * v.x + r[3 + component] * v.y + r[6 + component] * v.z;
   }
   // The cosine of the angle between the body's z axis and the world's.
   MERCURY_HOST_DEVICE double up() const { return r[8]; }

@@ -42,11 +42,17 @@ MERCURY_HOST_DEVICE std::uint64_t phase_of_turns(double turns) {
   return fraction < 1.0 ? static_cast<std::uint64_t>(fraction * 18446744073709551616.0) : 0;
 }
 
+inline constexpr double turns_per_radian = 0.15915494309189533577;
+
 MERCURY_HOST_DEVICE MusclePhase muscle_phase(const Material& material, const Clock& clock) {
-  constexpr double turns_per_radian = 0.15915494309189533577;
   const double omega = static_cast<double>(material.frequency);
   return {phase_of_turns((omega * clock.base_time + static_cast<double>(material.phase)) * turns_per_radian),
           phase_of_turns(omega * clock.dt * turns_per_radian)};
+}
+
+// Of a muscle of frequency 0, which keeps its phase [rad]: the same as muscle_phase().
+MERCURY_HOST_DEVICE MusclePhase held_phase(float phase) {
+  return {phase_of_turns(static_cast<double>(phase) * turns_per_radian), 0};
 }
 
 MERCURY_HOST_DEVICE std::uint64_t phase_at(const MusclePhase& phase, std::int64_t steps_since_base) {

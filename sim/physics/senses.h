@@ -61,10 +61,7 @@ MERCURY_HOST_DEVICE float clock_sense(const BrainPlan::Sense& sense, const Clock
 // Of a sense that depends on the body, without gain and noise.
 MERCURY_HOST_DEVICE double body_sense(const BrainPlan::Sense& sense, const PlaceMeasures& place,
                                       const BodyMeasures& body, const SensedWorld& world, Vec3 target) {
-  const auto in_body = [&](Double3 v) {
-    const Double3 turned = body.frame.to_body(v);
-    return sense.component == 0 ? turned.x : sense.component == 1 ? turned.y : turned.z;
-  };
+  Double3 v;  // in the world, whose component in the body's frame is sensed
   switch (sense.kind) {
     case SensorKind::strain:
       return place.strain;
@@ -73,11 +70,14 @@ MERCURY_HOST_DEVICE double body_sense(const BrainPlan::Sense& sense, const Place
     case SensorKind::touch:
       return place.touch;
     case SensorKind::velocity:
-      return in_body(place.velocity);
+      v = place.velocity;
+      break;
     case SensorKind::turn_rate:
-      return in_body(body.turn_rate);
+      v = body.turn_rate;
+      break;
     case SensorKind::up:
-      return in_body({0, 0, 1});
+      v = {0, 0, 1};
+      break;
     case SensorKind::depth:
       return -place.center.z;
     case SensorKind::height:
@@ -85,7 +85,9 @@ MERCURY_HOST_DEVICE double body_sense(const BrainPlan::Sense& sense, const Place
     case SensorKind::target_direction: {
       const Double3 d = Double3(target) - place.center;
       const double distance = std::sqrt(dot(d, d));
-      return distance > 0 ? in_body((1 / distance) * d) : 0;
+      if (!(distance > 0)) return 0;
+      v = (1 / distance) * d;
+      break;
     }
     case SensorKind::target_distance: {
       const Double3 d = Double3(target) - place.center;
@@ -96,10 +98,12 @@ MERCURY_HOST_DEVICE double body_sense(const BrainPlan::Sense& sense, const Place
       return 1 / (1 + dot(d, d));
     }
     case SensorKind::flow:
-      return in_body(Double3(world.flow) - place.velocity);
+      v = Double3(world.flow) - place.velocity;
+      break;
     default:
       return 0;  // the others do not depend on the body
   }
+  return body.frame.to_body(v, sense.component);
 }
 
 // What a place has to be measured for.
