@@ -249,7 +249,7 @@ void CudaBackend::choose_launches() {
     if (robots.size() == 0) continue;
     robots.choose_launch(configuration_, places_.size(), owned_->brains.bytes(c));
     prepare_steps(configuration_.solver, model_for(robots), robots.launch());
-    brains_elsewhere = brains_elsewhere || robots.launch().brain.total() == 0;
+    brains_elsewhere = brains_elsewhere || !robots.launch().on_chip;
   }
   if (brains_elsewhere) owned_->brains.reserve_workspace();
   // Reports of the classes follow one another.

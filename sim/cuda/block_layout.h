@@ -60,6 +60,8 @@ inline constexpr std::uint32_t parameter_bytes = 8;
 static_assert(sizeof(SpringParameters<Solver::force>) == parameter_bytes);
 static_assert(sizeof(SpringParameters<Solver::xpbd>) == parameter_bytes);
 
+inline constexpr std::uint32_t max_chunks = max_materials / lanes;
+
 // Ends of the parts of shared memory [bytes].
 struct BlockLayout {
   std::uint32_t tables, failures, lengths, relaxation_times, contacts, brains, total;
@@ -98,7 +100,8 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
   BlockLayout layout{};
   const std::uint32_t tables = launch.shared_table ? 1 : launch.robots_per_block;
   layout.tables = (tables * launch.table_chunks * lanes * parameter_bytes) << launch.table_copy_bits;
-  layout.failures = layout.tables + launch.robots_per_block * 16;  // and the steps of the next thoughts
+  // And the steps of the next thoughts, and which materials move.
+  layout.failures = layout.tables + (launch.robots_per_block * 12 + tables * max_chunks * 4 + 15) / 16 * 16;
   layout.lengths = layout.failures + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
   layout.relaxation_times = layout.lengths + (launch.viscous ? tables * launch.table_chunks * lanes * 4 : 0);
   layout.contacts = layout.relaxation_times;

@@ -91,7 +91,8 @@ struct ThinkingRobot {
   // Completed by a launch.
   SensedWorld world;
   std::uint64_t thought;
-  double mass;  // [kg]
+  const float* point_masses;  // [slot] [kg]; null = 1 kg
+  double mass;                // of all together [kg]
   std::uint32_t masses;
 };
 

@@ -38,23 +38,23 @@ bool fit_tables(LaunchConfiguration& launch, const BatchView& robots, std::uint3
   return false;
 }
 
-// The same with as much of a brain as there is room for. Weights that leave less than an eighth to cache with are
-// cached instead.
+// The same with as much of a brain as there is room for: its scratch at least, if masses are on the chip. Weights that
+// leave less than an eighth to cache with are cached instead.
 bool fit(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
          std::uint32_t blocks, const BrainBytes& brain) {
+  const auto fits = [&](const BrainBytes& part) {
+    launch.brain = part;
+    return fit_tables(launch, robots, fields, limits, blocks);
+  };
+  if (!fits(launch.on_chip ? BrainBytes{brain.scratch, 0, 0} : BrainBytes{})) return false;
+  if (!launch.on_chip || brain.scratch == 0) return true;
+  const LaunchConfiguration least = launch;
   const std::uint32_t most = limits.shared_per_multiprocessor / 8 * 7;
-  LaunchConfiguration without = launch;
-  if (!fit_tables(without, robots, fields, limits, blocks)) return false;
-  for (const BrainBytes& part : {brain, BrainBytes{brain.scratch, brain.tables, 0}, BrainBytes{brain.scratch, 0, 0}}) {
-    if (part.total() == 0) break;
-    LaunchConfiguration with = launch;
-    with.brain = part;
-    if (!fit_tables(with, robots, fields, limits, blocks) || with.table_copy_bits < without.table_copy_bits) continue;
-    if (part.weights > 0 && blocks * (with.shared_bytes + limits.reserved_per_block) > most) continue;
-    launch = with;
-    return true;
-  }
-  launch = without;
+  for (const std::uint32_t weights : {brain.weights, 0u})
+    if (fits({brain.scratch, brain.tables, weights}) && launch.table_copy_bits == least.table_copy_bits &&
+        (weights == 0 || blocks * (launch.shared_bytes + limits.reserved_per_block) <= most))
+      return true;
+  launch = least;
   return true;
 }
 

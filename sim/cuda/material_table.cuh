@@ -16,12 +16,13 @@ class MaterialTable {
  public:
   using Parameters = SpringParameters<solver>;
 
-  // `warps` = those that share this table; `warp` = the number of this one among them.
+  // `warps` = those that share this table; `warp` = the number of this one among them. `moving` = [chunk], in shared
+  // memory: a bit for each material whose length changes by itself.
   __device__ MaterialTable(const StepArguments& arguments, std::uint32_t robot, std::uint32_t warp, std::uint32_t warps,
-                           std::uint32_t lane, Parameters* table)
+                           std::uint32_t lane, Parameters* table, std::uint32_t* moving)
       : warp_(warp), warps_(warps), lane_(lane), chunks_(arguments.launch.table_chunks),
         copies_(1u << arguments.launch.table_copy_bits), copy_bits_(arguments.launch.table_copy_bits), table_(table),
-        materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
+        moving_(moving), materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
         phases_(arguments.batch.phases + std::size_t{robot} * max_materials),
         swings_(arguments.batch.swings + std::size_t{robot} * max_materials) {}
 
@@ -48,11 +49,16 @@ class MaterialTable {
   // Writes the length factors of this many steps after the launch's first.
   __device__ void update(const StepArguments& arguments, std::uint32_t step) {
     for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
+      if (step > 0 && moving_[chunk] == 0) continue;
       const std::uint32_t id = chunk * lanes + lane_;
       const MuscleSwing swing = swings_[id];
       const MusclePhase phase = phases_[id];
       // A muscle of frequency 0, as a brain drives it, keeps its length.
-      if (step > 0 && !__any_sync(0xffffffffu, swing.amplitude != 0 && phase.per_step != 0)) continue;
+      if (step == 0) {
+        const std::uint32_t moving = __ballot_sync(0xffffffffu, swing.amplitude != 0 && phase.per_step != 0);
+        if (lane_ == 0) moving_[chunk] = moving;
+        __syncwarp();
+      }
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
       const float sine = sine_of_phase(phase_at(phase, now));
       spread(chunk, &Parameters::length_factor, length_factor(swing.amplitude, sine, swing.highest_sine));
@@ -60,13 +66,17 @@ class MaterialTable {
   }
 
   // Calls change(id, factor) for the materials below `count`, each by one lane, and writes those length factors for
-  // which it returns true.
+  // which it returns true. These do not change by themselves from then on.
   template <class Change>
   __device__ void change_length_factors(std::uint32_t count, const Change& change) {
     for (std::uint32_t chunk = warp_; chunk * lanes < count; chunk += warps_) {
       const std::uint32_t id = chunk * lanes + lane_;
       float factor = table_[id * copies_].length_factor;
-      if (__any_sync(0xffffffffu, id < count && change(id, factor))) spread(chunk, &Parameters::length_factor, factor);
+      const std::uint32_t changed = __ballot_sync(0xffffffffu, id < count && change(id, factor));
+      if (changed == 0) continue;
+      spread(chunk, &Parameters::length_factor, factor);
+      if (lane_ == 0) moving_[chunk] &= ~changed;
+      __syncwarp();
     }
   }
 
@@ -102,6 +112,7 @@ class MaterialTable {
 
   const std::uint32_t warp_, warps_, lane_, chunks_, copies_, copy_bits_;
   Parameters* const table_;
+  std::uint32_t* const moving_;
   const Material* const materials_;
   const MusclePhase* const phases_;
   const MuscleSwing* const swings_;

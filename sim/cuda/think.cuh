@@ -26,10 +26,10 @@
 
 namespace mercury::cuda {
 
-// Waits for the warps of one robot of the block. Barrier 0 is __syncthreads().
-__device__ inline void wait_for_robot(std::uint32_t warps) {
+// Waits for the warps of one robot of the block, by its number there. Barrier 0 is __syncthreads().
+__device__ inline void wait_for_robot(std::uint32_t number, std::uint32_t warps) {
   if (warps == 1) return __syncwarp();
-  asm volatile("bar.sync %0, %1;" ::"r"(1 + threadIdx.x / (warps * lanes)), "r"(warps * lanes) : "memory");
+  asm volatile("bar.sync %0, %1;" ::"r"(1 + number), "r"(warps * lanes) : "memory");
 }
 
 // Sums of 16 values over the lanes of a warp. Lanes exchange halves of what they have, so that lanes 2 i and 2 i + 1
@@ -47,15 +47,18 @@ __device__ inline float sums_of_warp(float (&values)[sums_per_row]) {
   return values[0] + __shfl_xor_sync(0xffffffffu, values[0], 1);
 }
 
-// Where the memory of a robot's brain is. `number` = of the robot in its block.
-__device__ inline char* brain_memory(const StepArguments& arguments, std::uint32_t fields, std::uint32_t number,
-                                     std::uint32_t place) {
+// Where the memory of a robot's brain is: on the chip, beside the robot's masses, or in device memory, as they are. So
+// the compiler knows which. `number` = of the robot in its block.
+template <class Memory>
+__device__ char* brain_memory(const StepArguments& arguments, std::uint32_t fields, std::uint32_t number,
+                              std::uint32_t place) {
   const LaunchConfiguration& launch = arguments.launch;
   const Thoughts& thoughts = arguments.thoughts;
-  if (launch.brain.total() > 0)
+  if constexpr (Memory::on_chip)
     return shared_memory + block_layout(launch, arguments.batch.tile_stride, fields).contacts +
            number * launch.brain.total();
-  return thoughts.workspace + std::size_t{thoughts.thinkers[place]} * thoughts.workspace_stride;
+  else
+    return thoughts.workspace + std::size_t{thoughts.thinkers[place]} * thoughts.workspace_stride;
 }
 
 template <class T>
@@ -64,8 +67,10 @@ __device__ T* part_of(const char* memory, std::uint32_t offset) {
 }
 
 // All warps of a robot that has a brain call this once per launch. Its memory is complete after their next barrier.
-__device__ __noinline__ void load_brain(const StepArguments& arguments, char* memory, std::uint32_t place,
-                                        std::uint32_t warp) {
+template <class Memory>
+__device__ __noinline__ void load_brain(const StepArguments& arguments, std::uint32_t fields, std::uint32_t number,
+                                        std::uint32_t place, std::uint32_t warp) {
+  char* const memory = brain_memory<Memory>(arguments, fields, number, place);
   const Thoughts& thoughts = arguments.thoughts;
   const ThinkingRobot& from = thoughts.robots[thoughts.thinkers[place]];
   const BrainBytes& room = arguments.launch.brain;
@@ -98,7 +103,7 @@ __device__ __noinline__ void load_brain(const StepArguments& arguments, char* me
         driven ? actuated_amplitude(*source.own, sources.amplitude[source.setting]) : 0,
         driven ? source.neuron : BrainPlan::none};
   }
-  wait_for_robot(arguments.launch.warps_per_robot);
+  wait_for_robot(number, arguments.launch.warps_per_robot);
   if (thread != 0) return;
   ThinkingRobot& head = *part_of<ThinkingRobot>(memory, 0);
   if (room.tables > 0) head.plan = plan, head.body = body;
@@ -107,20 +112,24 @@ __device__ __noinline__ void load_brain(const StepArguments& arguments, char* me
   if (const Vec3 target = *from.target; !std::isnan(target.x)) head.world.target = target;
   head.thought = *from.thoughts;
   head.seed = from.seed + *from.noise_seed;
-  head.mass = arguments.batch.robots[place].mass;
-  head.masses = arguments.batch.robots[place].masses;
+  const BatchView& batch = arguments.batch;
+  if (batch.point_masses) head.point_masses = batch.point_masses + std::size_t{place} * batch.tile_stride * lanes;
+  head.mass = batch.robots[place].mass;
+  head.masses = batch.robots[place].masses;
 }
 
 // A robot of a block as its brain sees it.
-template <Solver solver_, class Memory>
+template <Solver solver_, class Memory_>
 struct ThinkingBody {
   static constexpr Solver solver = solver_;
+  using Memory = Memory_;
   const StepArguments& arguments;
   char* brain;
   typename Memory::Address masses;  // of slot 0
-  std::uint32_t place, warp, lane, warps;
-  std::uint32_t tile_bytes;
   SpringParameters<solver>* material_table;
+  std::uint32_t* moving;  // of MaterialTable
+  std::uint32_t number, place, warp, lane, warps;
+  std::uint32_t tile_bytes;
 
   __device__ std::uint32_t threads() const { return warps * lanes; }
   __device__ std::uint32_t thread() const { return warp * lanes + lane; }
@@ -129,10 +138,12 @@ struct ThinkingBody {
   }
 };
 
-template <Solver solver, class Memory>
+template <class Body>
 class Thought {
  public:
-  __device__ Thought(const ThinkingBody<solver, Memory>& robot, const Clock& clock)
+  using Memory = typename Body::Memory;
+
+  __device__ Thought(const Body& robot, const Clock& clock)
       : robot_(robot), of_(*part_of<ThinkingRobot>(robot.brain, 0)), clock_(clock),
         z_(part_of<float>(robot.brain, of_.at.values)) {}
 
@@ -158,7 +169,7 @@ class Thought {
   }
 
  private:
-  __device__ void wait() const { wait_for_robot(robot_.warps); }
+  __device__ void wait() const { wait_for_robot(robot_.number, robot_.warps); }
   template <class T>
   __device__ const T* plan_part(std::uint32_t offset) const {
     return part_of<const T>(of_.plan, offset);
@@ -174,11 +185,6 @@ class Thought {
   __device__ PlaceMeasures& place_measures(std::uint32_t number) const {
     return part_of<PlaceMeasures>(robot_.brain, of_.at.measures + sizeof(BodyMeasures))[number];
   }
-  __device__ float mass(std::uint32_t slot) const {
-    const BatchView& batch = robot_.arguments.batch;
-    return batch.point_masses ? batch.point_masses[std::size_t{robot_.place} * batch.tile_stride * lanes + slot] : 1;
-  }
-
   __device__ void measure_list(const SensingShare& share) const {
     if (share.of_springs)
       measure_springs(share, row_of_sums(share.row));
@@ -192,8 +198,8 @@ class Thought {
     float touching = 0;
 
     __device__ void add(float m, Vec3 d, Vec3 v, float z) {
-      md += m * d;
-      mv += m * v;
+      md = multiply_add(m, d, md);
+      mv = multiply_add(m, v, mv);
       if (on_ground(z)) touching += 1;
     }
     __device__ void to(float* sums) const {
@@ -208,9 +214,10 @@ class Thought {
 
     __device__ void add(float m, Vec3 d, Vec3 v) {
       const Vec3 md = m * d;
-      momentum += cross(md, v);
-      squares += Vec3{md.x * d.x, md.y * d.y, md.z * d.z};
-      products += Vec3{md.x * d.y, md.x * d.z, md.y * d.z};
+      momentum = {fmaf(md.y, v.z, fmaf(-md.z, v.y, momentum.x)), fmaf(md.z, v.x, fmaf(-md.x, v.z, momentum.y)),
+                  fmaf(md.x, v.y, fmaf(-md.y, v.x, momentum.z))};
+      squares = {fmaf(md.x, d.x, squares.x), fmaf(md.y, d.y, squares.y), fmaf(md.z, d.z, squares.z)};
+      products = {fmaf(md.x, d.y, products.x), fmaf(md.x, d.z, products.y), fmaf(md.y, d.z, products.z)};
     }
     __device__ void to(float* sums) const {
       const float all[] = {momentum.x, momentum.y, momentum.z, squares.x, squares.y,
@@ -230,6 +237,7 @@ class Thought {
     const bool uses_frame = of_.uses_frame, uses_turn_rate = of_.uses_turn_rate;
     const std::uint32_t masses_of_robot = of_.masses;
     const Vec3* const at_rest = of_.rest;
+    const float* const point_masses = of_.point_masses;
     MassSums masses;
     TurningSums turning;
     float shape[9] = {};
@@ -238,7 +246,7 @@ class Thought {
       const std::uint32_t slot = (share * tiles_per_share + tile) * lanes + robot_.lane;
       if (slot >= masses_of_robot) break;
       const Vec3 rest = uses_frame ? at_rest[slot] : Vec3{};
-      const float m = mass(slot);
+      const float m = point_masses ? point_masses[slot] : 1;
       const Vec3 x = robot_.mass_at(slot).vector(field_x), d = x - origin,
                  v = robot_.mass_at(slot).vector(field_v) - moving;
       masses.add(m, d, v, x.z);
@@ -267,7 +275,8 @@ class Thought {
     for (std::uint32_t i = robot_.lane; i < share.count; i += lanes) {
       const std::uint32_t slot = of_.slots[share.first + i];
       const Vec3 x = robot_.mass_at(slot).vector(field_x);
-      masses.add(mass(slot), x - origin, robot_.mass_at(slot).vector(field_v) - moving, x.z);
+      masses.add(of_.point_masses ? of_.point_masses[slot] : 1, x - origin,
+                 robot_.mass_at(slot).vector(field_v) - moving, x.z);
     }
     float sums[sums_per_row] = {};
     masses.to(sums);
@@ -406,23 +415,23 @@ class Thought {
     float* const neurons = z_ + of_.senses;
     float* const sums = neurons + of_.neurons;
     const std::uint32_t groups = robot_.threads() / neuron_lanes, group = robot_.thread() / neuron_lanes,
-                        member = robot_.thread() % neuron_lanes;
+                        member = robot_.thread() % neuron_lanes, count = layer.count;
+    const Inputs inputs{plan_part<BrainPlan::Neuron>(of_.at.neurons) + layer.first,
+                        plan_part<BrainPlan::Run>(of_.at.runs), of_.weights, z_, member};
 #pragma unroll 1
-    for (std::uint32_t first = 0; first < layer.count; first += groups * neuron_lanes) {
+    for (std::uint32_t first = group; first - group < count; first += groups * neuron_lanes) {
       float own = 0;
 #pragma unroll 1
-      for (std::uint32_t pass = 0; pass < neuron_lanes && first + pass * groups < layer.count; ++pass) {
-        const std::uint32_t i = first + pass * groups + group;
-        const float sum = sum_of_lanes(i < layer.count ? part_of_sum(layer.first + i) : 0);
+      for (std::uint32_t pass = 0, i = first; pass < neuron_lanes && i - group < count; ++pass, i += groups) {
+        const float sum = sum_of_lanes(i < count ? inputs.part_of_sum(i) : 0);
         own = pass == member ? sum : own;
       }
-      const std::uint32_t i = first + member * groups + group;
-      if (i < layer.count) (layer.reads_itself ? sums : neurons + layer.first)[i] = updated(layer, i, own);
+      const std::uint32_t i = first + member * groups;
+      if (i < count) (layer.reads_itself ? sums : neurons + layer.first)[i] = updated(layer, i, own);
     }
     wait();
     if (layer.reads_itself) {
-      for (std::uint32_t i = robot_.thread(); i < layer.count; i += robot_.threads())
-        neurons[layer.first + i] = sums[i];
+      for (std::uint32_t i = robot_.thread(); i < count; i += robot_.threads()) neurons[layer.first + i] = sums[i];
       wait();
     }
     if (layer.learnings == 0) return;
@@ -457,25 +466,38 @@ class Thought {
       sum += __shfl_xor_sync(0xffffffffu, sum, distance);
     return sum;
   }
-  // This lane's part: every eighth element of a long run, every eighth short run, and lane 0 has the bias.
-  __device__ float part_of_sum(std::uint32_t number) const {
-    const BrainPlan::Neuron& neuron = plan_part<BrainPlan::Neuron>(of_.at.neurons)[number];
-    const BrainPlan::Run* const runs = plan_part<BrainPlan::Run>(of_.at.runs) + neuron.first_run;
-    const float* const weights = of_.weights;
-    const std::uint32_t lane = robot_.thread() % neuron_lanes, count = neuron.runs;
-    float sum = lane == 0 && neuron.bias != BrainPlan::none ? weights[neuron.bias] : 0;
+  // What the neurons of a layer add up.
+  struct Inputs {
+    const BrainPlan::Neuron* neurons;
+    const BrainPlan::Run* runs;
+    const float *weights, *z;
+    std::uint32_t member;  // of the lanes of a neuron
+
+    // This lane's part: every eighth element of a long run, every eighth short run, and lane 0 has the bias.
+    __device__ float part_of_sum(std::uint32_t i) const {
+      const BrainPlan::Neuron& neuron = neurons[i];
+      const std::uint32_t first = neuron.first_run, count = neuron.runs, bias = neuron.bias;
+      float sum = member == 0 && bias != BrainPlan::none ? weights[bias] : 0;
 #pragma unroll 1
-    for (std::uint32_t r = 0; r < count; ++r) {
-      const BrainPlan::Run run = runs[r];
-      const bool is_long = run.count >= neuron_lanes;
-      if (!is_long && r % neuron_lanes != lane) continue;
-      const std::uint32_t stride = is_long ? neuron_lanes : 1;
-#pragma unroll 4
-      for (std::uint32_t k = is_long ? lane : 0; k < run.count; k += stride)
-        sum = multiply_add(weights[run.weight + k], z_[run.source + k], sum);
+      for (std::uint32_t r = 0; r < count; ++r) {
+        const BrainPlan::Run run = runs[first + r];
+        const float *w = weights + run.weight, *const end = w + run.count, *values = z + run.source;
+        if (run.count < neuron_lanes) {
+          if (r % neuron_lanes == member)
+            for (; w < end; ++w, ++values) sum = multiply_add(*w, *values, sum);
+          continue;
+        }
+        w += member, values += member;
+#pragma unroll 1
+        for (; w + 3 * neuron_lanes < end; w += 4 * neuron_lanes, values += 4 * neuron_lanes)
+#pragma unroll
+          for (std::uint32_t k = 0; k < 4 * neuron_lanes; k += neuron_lanes) sum = multiply_add(w[k], values[k], sum);
+#pragma unroll 1
+        for (; w < end; w += neuron_lanes, values += neuron_lanes) sum = multiply_add(*w, *values, sum);
+      }
+      return sum;
     }
-    return sum;
-  }
+  };
 
   __device__ void drive() const {
     const float* const neurons = z_ + of_.senses;
@@ -490,8 +512,8 @@ class Thought {
       if (driven == 0) sources.driven[at] = 1;
     }
     if (robot_.thread() == 0) *of_.thoughts = ++of_.thought;
-    MaterialTable<solver> table(robot_.arguments, robot_.place, robot_.warp, robot_.warps, robot_.lane,
-                                robot_.material_table);
+    MaterialTable<Body::solver> table(robot_.arguments, robot_.place, robot_.warp, robot_.warps, robot_.lane,
+                                      robot_.material_table, robot_.moving);
     table.change_length_factors(of_.materials, [&](std::uint32_t id, float& factor) {
       const BrainMuscle muscle = part_of<BrainMuscle>(robot_.brain, of_.at.muscles)[id];
       if (muscle.neuron == BrainPlan::none) return false;
@@ -509,7 +531,7 @@ class Thought {
     });
   }
 
-  const ThinkingBody<solver, Memory>& robot_;
+  const Body& robot_;
   ThinkingRobot& of_;
   const Clock& clock_;
   float* const z_;  // senses, then neurons
@@ -526,17 +548,25 @@ __device__ inline std::uint32_t first_thought(const StepArguments& arguments, st
 // All threads of a robot that thinks before this step of the launch call this. Returns the step of its next thought.
 // Not inline, so that it takes no registers from the steps.
 template <Solver solver, class Memory>
-__device__ __noinline__ std::uint32_t think(const StepArguments& arguments, char* brain,
-                                            typename Memory::Address masses, SpringParameters<solver>* material_table,
-                                            std::uint32_t place, std::uint32_t warp, std::uint32_t tile_bytes,
-                                            std::uint32_t step) {
+__device__ __noinline__ std::uint32_t think(const StepArguments& arguments, typename Memory::Address masses,
+                                            SpringParameters<solver>* material_table, std::uint32_t* moving,
+                                            std::uint32_t number, std::uint32_t place, std::uint32_t warp,
+                                            std::uint32_t fields, std::uint32_t step) {
   Clock clock = arguments.clock;
   clock.step += step;
-  const ThinkingBody<solver, Memory> body{
-      arguments,  brain,         masses, place, warp, threadIdx.x % lanes, arguments.launch.warps_per_robot,
-      tile_bytes, material_table};
-  Thought<solver, Memory>(body, clock).think();
-  const std::int64_t next = step + steps_per_thought(part_of<ThinkingRobot>(brain, 0)->period, clock.dt);
+  const ThinkingBody<solver, Memory> body{arguments,
+                                          brain_memory<Memory>(arguments, fields, number, place),
+                                          masses,
+                                          material_table,
+                                          moving,
+                                          number,
+                                          place,
+                                          warp,
+                                          threadIdx.x % lanes,
+                                          arguments.launch.warps_per_robot,
+                                          fields * field_bytes};
+  Thought<ThinkingBody<solver, Memory>>(body, clock).think();
+  const std::int64_t next = step + steps_per_thought(part_of<ThinkingRobot>(body.brain, 0)->period, clock.dt);
   return static_cast<std::uint32_t>(min(next, std::int64_t{Thoughts::none}));
 }
 

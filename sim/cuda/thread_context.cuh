@@ -57,6 +57,7 @@ struct BlockContext {
   Failure* failure;
   std::uint32_t number;         // of the robot in its block
   std::uint32_t* next_thought;  // [robot of the block], the step of the launch before which it thinks
+  std::uint32_t* moving;        // [chunk] of the table, see MaterialTable
   ThreadContext<Memory> thread;
 
   // `fields` = of a tile in working memory.
@@ -78,15 +79,17 @@ struct BlockContext {
       thread.masses = shared_address(shared_memory) + layout.brains + number * working_bytes;
     else
       thread.masses = batch.workspace + std::size_t{thread.robot} * batch.workspace_stride;
+    const std::uint32_t number_of_table = launch.shared_table ? 0 : number;
     material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +
-                     (launch.shared_table ? 0 : number * table_copies * launch.table_chunks * lanes);
+                     number_of_table * table_copies * launch.table_chunks * lanes;
     thread.material_table = shared_address(material_table + thread.lane % table_copies);
     failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
     next_thought = reinterpret_cast<std::uint32_t*>(shared_memory + layout.tables) + 2 * launch.robots_per_block;
+    moving = next_thought + launch.robots_per_block + number_of_table * max_chunks;
     lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
     thread.lengths = shared_address(lengths);
-    relaxation_times = reinterpret_cast<float*>(shared_memory + layout.lengths) +
-                       (launch.shared_table ? 0 : number * launch.table_chunks * lanes);
+    relaxation_times =
+        reinterpret_cast<float*>(shared_memory + layout.lengths) + number_of_table * launch.table_chunks * lanes;
     thread.relaxation_times = shared_address(relaxation_times);
   }
 };
