@@ -49,7 +49,7 @@ inline constexpr std::uint32_t resident_warps = 28;
 // Tiles that a warp computes in turn: enough to hide the cost of a barrier, few enough to share the work evenly.
 inline constexpr std::uint32_t min_tiles_per_warp = 3;
 
-constexpr std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
+MERCURY_HOST_DEVICE constexpr std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
 
 // The fewest warps that finish a robot's tiles in as many turns as `max_warps` would.
 constexpr std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps) {

@@ -387,9 +387,11 @@ class Thought {
   __device__ void sense() const {
     float* const samples = of_.samples_of_senses;
     const float* const neurons = z_ + of_.senses;
-    // Senses of one kind follow one another: they go to different warps, which compute different kinds at once.
+    // Senses of one kind follow one another, so that a warp has few kinds.
+    const std::uint32_t share = divide_up(of_.senses, robot_.warps), first = robot_.warp * share,
+                        end = min(first + share, of_.senses);
 #pragma unroll 1
-    for (std::uint32_t i = robot_.warp + robot_.lane * robot_.warps; i < of_.senses; i += robot_.threads()) {
+    for (std::uint32_t i = first + robot_.lane; i < end; i += lanes) {
       const BrainPlan::Sense& sense = plan_part<BrainPlan::Sense>(0)[i];
       float value = 0;
       if (sense.kind == SensorKind::clock)
@@ -473,7 +475,8 @@ class Thought {
     const float *weights, *z;
     std::uint32_t member;  // of the lanes of a neuron
 
-    // This lane's part: every eighth element of a long run, every eighth short run, and lane 0 has the bias.
+    // This lane's part: every eighth element of a run; if there are several, every eighth of the short ones. Lane 0 has
+    // the bias.
     __device__ float part_of_sum(std::uint32_t i) const {
       const BrainPlan::Neuron& neuron = neurons[i];
       const std::uint32_t first = neuron.first_run, count = neuron.runs, bias = neuron.bias;
@@ -481,19 +484,22 @@ class Thought {
 #pragma unroll 1
       for (std::uint32_t r = 0; r < count; ++r) {
         const BrainPlan::Run run = runs[first + r];
-        const float *w = weights + run.weight, *const end = w + run.count, *values = z + run.source;
-        if (run.count < neuron_lanes) {
-          if (r % neuron_lanes == member)
-            for (; w < end; ++w, ++values) sum = multiply_add(*w, *values, sum);
+        const float *w = weights + run.weight, *values = z + run.source;
+        std::uint32_t left = run.count;
+        if (left < neuron_lanes && count > 1) {
+#pragma unroll 1
+          for (left = r % neuron_lanes == member ? left : 0; left > 0; --left) sum = multiply_add(*w++, *values++, sum);
           continue;
         }
         w += member, values += member;
+        left += neuron_lanes - 1 - member;  // eight times what this lane has, and less than eight more
 #pragma unroll 1
-        for (; w + 3 * neuron_lanes < end; w += 4 * neuron_lanes, values += 4 * neuron_lanes)
+        for (; left >= 4 * neuron_lanes; left -= 4 * neuron_lanes, w += 4 * neuron_lanes, values += 4 * neuron_lanes)
 #pragma unroll
           for (std::uint32_t k = 0; k < 4 * neuron_lanes; k += neuron_lanes) sum = multiply_add(w[k], values[k], sum);
 #pragma unroll 1
-        for (; w < end; w += neuron_lanes, values += neuron_lanes) sum = multiply_add(*w, *values, sum);
+        for (; left >= neuron_lanes; left -= neuron_lanes, w += neuron_lanes, values += neuron_lanes)
+          sum = multiply_add(*w, *values, sum);
       }
       return sum;
     }
