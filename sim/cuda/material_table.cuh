@@ -47,9 +47,15 @@ class MaterialTable {
   }
 
   // Writes the length factors of this many steps after the launch's first.
-  __device__ void update(const StepArguments& arguments, std::uint32_t step) {
+  __device__ std::uint32_t moving_chunks() const {
+    std::uint32_t moving = 0;
+    for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_)
+      moving |= (moving_[chunk] != 0 ? 1u : 0u) << chunk;
+    return moving;
+  }
+  __device__ void update(const StepArguments& arguments, std::uint32_t step, std::uint32_t which = 0xffu) {
     for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
-      if (step > 0 && moving_[chunk] == 0) continue;
+      if (!(which >> chunk & 1)) continue;
       const std::uint32_t id = chunk * lanes + lane_;
       const MuscleSwing swing = swings_[id];
       const MusclePhase phase = phases_[id];

@@ -118,6 +118,7 @@ __global__ void __maxnreg__(72)
     auto& [context, materials, stepper] = part;
     stepper.prefetch_environment();
     int list_contacts = 1;
+    const std::uint32_t moving = materials.moving_chunks();
     for (; step < end; ++step) {
       if constexpr (EnvironmentModel::has_contacts)
         if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts();
@@ -137,7 +138,7 @@ __global__ void __maxnreg__(72)
       __syncthreads();
       stepper.end(step);
       stepper.prefetch_environment();
-      materials.update(arguments, step + 1);
+      materials.update(arguments, step + 1, moving);
       if constexpr (EnvironmentModel::has_contacts)
         list_contacts = __syncthreads_or(stepper.contacts_stale());
       else
