@@ -84,13 +84,14 @@ struct ThinkingRobot {
   const std::uint64_t* noise_seed;
   std::uint64_t* thoughts;
   const BrainMaterial* material_sources;  // [materials]
-  Material* materials_now;                // [materials], as the three that follow
+  Material* materials_now;                // [materials], as the two that follow
   MusclePhase* phases;
   MuscleSwing* swings;
   std::uint64_t seed;
   // Completed by a launch.
   SensedWorld world;
   std::uint64_t thought;
+  std::int64_t steps_per_thought;
   const float* point_masses;  // [slot] [kg]; null = 1 kg
   double mass;                // of all together [kg]
   std::uint32_t masses;

@@ -72,8 +72,8 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   std::uint32_t& own = part.context.next_thought[part.context.number];
   if (own == step) {
     const std::uint32_t next = think<Part::Robot::solver, typename Part::Memory>(
-        arguments, thread.masses, part.context.material_table, part.context.moving, part.context.number, thread.robot,
-        thread.warp, Part::Robot::fields, step);
+        arguments, part.context.brain, thread.masses, part.context.material_table, part.context.moving,
+        part.context.number, thread.robot, thread.warp, step);
     if (thread.warp == 0 && thread.lane == 0) own = next;
   }
   __syncthreads();
@@ -103,7 +103,7 @@ __global__ void __maxnreg__(72)
     }
     if (arguments.thoughts.thinkers && arguments.steps > 0 && part.context.has_robot &&
         arguments.thoughts.thinkers[thread.robot] != Thoughts::none)
-      load_brain<typename Part::Memory>(arguments, Part::Robot::fields, part.context.number, thread.robot, thread.warp);
+      load_brain<typename Part::Memory>(arguments, part.context.brain, part.context.number, thread.robot, thread.warp);
     part.stepper.load_lengths(part.context.lengths);
     part.stepper.load_state();
     __syncthreads();

@@ -47,16 +47,13 @@ __device__ inline float sums_of_warp(float (&values)[sums_per_row]) {
   return values[0] + __shfl_xor_sync(0xffffffffu, values[0], 1);
 }
 
-// Where the memory of a robot's brain is: on the chip, beside the robot's masses, or in device memory, as they are. So
-// the compiler knows which. `number` = of the robot in its block.
+// The memory of a robot's brain: on the chip, beside the robot's masses, or in device memory, as they are. So the
+// compiler knows which. `at` = BlockContext::brain.
 template <class Memory>
-__device__ char* brain_memory(const StepArguments& arguments, std::uint32_t fields, std::uint32_t number,
-                              std::uint32_t place) {
-  const LaunchConfiguration& launch = arguments.launch;
+__device__ char* brain_memory(const StepArguments& arguments, std::uint32_t at, std::uint32_t place) {
   const Thoughts& thoughts = arguments.thoughts;
   if constexpr (Memory::on_chip)
-    return shared_memory + block_layout(launch, arguments.batch.tile_stride, fields).contacts +
-           number * launch.brain.total();
+    return shared_memory + at;
   else
     return thoughts.workspace + std::size_t{thoughts.thinkers[place]} * thoughts.workspace_stride;
 }
@@ -68,9 +65,9 @@ __device__ T* part_of(const char* memory, std::uint32_t offset) {
 
 // All warps of a robot that has a brain call this once per launch. Its memory is complete after their next barrier.
 template <class Memory>
-__device__ __noinline__ void load_brain(const StepArguments& arguments, std::uint32_t fields, std::uint32_t number,
+__device__ __noinline__ void load_brain(const StepArguments& arguments, std::uint32_t at, std::uint32_t number,
                                         std::uint32_t place, std::uint32_t warp) {
-  char* const memory = brain_memory<Memory>(arguments, fields, number, place);
+  char* const memory = brain_memory<Memory>(arguments, at, place);
   const Thoughts& thoughts = arguments.thoughts;
   const ThinkingRobot& from = thoughts.robots[thoughts.thinkers[place]];
   const BrainBytes& room = arguments.launch.brain;
@@ -111,6 +108,7 @@ __device__ __noinline__ void load_brain(const StepArguments& arguments, std::uin
   head.world = thoughts.world;
   if (const Vec3 target = *from.target; !std::isnan(target.x)) head.world.target = target;
   head.thought = *from.thoughts;
+  head.steps_per_thought = steps_per_thought(from.period, arguments.clock.dt);
   head.seed = from.seed + *from.noise_seed;
   const BatchView& batch = arguments.batch;
   if (batch.point_masses) head.point_masses = batch.point_masses + std::size_t{place} * batch.tile_stride * lanes;
@@ -129,11 +127,12 @@ struct ThinkingBody {
   SpringParameters<solver>* material_table;
   std::uint32_t* moving;  // of MaterialTable
   std::uint32_t number, place, warp, lane, warps;
-  std::uint32_t tile_bytes;
+  std::uint32_t step;  // of the launch
 
   __device__ std::uint32_t threads() const { return warps * lanes; }
   __device__ std::uint32_t thread() const { return warp * lanes + lane; }
   __device__ Mass<Memory> mass_at(std::uint32_t slot) const {
+    constexpr std::uint32_t tile_bytes = working_fields(solver, Memory::keeps_valence) * field_bytes;
     return {masses + (slot / lanes * tile_bytes + slot % lanes * 4)};
   }
 };
@@ -143,9 +142,8 @@ class Thought {
  public:
   using Memory = typename Body::Memory;
 
-  __device__ Thought(const Body& robot, const Clock& clock)
-      : robot_(robot), of_(*part_of<ThinkingRobot>(robot.brain, 0)), clock_(clock),
-        z_(part_of<float>(robot.brain, of_.at.values)) {}
+  __device__ explicit Thought(const Body& robot)
+      : robot_(robot), of_(*part_of<ThinkingRobot>(robot.brain, 0)), z_(part_of<float>(robot.brain, of_.at.values)) {}
 
   __device__ void think() const {
     const std::uint32_t shares = of_.tile_shares + of_.listed_shares;
@@ -384,6 +382,11 @@ class Thought {
     if (robot_.lane == 0) body_measures().turn_rate = turn_rate;
   }
 
+  __device__ Clock clock() const {
+    Clock clock = robot_.arguments.clock;
+    clock.step += robot_.step;
+    return clock;
+  }
   __device__ void sense() const {
     float* const samples = of_.samples_of_senses;
     const float* const neurons = z_ + of_.senses;
@@ -395,7 +398,7 @@ class Thought {
       const BrainPlan::Sense& sense = plan_part<BrainPlan::Sense>(0)[i];
       float value = 0;
       if (sense.kind == SensorKind::clock)
-        value = clock_sense(sense, clock_);
+        value = clock_sense(sense, clock());
       else if (sense.kind == SensorKind::neuron || sense.kind == SensorKind::neighbors)
         value = sense.neuron == BrainPlan::none ? 0 : neurons[sense.neuron];
       else
@@ -539,7 +542,6 @@ class Thought {
 
   const Body& robot_;
   ThinkingRobot& of_;
-  const Clock& clock_;
   float* const z_;  // senses, then neurons
 };
 
@@ -554,14 +556,12 @@ __device__ inline std::uint32_t first_thought(const StepArguments& arguments, st
 // All threads of a robot that thinks before this step of the launch call this. Returns the step of its next thought.
 // Not inline, so that it takes no registers from the steps.
 template <Solver solver, class Memory>
-__device__ __noinline__ std::uint32_t think(const StepArguments& arguments, typename Memory::Address masses,
-                                            SpringParameters<solver>* material_table, std::uint32_t* moving,
-                                            std::uint32_t number, std::uint32_t place, std::uint32_t warp,
-                                            std::uint32_t fields, std::uint32_t step) {
-  Clock clock = arguments.clock;
-  clock.step += step;
+__device__ __noinline__ std::uint32_t think(const StepArguments& arguments, std::uint32_t at,
+                                            typename Memory::Address masses, SpringParameters<solver>* material_table,
+                                            std::uint32_t* moving, std::uint32_t number, std::uint32_t place,
+                                            std::uint32_t warp, std::uint32_t step) {
   const ThinkingBody<solver, Memory> body{arguments,
-                                          brain_memory<Memory>(arguments, fields, number, place),
+                                          brain_memory<Memory>(arguments, at, place),
                                           masses,
                                           material_table,
                                           moving,
@@ -570,9 +570,9 @@ __device__ __noinline__ std::uint32_t think(const StepArguments& arguments, type
                                           warp,
                                           threadIdx.x % lanes,
                                           arguments.launch.warps_per_robot,
-                                          fields * field_bytes};
-  Thought<ThinkingBody<solver, Memory>>(body, clock).think();
-  const std::int64_t next = step + steps_per_thought(part_of<ThinkingRobot>(body.brain, 0)->period, clock.dt);
+                                          step};
+  Thought<ThinkingBody<solver, Memory>>(body).think();
+  const std::int64_t next = body.step + part_of<ThinkingRobot>(body.brain, 0)->steps_per_thought;
   return static_cast<std::uint32_t>(min(next, std::int64_t{Thoughts::none}));
 }
 

@@ -58,6 +58,7 @@ struct BlockContext {
   std::uint32_t number;         // of the robot in its block
   std::uint32_t* next_thought;  // [robot of the block], the step of the launch before which it thinks
   std::uint32_t* moving;        // [chunk] of the table, see MaterialTable
+  std::uint32_t brain;          // where the memory of the robot's brain begins in shared memory, if it is there
   ThreadContext<Memory> thread;
 
   // `fields` = of a tile in working memory.
@@ -86,6 +87,7 @@ struct BlockContext {
     failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
     next_thought = reinterpret_cast<std::uint32_t*>(shared_memory + layout.tables) + 2 * launch.robots_per_block;
     moving = next_thought + launch.robots_per_block + number_of_table * max_chunks;
+    brain = layout.contacts + number * launch.brain.total();
     lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
     thread.lengths = shared_address(lengths);
     relaxation_times =
