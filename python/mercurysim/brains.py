@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Brains from the weights of networks, and ONNX files, for Robot.with_brain() (docs/brains.md)."""
+"""Brains from the weights of networks, from modules of PyTorch, and ONNX files, for Robot.with_brain() (docs/brains.md)."""
 
 from __future__ import annotations
 
@@ -61,6 +61,46 @@ def lstm(
     return _lstm(weights, recurrent, bias, name, source, "lstm")
 
 
+def from_torch(*modules: Any, period: float = 0.02) -> dict[str, Any]:
+    """The brain of modules of PyTorch in a row, each of which reads the one before, the first the senses: Linear, each with
+    an activation after it (Tanh, Sigmoid, ReLU, or none), RNN, LSTM and GRU, Sequential of such, and Identity, Flatten and
+    Dropout, which change nothing in use. Each thought is one element of a sequence, and the state is 0 at the start.
+
+    The weights are copied. Raises InputError, which names the module, for others, and for recurrent ones that run in both
+    directions or project their output.
+
+        from_torch(net.lstm, net.head)
+    """
+    import torch  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+    activations = {torch.nn.Tanh: "tanh", torch.nn.Sigmoid: "sigmoid", torch.nn.ReLU: "relu"}
+    passing = (torch.nn.Identity, torch.nn.Flatten, torch.nn.Dropout)
+    named = [(f"modules[{number}]", module) for number, module in enumerate(modules)]
+    layers: list[dict[str, Any]] = []
+    while named:
+        place, module = named.pop(0)
+        if isinstance(module, torch.nn.Sequential):
+            named[:0] = [(f"{place}.{name}", child) for name, child in module.named_children()]
+            continue
+        place = f"{place} ({type(module).__name__})"
+        if isinstance(module, torch.nn.Linear):
+            weights, bias = _numbers(module, "weight"), _numbers(module, "bias")
+            layers.append(_layer(layers, weights, bias, "linear", f"layer {len(layers)}", place))
+        elif isinstance(module, (torch.nn.RNN, torch.nn.LSTM, torch.nn.GRU)):
+            if module.bidirectional or module.proj_size:
+                raise InputError(f"{place}: must run forward, without a projection (bidirectional, proj_size)")
+            for level in range(module.num_layers):
+                layers += _torch_recurrent(layers, module, level, place)
+        elif activation := next((name for kind, name in activations.items() if isinstance(module, kind)), None):
+            _activate(layers, activation, place)
+        elif not isinstance(module, passing):
+            known = "Linear, RNN, LSTM, GRU, Tanh, Sigmoid, ReLU, Sequential, Identity, Flatten and Dropout"
+            raise InputError(f"{place}: is no layer of a brain; there are {known}")
+    if not layers:
+        raise InputError("modules: a brain needs at least one layer")
+    return {"period": period, "layers": layers}
+
+
 def from_onnx(path: str | os.PathLike[str], *, period: float = 0.02) -> dict[str, Any]:
     """The brain of an ONNX file: layers in a row (Gemm, or MatMul and Add), each with an activation (Tanh, Sigmoid, Relu,
     Sin, or none), and recurrent layers: RNN with Tanh, and LSTM with its default activations, without peepholes. Each
@@ -118,9 +158,7 @@ def from_onnx(path: str | os.PathLike[str], *, period: float = 0.02) -> dict[str
                 raise InputError(f"{place}: a robot thinks once at a time; give sequences and batches of 1")
             layers += _recurrent(layers, node, given, constants, name, place)
         elif node.op_type in ACTIVATIONS and node.op_type != "Identity":
-            if not layers or layers[-1]["activation"] != "linear":
-                raise InputError(f"{place}: follows no layer that is without an activation")
-            layers[-1]["activation"] = ACTIVATIONS[node.op_type]
+            _activate(layers, ACTIVATIONS[node.op_type], place)
     if not layers:
         raise InputError(f"{os.fspath(path)}: holds no layer")
     if not any(value.name in current for value in graph.output):
@@ -213,6 +251,61 @@ def _layer(
         layer["bias"] = numbers.tolist()
     layer["inputs"] = [{"from": source, "weights": matrix.tolist()}]
     return layer
+
+
+def _activate(layers: list[dict[str, Any]], activation: str, place: str) -> None:
+    if not layers or layers[-1].get("activation") != "linear":
+        raise InputError(f"{place}: follows no layer that is without an activation")
+    layers[-1]["activation"] = activation
+
+
+def _numbers(module: Any, name: str) -> Any:
+    """A parameter of a module of PyTorch; None if it has none of that name."""
+    values = getattr(module, name, None)
+    return None if values is None else np.asarray(values.detach().cpu().tolist(), np.float32)
+
+
+def _torch_recurrent(before: list[dict[str, Any]], module: Any, level: int, place: str) -> list[dict[str, Any]]:
+    """The layers of one level of an RNN, LSTM or GRU of PyTorch."""
+    weights, own, bias, own_bias = (
+        _numbers(module, f"{part}_l{level}") for part in ("weight_ih", "weight_hh", "bias_ih", "bias_hh")
+    )
+    if weights is None or own is None:
+        raise InputError(f"{place}: has no weights")
+    name, source = f"layer {len(before)}", before[-1]["name"] if before else "senses"
+    if before and weights.shape[1] != before[-1]["neurons"]:
+        raise InputError(f"{place}: {weights.shape[1]} inputs, the layer before has {before[-1]['neurons']} neurons")
+    if module.mode == "GRU":
+        return _gru(weights, own, bias, own_bias, name, source)
+    sums = None if bias is None or own_bias is None else bias + own_bias
+    if module.mode == "LSTM":
+        return _lstm(weights, own, sums, name, source, place)
+    layer = _layer(before, weights, sums, "relu" if module.mode == "RNN_RELU" else "tanh", name, place)
+    layer["inputs"].append({"from": name, "weights": own.tolist()})
+    return [layer]
+
+
+def _gru(
+    weights: NDArray[Any], own: NDArray[Any], bias: NDArray[Any] | None, own_bias: NDArray[Any] | None, name: str, source: str
+) -> list[dict[str, Any]]:
+    """h = (1 - z) n + z h, n = tanh(W s + b + r (R h + c)); weights in PyTorch's order: r, z, n."""
+    count = own.shape[1]
+    of_source, of_hidden = weights.reshape(3, count, -1), own.reshape(3, count, count)
+    b, c = (np.zeros((3, count), np.float32) if part is None else part.reshape(3, count) for part in (bias, own_bias))
+
+    def gate(part: str, sign: int, k: int) -> dict[str, Any]:
+        return {
+            "name": f"{name} {part}", "neurons": count, "activation": "sigmoid", "bias": (sign * (b[k] + c[k])).tolist(),
+            "inputs": [{"from": source, "weights": (sign * of_source[k]).tolist()},
+                       {"from": name, "weights": (sign * of_hidden[k]).tolist()}],
+        }  # fmt: skip
+
+    recall = {"name": f"{name} recall", "neurons": count, "activation": "linear", "gate": f"{name} reset", "keep": 0}
+    recall |= {"bias": c[2].tolist(), "inputs": [{"from": name, "weights": of_hidden[2].tolist()}]}
+    one_to_one = {"from": f"{name} recall", "edges": [[i, i, 1] for i in range(count)]}
+    hidden = {"name": name, "neurons": count, "gate": f"{name} change", "bias": b[2].tolist()}
+    hidden["inputs"] = [{"from": source, "weights": of_source[2].tolist()}, one_to_one]
+    return [gate("reset", 1, 0), gate("change", -1, 1), recall, hidden]  # 1 - sigmoid(x) = sigmoid(-x)
 
 
 def _constant(constants: dict[str, Any], name: str, place: str) -> Any:

@@ -45,6 +45,7 @@ NEEDS = {
     "pandas": lambda: importlib.util.find_spec("pandas") is not None,
     "pictures": pictures,
     "recording": recording,
+    "torch": lambda: importlib.util.find_spec("torch") is not None,
     "stable_baselines3": lambda: importlib.util.find_spec("stable_baselines3") is not None,
     "film": lambda: pictures() and shutil.which("ffmpeg") is not None,
 }
