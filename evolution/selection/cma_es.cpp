@@ -317,7 +317,8 @@ class CovarianceMatrixAdaptation : public Algorithm {
   std::vector<std::size_t> survivors(std::span<const Individual> pool, std::size_t living) const override {
     const std::vector<std::size_t> order = best_first(pool);
     std::vector<std::size_t> chosen = order;
-    std::ranges::stable_partition(chosen, [&](std::size_t i) { return i == order.front() || i >= living; });
+    std::stable_partition(chosen.begin(), chosen.end(),  // clang 14 lacks that of ranges
+                          [&](std::size_t i) { return i == order.front() || i >= living; });
     chosen.resize(std::min(chosen.size(), settings_.population));
     std::ranges::sort(chosen, [&](std::size_t a, std::size_t b) { return better(pool[a], pool[b]); });
     return chosen;

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <string_view>
 #include <vector>
 
@@ -318,8 +317,9 @@ bool words_match(std::string_view query, std::string_view text) {
     return begins_word(text, place) &&
            std::ranges::equal(word, there, [](char a, char b) { return lower(a) == lower(b); });
   };
-  for (const auto part : std::views::split(query, ' ')) {
-    const std::string_view word(part.begin(), part.end());
+  for (std::size_t begin = 0, end = 0; begin < query.size(); begin = end + 1) {  // clang 14 lacks views::split
+    end = std::min(query.find(' ', begin), query.size());
+    const std::string_view word = query.substr(begin, end - begin);
     if (word.empty()) continue;
     bool found = false;
     for (std::size_t i = 0; i < text.size() && !found; ++i) found = begins_at(word, i);
