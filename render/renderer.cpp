@@ -273,8 +273,10 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera, const
   timer.mark("springs and masses");
   if (has_ground_cover(scene)) ground_cover.draw(scene, style, variant);
   glDepthFunc(GL_GEQUAL);
-  passes->backdrop.draw(variant + (shows_horizon(camera, width, height) ? "#define HORIZON\n" : ""));
-  if (scene.surroundings == Surroundings::land) patches.draw(scene.patches, variant);
+  const std::string on_ground = variant + passes->prints.variant();
+  passes->backdrop.draw((scene.patches.empty() ? on_ground : variant) +
+                        (shows_horizon(camera, width, height) ? "#define HORIZON\n" : ""));
+  if (scene.surroundings == Surroundings::land) patches.draw(scene.patches, on_ground);
   if (has_ground_cover(scene)) ground_cover.draw_shades(scene);
   timer.mark("surroundings");
 }
@@ -355,6 +357,8 @@ void Renderer::draw(const Scene& scene, const Camera& camera) {
   p.pace.begin();
   p.timer.begin();
   p.choose_skin(scene, camera.lens.samples > 1);
+  p.passes->prints.draw(scene, camera, style);
+  if (!p.passes->prints.variant().empty()) p.timer.mark("prints");
   camera.lens.samples > 1 ? p.draw_through_lens(scene, camera, style) : p.draw_light_of(scene, camera, style, 0);
   p.passes->finish.draw(p.targets.light.get(), p.targets.bytes.get(), scene.tiles.empty() ? style.vignette : 0);
   p.outline.draw(p.drawn_bodies(), scene, p.passes->lattice, p.bounds.boxes(), p.targets);

@@ -4,6 +4,7 @@
 //   positions           each body's box; each face's normal; what the shadow map and the floor's light map cover; the
 //                       plane that cuts each body; lists of the faces that turn towards the eye and towards the light
 //   shadow map          depth, seen from the key light
+//   prints              dents in the ground as a map
 //   light on the floor  soft shadows on the floor as a map; under water, a tile of caustics
 //   nearest surfaces    depth and face of the first surface in each pixel, one sample per pixel
 //   occlusion           ambient occlusion of those surfaces, at half the picture's size
@@ -30,6 +31,7 @@
 #include "render/passes/light_pass.h"
 #include "render/passes/outline_pass.h"
 #include "render/passes/pass_timer.h"
+#include "render/passes/print_pass.h"
 #include "render/passes/quality.h"
 #include "render/passes/scene_buffers.h"
 #include "render/passes/screen_passes.h"
@@ -48,8 +50,8 @@ struct Passes {
   }
   explicit Passes(const QualitySettings& settings)
       : skin(skin_defines(settings)), lattice(settings.skin_defines()), annotation(settings.defines()), light(settings),
-        front(settings), occlusion(settings), mean(settings), finish(settings), backdrop("backdrop.frag"),
-        beams("beams.frag") {}
+        prints(settings), front(settings), occlusion(settings), mean(settings), finish(settings),
+        backdrop("backdrop.frag"), beams("beams.frag") {}
   void resize(int width, int height) {
     front.resize(width, height);
     occlusion.resize(width, height);
@@ -60,6 +62,7 @@ struct Passes {
   LatticePass lattice;
   AnnotationPass annotation;
   LightPass light;
+  PrintPass prints;
   FrontPass front;
   OcclusionPass occlusion;
   MeanPass mean;

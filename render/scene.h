@@ -5,6 +5,7 @@
 // picture. Functions read spans during the call and do not keep them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -112,6 +113,13 @@ struct Patch {
   Vector2 slide{0, 0};   // added to the picture's coordinates for the ground's texture and lines [m]
 };
 
+// A dent in the ground on land: around a triangle, or around a line or a point if corners are the same.
+struct Print {
+  std::array<Vector2, 3> corners;  // in the picture's coordinates [m]
+  float radius = 0.03f;            // around the triangle [m]
+  float depth = 1;                 // 1 = fresh, 0 = gone
+};
+
 // Plants and stones on the floor of water and land, never in a body or higher than the room below it.
 struct GroundCover {
   float height = 0.3f;  // of the tallest plants; stones and distances follow from it [m]
@@ -178,6 +186,7 @@ struct Scene {
   double time = 0;                // moves caustics and particles [s]
 
   std::span<const Patch> patches;  // on land
+  std::span<const Print> prints;   // on land, where there are patches only on them; not at low quality
   std::optional<GroundCover> ground_cover;
   std::span<const Tile> tiles;
   std::span<const Text> texts;

@@ -18,7 +18,7 @@ void main() {
   float steps = -(frame.view * vec4(world, 1.0)).z;
   vec2 slid = world.xy + slide_and_radius.xy;
   vec3 light;
-  vec3 albedo = soil(slid, key_on_floor(world.xy), openness(gl_FragCoord.xy, steps), light);
+  vec3 albedo = soil(slid, world.xy, key_on_floor(world.xy), openness(gl_FragCoord.xy, steps), light);
   float width = max(0.035 * slide_and_radius.z, 1.5 * blur);
   float rim = 1.0 - smoothstep(width - blur, width, from_rim);
   albedo = mix(albedo * 1.12, frame.line_color.rgb, max(meter_lines(slid, pixel), 0.7 * rim));

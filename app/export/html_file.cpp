@@ -321,7 +321,7 @@ std::string shaders_json() {
   constexpr std::array of_program{
       "fullscreen.vert", "sand.frag",      "backdrop.frag",  "caustics.vert", "caustics.frag", "particle.frag",
       "frame.glsl",      "caustics.glsl",  "floor.glsl",     "shading.glsl",  "shadow.glsl",   "skin_light.glsl",
-      "bevel.glsl",      "direction.glsl", "seen_face.glsl", "tone.glsl",     "ribbon.glsl"};
+      "bevel.glsl",      "direction.glsl", "seen_face.glsl", "tone.glsl",     "ribbon.glsl",   "prints.glsl"};
   for (const render::ShaderSource& shader : render::shader_sources())
     if (std::ranges::find(of_program, shader.name) != of_program.end())
       shaders[std::string(shader.name)] = compact(shader.text);

@@ -208,6 +208,7 @@ OptionValues options_of(const ViewSettings& settings, std::optional<Layout> usua
   options.flag("--plain", settings.plain);
   options.flag("--smooth", settings.smooth);
   options.flag("--faceted", settings.faceted);
+  options.flag("--no-footprints", !settings.footprints);
   if (settings.cut) options.text("--cut", cut_text(*settings.cut), "");
   options.text("--layout", std::string(name_of(settings.layout)), usual ? name_of(*usual) : "");
   if (settings.grid && !race)

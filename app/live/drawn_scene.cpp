@@ -110,8 +110,10 @@ struct DrawnScene::Parts {
   void show_ghosts(const std::set<RobotId>& hidden, double now);
   void keep_trails(const GroupScene& old, const Snapshot& before) {
     for (std::size_t i = 0; i < snapshot->robots->size(); ++i)
-      if (const auto index = before.robots->index_of(snapshot->robots->robots[i].id))
+      if (const auto index = before.robots->index_of(snapshot->robots->robots[i].id)) {
         scene->set_trail(i, old.trails()[*index]);
+        scene->set_footprints(i, old.footprints()[*index]);
+      }
   }
 };
 

@@ -354,9 +354,9 @@ void LiveScene::release_neurons(RobotId robot) {
 
 const ViewSettings& LiveScene::view() const { return parts_->view; }
 void LiveScene::set_view(const ViewSettings& settings) {
-  const bool details_changed = settings.color != parts_->view.color ||
-                               settings.shown.arrows != parts_->view.shown.arrows ||
-                               settings.folding != parts_->view.folding;
+  const bool details_changed =
+      settings.color != parts_->view.color || settings.shown.arrows != parts_->view.shown.arrows ||
+      settings.folding != parts_->view.folding || settings.footprints != parts_->view.footprints;
   const bool compares = settings.compare != parts_->view.compare;
   parts_->view = settings;
   if (details_changed) parts_->physics.set_view(settings);

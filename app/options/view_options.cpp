@@ -49,6 +49,7 @@ void ViewOptions::add_to(const Command& command) {
   add(command.add_flag("--scale-bar", words_.scale_bar, "Also a bar of a round length"));
   add(command.add_flag("--smooth", words_.smooth, "Round skins also of many robots"));
   add(command.add_flag("--faceted", words_.faceted, "Edged skins, which show each voxel, also of few robots"));
+  add(command.add_flag("--no-footprints", no_footprints_, "On land, without footprints in the sand"));
   add(add_value(command, "--cut", words_.cut, "Cut each robot open beyond a plane, as in y:30%", "AXIS[:PLACE]",
                 text_from));
   add(add_value(command, "--layout", words_.layout,
@@ -77,6 +78,7 @@ void ViewOptions::add_to(const Command& command) {
 
 ViewSettings ViewOptions::settings(Layout usual) const {
   ViewWords words = words_;
+  words.footprints = !no_footprints_;
   if (follow_ && !words.camera.empty()) throw InputError("--follow", "not together with --camera; give one of them");
   if (follow_) words.camera = "follow";
   return view_settings(words, usual);

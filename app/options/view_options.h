@@ -21,7 +21,7 @@ class ViewOptions {
 
  private:
   ViewWords words_;
-  bool follow_ = false;
+  bool follow_ = false, no_footprints_ = false;
 };
 
 }  // namespace mercury

@@ -9,6 +9,7 @@
 
 #include "app/scene/appearance.h"
 #include "app/scene/color_scale.h"
+#include "app/scene/footprints.h"
 #include "app/scene/group_motion.h"
 #include "app/scene/race.h"
 #include "app/scene/robot_shape.h"
@@ -50,11 +51,14 @@ class GroupScene {
   // What is drawn behind the robots, in plain surroundings.
   void set_background(std::vector<render::Tile> tiles, std::vector<render::Text> texts);
   void mark(std::size_t robot, bool selected, bool hidden);
-  // Starts all trails again at these positions.
+  // Starts all trails again at these positions, without footprints.
   void restart(std::span<const Telemetry> telemetry);
   const std::vector<Trail>& trails() const { return trails_; }
   void set_trail(std::size_t robot, Trail trail) { trails_[robot] = std::move(trail); }
-  // What trails do when time goes back.
+  // The same of footprints, one per robot.
+  const std::vector<Footprints>& footprints() const { return footprints_; }
+  void set_footprints(std::size_t robot, Footprints footprints) { footprints_[robot] = std::move(footprints); }
+  // What trails and footprints do when time goes back.
   void set_later(Later later) { later_ = later; }
   // The mouse pulls at this robot; `elapsed` since the last call [s]. See HeldRobot.
   void hold(std::optional<std::size_t> robot, double elapsed) { held_.hold(robot, elapsed); }
@@ -109,6 +113,7 @@ class GroupScene {
   void place_patches();
   void note_movers(std::span<const Telemetry> telemetry);
   void hide_wrecks(std::span<const Telemetry> telemetry);
+  void leave_footprints(double time, std::span<const GroundContacts> contacts);
   void lengthen_paths(double time);
   void race(double time);
   void mark_senses(std::span<const TouchMark> touches);
@@ -144,6 +149,8 @@ class GroupScene {
   std::vector<bool> smooth_;           // robots that are drawn smooth whatever the settings
   Environment environment_;
   std::vector<Trail> trails_;
+  std::vector<Footprints> footprints_;
+  std::vector<render::Print> prints_;
   Later later_ = Later::forget;
   std::vector<render::Path> paths_;
   std::vector<std::vector<float>> marks_;         // of the paths

@@ -35,6 +35,7 @@ void GroupScene::update(double time, std::span<const Telemetry> telemetry, Scene
   scene_.time = time;
   if (settings_.shown.clock) scene_.clock = clock_of(time, settings_.speed);
   place(telemetry);
+  leave_footprints(time, details.contacts);
   order_.clear();
   scene_.ground_cover->bare_low = scene_.ground_cover->bare_high = render::GroundCover().bare_low;
   if (motion_.layout() == Layout::race)
@@ -139,6 +140,31 @@ void GroupScene::hide_wrecks(std::span<const Telemetry> telemetry) {
                               .free = true});
   }
   scene_.texts = shown_texts_;
+}
+
+// In cells, prints move with the ground below the robot, and end with it. There are none in races: a robot's way in its
+// lane is not the one that it went.
+void GroupScene::leave_footprints(double time, std::span<const GroundContacts> contacts) {
+  for (Footprints& one : footprints_) one.go_to(time, later_);
+  for (const GroundContacts& then : contacts) {
+    for (const GroundContact& contact : then.parts) footprints_[contact.body].touch(then.time, contact);
+    for (Footprints& one : footprints_) one.know_until(then.time);
+  }
+  prints_.clear();
+  if (settings_.footprints && scene_.surroundings == render::Surroundings::land && motion_.layout() != Layout::race)
+    for (std::size_t i = 0; i < footprints_.size(); ++i) {
+      if (placements_[i].hidden) continue;
+      const std::size_t first = prints_.size();
+      footprints_[i].show(shown_offsets_[i].xy(), prints_);
+      if (patches_.empty()) continue;
+      const render::Vector2 middle = (offsets_[i] + rooms_[i].center).xy();
+      const auto outside = [&](const render::Print& print) {
+        return (print.corners[0] - middle).norm() > rooms_[i].radius;
+      };
+      prints_.erase(std::remove_if(prints_.begin() + static_cast<std::ptrdiff_t>(first), prints_.end(), outside),
+                    prints_.end());
+    }
+  scene_.prints = prints_;
 }
 
 void GroupScene::lengthen_paths(double time) {

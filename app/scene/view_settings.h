@@ -44,6 +44,7 @@ struct ViewSettings {
   bool text_aside = false;                  // likewise
   bool smooth = false;                      // all skins are rounded, also those of many robots
   bool faceted = false;                     // none is, but those of robots that networks grew
+  bool footprints = true;                   // on land, where the quality of the drawing has them
   bool hero = false;                        // a still of the first robot, see hero_style.h
   float aperture = 0;              // diameter of a still's lens, as a share of the distance to what is in focus
   std::optional<render::Cut> cut;  // opens each robot

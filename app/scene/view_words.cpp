@@ -171,6 +171,7 @@ ViewSettings view_settings(const ViewWords& words, Layout usual) {
   settings.theme = theme_named(words.theme);
   settings.plain = words.plain;
   settings.faceted = words.faceted;
+  settings.footprints = words.footprints;
   if (!words.background.empty()) {
     settings.background = background_from(words.background);
     // Text is dark on bright backgrounds, and on those that nobody knows yet.

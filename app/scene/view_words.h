@@ -26,6 +26,7 @@ struct ViewWords {
   bool scale_bar = false;                        // in addition to what is shown
   bool smooth = false;                           // round skins rather than edged ones, also of many robots
   bool faceted = false;                          // edged skins rather than round ones, also of few robots
+  bool footprints = true;                        // in the sand on land
   std::optional<std::string> cut;                // opens each robot beyond a plane: "y:30%"
   std::optional<std::string> layout;             // "grid", "cells" or "race"; absent = the usual
   std::optional<Grid> grid;                      // absent = what fills the picture

@@ -2,7 +2,9 @@
 // A group of simulated robots, laid out in a picture and ready to be drawn at any time of the simulation.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +48,9 @@ class GroupDrawing {
   // The simulation's current state. `with_details`: else its colors and arrows are not needed. `share`: positions are
   // this share of a step later than the simulation's step (playback()).
   FrameSnapshot take(PositionBridge& bridge, bool with_details = true, float share = 0);
+  // See DetailObserver, for moments between two snapshots.
+  std::optional<std::int64_t> next_look() const { return details_.next_look(); }
+  void look() { details_.look(simulation_.telemetry()); }
   // At that share of the way from one step to the next: centers and positions are mixed, the rest is that of the nearer
   // step, which needs its details.
   static FrameSnapshot between(const FrameSnapshot& earlier, const FrameSnapshot& later, float share,

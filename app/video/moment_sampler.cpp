@@ -6,13 +6,17 @@
 namespace mercury {
 
 std::optional<std::int64_t> MomentSampler::next_step(const FramePlace& place) const {
-  if (step_ != place.step) return place.step;
+  if (step_ != place.step) {
+    const std::optional<std::int64_t> look = drawing_.next_look();
+    return look && *look < place.step ? *look : place.step;
+  }
   if (place.is_between_steps() && !share_ && !later_) return place.step + 1;
   return std::nullopt;
 }
 
 // Colors and arrows are those of the nearer step, so the other one does not compute them.
 void MomentSampler::observe(const FramePlace& place) {
+  if (step_ != place.step && simulation_.steps() < place.step) return drawing_.look();
   if (share_) *share_ = place.share;
   if (step_ == place.step) {
     later_ = drawing_.take(bridge_, dense_ || place.share >= 0.5f);

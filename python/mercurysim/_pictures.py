@@ -51,6 +51,7 @@ class Look(TypedDict, total=False):
     style: str  # of picture(): "usual", or "hero": the first robot against the light, copies of it behind, out of focus
     aperture: float  # of picture(): blurs what is nearer or farther; diameter of the lens over its distance, 0 to 1
     faceted: bool  # edged skins, which show each voxel, also of few robots
+    footprints: bool  # on land, in films of medium and high quality: robots leave footprints (default True)
     quality: str  # "auto" (high on a GPU, low without), "low", "medium", "high"
 
 

@@ -154,6 +154,7 @@ void take_word(Look& look, const std::string& name, nb::handle value) {
       {"cut", [&] { words.cut = text_from(name, value); }},
       {"smooth", [&] { words.smooth = bool_from(name, value); }},
       {"faceted", [&] { words.faceted = bool_from(name, value); }},
+      {"footprints", [&] { words.footprints = bool_from(name, value); }},
       {"style", [&] { look.hero = is_hero(text_from(name, value)); }},
       {"aperture", [&] { look.aperture = aperture_from(name, value); }},
       {"quality", [&] { look.quality = text_from(name, value); }}};

@@ -12,6 +12,6 @@ inline constexpr unsigned positions = 1, placements = 2, mass_bodies = 3, face_r
 // Textures. 0 is the pass's own source.
 inline constexpr unsigned source = 0, shadow_map = 1, shadow_depths = 2, occlusion = 3, caustics = 4, sand = 5,
                           ground_light = 6, colormap = 7, glow = 8, font = 9, section = 10, front_light = 11,
-                          faces_seen = 12;
+                          faces_seen = 12, prints = 13;
 
 }  // namespace mercury::render::binding

@@ -43,6 +43,7 @@ QualitySettings settings_of(Quality quality) {
     s.skin_taps = 8;
     s.occlusion_taps = 12;
     s.particles = 900;
+    s.prints_side = 1536;
     s.lens_samples = 64;
     s.front_light = true;
   } else if (quality == Quality::high) {
@@ -56,6 +57,7 @@ QualitySettings settings_of(Quality quality) {
     s.skin_taps = 24;
     s.occlusion_taps = 24;
     s.particles = 1500;
+    s.prints_side = 2048;
     s.lens_samples = 128;
     s.front_light = true;
   }

@@ -18,6 +18,7 @@ struct QualitySettings {
   int occlusion_taps = 7;
   int particles = 500;
   int skin_blockers = 0, skin_taps = 4;  // of shadows on skins
+  int prints_side = 0;                   // texels of the map of prints in the ground; 0 = none
   int lens_samples = 32;                 // pictures of which one through a lens is the mean, at most
   bool front_light = false;              // shadows on skins: once per pixel, before skins are drawn
   std::string defines() const;           // for the shaders

@@ -32,6 +32,7 @@ constexpr Switch switches[] = {
     {"masses", [](ViewSettings& view) -> bool& { return view.shown.masses; }},
     {"rounded skin of many robots", [](ViewSettings& view) -> bool& { return view.smooth; }},
     {"faceted skin", [](ViewSettings& view) -> bool& { return view.faceted; }},
+    {"footprints", [](ViewSettings& view) -> bool& { return view.footprints; }},
     {"path", [](ViewSettings& view) -> bool& { return view.shown.path; }},
     {"names", [](ViewSettings& view) -> bool& { return view.shown.labels; }},
     {"legend", [](ViewSettings& view) -> bool& { return view.shown.legend; }},

@@ -67,6 +67,8 @@ bool draw_show_section(ViewSettings& view, const KeyMap& keys, EventLog& log) {
     changed |= check("Faceted skin", "edged skins, which show each voxel; those of many robots always are",
                      view.faceted, "faceted", log);
     changed |= check("Path", "the path of each center of mass", shown.path, "path", log);
+    changed |=
+        check("Footprints", "in the sand on land, at medium and high quality", view.footprints, "footprints", log);
     ImGui::TableNextColumn();
     changed |= check("Names", with_keys(keys, "name, distance and rank above each robot", Action::labels), shown.labels,
                      "labels", log);

@@ -64,6 +64,25 @@ TEST_F(RenderCommand, HeroShowsOneRobotAndCopiesBehindIt) {
   EXPECT_EQ(first.bytes, render::read_png(path("again.png")).bytes);
 }
 
+TEST_F(RenderCommand, FootprintsOfAStillAreThoseOfTheFilm) {
+  const auto drawn = [&](const std::string& output, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"render", "sample:dog", "--size", "160x90", "--quality",
+                                       "medium", "--camera",   "still",  "-o",     path(output)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = mercury(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    return output.ends_with("/") ? render::Image{} : render::read_png(path(output));
+  };
+  // Frames at other times than those at which the ground is looked at.
+  drawn("slow/", {"--seconds", "2", "--fps", "2.3"});
+  drawn("fast/", {"--seconds", "2", "--fps", "4.6"});
+  const render::Image slow = render::read_png(path("slow/frame-00004.png"));
+  EXPECT_EQ(slow.bytes, render::read_png(path("fast/frame-00008.png")).bytes);
+  const render::Image still = drawn("a.png", {"--still", "1.3"});
+  EXPECT_EQ(still.bytes, drawn("b.png", {"--still", "1.3"}).bytes);
+  EXPECT_NE(still.bytes, drawn("c.png", {"--still", "1.3", "--no-footprints"}).bytes);
+}
+
 TEST_F(RenderCommand, ALensIsOfAPicture) {
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{"--style", "hero"}, std::vector<std::string>{"--aperture", "0.1"}}) {

@@ -88,6 +88,7 @@ std::vector<ViewSettings> views() {
   add([](ViewSettings& v) { v.shown = {.skin = false, .clock = false}; });
   add([](ViewSettings& v) { v.theme = render::Theme::light; });
   add([](ViewSettings& v) { v.plain = v.smooth = true; });
+  add([](ViewSettings& v) { v.footprints = false; });
   add([](ViewSettings& v) { v.cut = render::Cut{.axis = 1, .below = true, .percent = 33.3f}; });
   add([](ViewSettings& v) { v.cut = render::Cut{.axis = 2, .shift = -0.2f}; });
   add([](ViewSettings& v) { v.grid = Grid{3, 2}; });
