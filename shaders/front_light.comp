@@ -20,6 +20,12 @@ void store(ivec2 texel, vec2 light, float range, vec3 normal) {
   imageStore(map, texel, uvec4(packHalf2x16(light), where, 0u, 0u));
 }
 
+// Rotates the pattern of samples in five steps, so that a pixel and its four neighbors have all five:
+//   0 1 2 3 4
+//   2 3 4 0 1      front_light.glsl takes their mean, in which the patterns together have no speckles.
+//   4 0 1 2 3
+float rotation(ivec2 texel) { return fract(frame.lens.z + (float((texel.x + 2 * texel.y) % 5) + 0.5) / 5.0); }
+
 // The point of a plane that is seen through a place of the picture. `plane`: normal and offset, relative to the eye.
 vec3 seen_point(vec4 plane, vec2 uv) {
   vec3 sight = sight_through(uv);
@@ -46,7 +52,7 @@ void main() {
   float key = 0.0;  // for surfaces that turn away from the light
   if (dot(normal, frame.to_key.xyz) > -0.6) {
     vec3 point = frame.eye.xyz + range * sight;
-    key = key_visibility(point, normal, pixel_noise(vec2(texel) + 0.5));
+    key = key_visibility(point, normal, rotation(texel));
 #if AROUND == AROUND_WATER
     vec4 plane = vec4(normal, range * dot(normal, sight));
     vec2 at = surface_point(point);

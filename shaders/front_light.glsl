@@ -9,16 +9,14 @@ float unlikeness(uint where, float range, vec2 normal) {
 }
 
 // How much of the key light, and what share of the ambient light, reach a point at that depth with that normal, as an
-// octahedral direction. At edges, the pixel's values may belong to another surface; then the most similar of the neighboring pixels get the most
-// weight.
+// octahedral direction: the mean of the pixel and its four neighbors, whose patterns of samples differ. Those that show
+// a similar surface have the most weight; at edges, the pixel itself may show another one.
 vec2 front_light(ivec2 pixel, float range, vec2 normal) {
+  ivec2 last = textureSize(front_light_map, 0) - 1, offset = ivec2(1, 0);
   uvec2 found = texelFetch(front_light_map, pixel, 0).rg;
   float difference = unlikeness(found.y, range, normal);
-  vec2 light = unpackHalf2x16(found.x);
-  if (difference < 0.1) return light;
   float weights = 1.0 / (0.02 + difference * difference);
-  vec2 sum = weights * light;
-  ivec2 last = textureSize(front_light_map, 0) - 1, offset = ivec2(1, 0);
+  vec2 sum = weights * unpackHalf2x16(found.x);
   for (int i = 0; i < 4; ++i) {
     found = texelFetch(front_light_map, clamp(pixel + offset, ivec2(0), last), 0).rg;
     difference = unlikeness(found.y, range, normal);
