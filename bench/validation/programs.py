@@ -34,12 +34,12 @@ def mercury(*arguments: Any) -> str:
     source=EVOSORO_SOURCE,
     kind="real",
     remark="The files of `tests/data/evosoro`, imported with their worlds. Expected is the median of three runs of its simulator, with "
-    "elastic moduli of 99 to 101 % of the file's; the second number of a robot's name is how far these are apart. Beams of evosoro "
-    "resist bending by stiffnesses of their own. Their damping (BondDampingZ) is the relaxation time of all springs here; without it "
-    "the five got 89, 92, 120, 61 and 27 % as far. quadruped_land weighs more than its legs of one voxel carry: within half a "
-    "second they fold, and voxels that were 50 mm above each other lie 5 mm above each other and 45 mm apart. What it walks on "
-    "then are contacts: voxels push each other away as spheres of 1.5 voxels. Without SelfColEnabled its own program takes it "
-    "0.25 m the other way. In Mercury masses push each other away, within half a voxel, and legs of one voxel bend less easily.",
+    "elastic moduli of 99 to 101 % of the file's; the second number of a robot's name is how far these are apart. Voxels add their springs "
+    "and masses, so that bodies stretch, shear and weigh as beams of evosoro do, and in water limbs bend as they do. Damping "
+    "(BondDampingZ) is the relaxation time of all springs. quadruped_land weighs more than its legs of one voxel carry: within half a "
+    "second they fold, here as there. What it walks on then are contacts: voxels push each other away as spheres of 1.5 voxels. "
+    "Without SelfColEnabled its own program takes it 0.25 m the other way. In Mercury masses push each other away, within half a "
+    "voxel. What the floor does there that it does not do here is in [import.md](import.md#how-far-robots-get-here-and-there).",
 )
 def evosoro(short: bool) -> Result:
     rows = []

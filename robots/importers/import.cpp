@@ -185,13 +185,13 @@ std::string_view name_of(ImportOutcome outcome) {
 }
 
 void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
-                const ImportOptions& options, Import& import) {
+                const ImportOptions& options, Import& import, SpringRule rule) {
   const std::vector<VoxelBody> bodies = separate_bodies(grid);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::string own = i == 0 ? name : fmt::format("{}-{}", name, i + 1);
     Rounding rounding;
     import.robots.push_back(
-        voxel_body_robot(bodies[i], own, provenance, static_cast<std::size_t>(options.most_materials), rounding));
+        voxel_body_robot(bodies[i], own, provenance, static_cast<std::size_t>(options.most_materials), rounding, rule));
     fix_masses(import.robots.back(), bodies[i]);
     import.report.robots.push_back(own);
     if (!rounding.is_exact()) import.report.notes.push_back(fmt::format("{}: {}", own, text_of(rounding)));

@@ -17,7 +17,7 @@ class XmlDocument;
 // Robots of all bodies of a grid, the largest first: NAME, NAME-2, NAME-3, ... Rounding and several bodies become
 // notes.
 void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
-                const ImportOptions& options, Import& import);
+                const ImportOptions& options, Import& import, SpringRule rule = SpringRule::equal);
 
 // The values of a list, separated by commas, or else by white space. A value may be empty between two commas.
 std::vector<std::string_view> list_values(std::string_view text);

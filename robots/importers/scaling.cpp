@@ -11,8 +11,8 @@
 namespace mercury {
 namespace {
 
-// Bound on the squared frequencies of a robot of unit masses [1/s2], by Gershgorin: a row of the stiffness matrix has
-// the terms k |n_i n_j| of each spring at its mass twice, once on the diagonal.
+// Bound on the squared frequencies of a robot [1/s2], by Gershgorin: a row of the stiffness matrix, over its mass, has
+// the terms k |n_i n_j| of each spring at that mass twice, once on the diagonal.
 double largest_eigenvalue(const Robot& robot, double stiffness_scale) {
   const auto table = materials_of(robot);
   std::vector<std::array<double, 3>> rows(robot.masses.size());
@@ -24,7 +24,8 @@ double largest_eigenvalue(const Robot& robot, double stiffness_scale) {
     if (!(length > 0)) continue;
     const double k = static_cast<double>(table[spring.material].stiffness) * stiffness_scale / (length * length);
     for (const std::uint16_t mass : {spring.a, spring.b})
-      for (std::size_t axis = 0; axis < 3; ++axis) rows[mass][axis] += 2 * k * d[axis] * sum;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        rows[mass][axis] += 2 * k * d[axis] * sum / static_cast<double>(mass_of(robot, mass));
   }
   double largest = 0;
   for (const auto& row : rows) largest = std::max({largest, row[0], row[1], row[2]});

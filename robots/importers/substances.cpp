@@ -9,6 +9,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -76,7 +77,8 @@ class Grouping {
     });
   }
 
-  // The phase has twice as many steps, around the turn.
+  // The phase has twice as many steps, around the turn, and the stiffness four times as many: robots have few
+  // stiffnesses, by kind of spring and number of voxels that share it, and these lie far apart.
   std::optional<SubstanceGroups> rounded(int steps, std::size_t most) const {
     std::optional<SubstanceGroups> found = groups(most, [&](const Substance& substance) {
       const bool is_muscle = moves(substance);
@@ -85,7 +87,7 @@ class Grouping {
       const double half_turn = substance.amplitude < 0 && !substance.half_wave ? turn / 2 : 0;
       const std::int64_t phase =
           std::llround(wrapped(substance.phase + half_turn) / turn * static_cast<double>(around)) % around;
-      return Key{stiffness_.step(log_of(substance.stiffness), steps),
+      return Key{stiffness_.step(log_of(substance.stiffness), 4 * steps),
                  is_muscle ? 1 + amplitude_.step(std::abs(substance.amplitude), steps) : 0,
                  is_muscle ? frequency_.step(log_of(substance.frequency), steps) : 0,
                  is_muscle ? phase : 0,
@@ -154,20 +156,24 @@ Material material_of(const Substance& substance) {
   return material;
 }
 
-Substance mean_substance(std::span<const Substance> substances) {
+Substance mean_substance(std::span<const Substance> substances, std::span<const double> weights) {
   // The mean of equal numbers may differ from them in the last bit.
   if (std::ranges::all_of(substances, [&](const Substance& substance) { return substance == substances.front(); }))
     return substances.front();
   Substance mean{.size = 0};
   std::complex<double> movement, phases;
   double moving = 0;
-  for (const Substance& substance : substances) {
-    mean.stiffness += substance.stiffness / static_cast<double>(substances.size());
-    mean.size += substance.size / static_cast<double>(substances.size());
+  const double total =
+      weights.empty() ? static_cast<double>(substances.size()) : std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (std::size_t i = 0; i < substances.size(); ++i) {
+    const Substance& substance = substances[i];
+    const double weight = weights.empty() ? 1 : weights[i];
+    mean.stiffness += weight * substance.stiffness / total;
+    mean.size += weight * substance.size / total;
     if (!moves(substance)) continue;
     ++moving;
-    movement += movement_of(substance) / static_cast<double>(substances.size());
-    phases += std::abs(substance.amplitude) * std::polar(1.0, substance.phase);
+    movement += weight * movement_of(substance) / total;
+    phases += weight * std::abs(substance.amplitude) * std::polar(1.0, substance.phase);
     mean.frequency += substance.frequency;
     mean.half_wave = mean.half_wave || substance.half_wave;
   }

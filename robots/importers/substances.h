@@ -32,7 +32,9 @@ Material material_of(const Substance& substance);
 // vectors, so that its rest length is the mean of the rest lengths that each of them would have, at all times. Voxels
 // that do not move lower the amplitude and leave the frequency. Where frequencies differ, which no single material can
 // keep, it has their mean.
-Substance mean_substance(std::span<const Substance> substances);
+//
+// `weights`: how much each counts, one per substance; empty = all alike.
+Substance mean_substance(std::span<const Substance> substances, std::span<const double> weights = {});
 
 // How far rounded substances are from the exact ones, at most.
 struct Rounding {

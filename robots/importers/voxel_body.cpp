@@ -8,7 +8,9 @@
 #include <cmath>
 #include <complex>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "mercury/cppn.h"
@@ -16,6 +18,7 @@
 #include "mercury/origin.h"
 #include "mercury/voxel.h"
 #include "robots/file/document.h"
+#include "robots/importers/calibration.h"
 
 namespace mercury {
 namespace {
@@ -327,8 +330,76 @@ std::string import_origin(const VoxelBody& body, const Provenance& provenance) {
   return origin_text(origin);
 }
 
+namespace {
+
+// Springs that a voxel adds, in stiffnesses of its beam, k = E edge, where its mass is 1 kg (docs/formats.md):
+//
+//   4 along each axis     1/6 each    edges
+//   2 across each side    1/15        face diagonals
+//   4 through it          1/5         space diagonals
+//
+// With them an endless body is the isotropic one with E and Poisson's ratio 1/4, the only one that springs can be, and
+// a bar of one voxel resists torsion as the beam, k edge^2 / 15.
+double spring_share(std::array<int, 3> direction) {
+  constexpr std::array shares{1.0 / 6, 1.0 / 15, 1.0 / 5};
+  const auto axes = std::ranges::count_if(direction, [](int step) { return step != 0; });
+  return shares[static_cast<std::size_t>(axes) - 1];
+}
+
+// How many voxels in a row are at this one, along the axis on which there are fewest.
+int thickness_at(const VoxelBody& body, std::array<int, 3> at) {
+  const std::array size{body.nx, body.ny, body.nz};
+  int thinnest = std::numeric_limits<int>::max();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    int count = 1;
+    for (const int step : {-1, 1}) {
+      std::array<int, 3> next = at;
+      for (next[axis] += step; next[axis] >= 0 && next[axis] < size[axis]; next[axis] += step) {
+        if (body.cells[body.index(next[0], next[1], next[2])] == 0) break;
+        ++count;
+      }
+    }
+    thinnest = std::min(thinnest, count);
+  }
+  return thinnest;
+}
+
+// By how much voxels are softer, so that a limb of n voxels across bends as n x n beams do. A voxel has its springs at
+// its surface, so it bends 2.4 times as stiffly as a beam, (1/6 + 1/15 / 2) / (1/12); the stretch of its neighbors adds
+// (n^2 - 1) / 12 per voxel to both. One entry per cell.
+std::vector<double> bending_factors(const VoxelBody& body) {
+  std::vector<double> factors(body.cells.size(), 1);
+  for (int z = 0; z < body.nz; ++z)
+    for (int y = 0; y < body.ny; ++y)
+      for (int x = 0; x < body.nx; ++x)
+        if (const std::size_t cell = body.index(x, y, z); body.cells[cell] != 0) {
+          const double n = thickness_at(body, {x, y, z});
+          factors[cell] = n * n / (n * n + 1.4);
+        }
+  return factors;
+}
+
+// The mass of each point [kg]: an eighth of each voxel, of 1 kg, that it is a corner of.
+std::vector<float> shares_of_voxels(const Robot& robot, const VoxelBody& body) {
+  const SpringVoxels lattice(robot, body);
+  std::vector<float> mass;
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) {
+    const auto [x, y, z] = lattice.corner(static_cast<std::uint16_t>(i));
+    int voxels = 0;
+    for (int k = 0; k < 8; ++k) {
+      const int cx = x - (k & 1), cy = y - (k >> 1 & 1), cz = z - (k >> 2);
+      if (cx < 0 || cy < 0 || cz < 0 || cx >= body.nx || cy >= body.ny || cz >= body.nz) continue;
+      if (body.cells[body.index(cx, cy, cz)] != 0) ++voxels;
+    }
+    mass.push_back(static_cast<float>(voxels) / 8);
+  }
+  return mass;
+}
+
+}  // namespace
+
 Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Provenance& provenance,
-                       std::size_t most_materials, Rounding& rounding) {
+                       std::size_t most_materials, Rounding& rounding, SpringRule rule) {
   const VoxelBody used = with_fewer_substances(body, body.substances.size(), rounding);
   const bool has_sizes =
       std::ranges::any_of(used.substances, [](const Substance& substance) { return substance.size != 1; });
@@ -340,20 +411,31 @@ Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Pro
   if (!has_sizes && used.substances.size() <= most_substances) return voxel_robot(used, name, provenance);
   Robot robot = bare_robot(body, name);
   const SpringVoxels voxels(robot, body);
+  const std::vector<double> softness = rule == SpringRule::bending ? bending_factors(body) : std::vector<double>();
   std::vector<Substance> substances;
   std::vector<std::string> names;
   substances.reserve(robot.springs.size());
   names.reserve(robot.springs.size());
   for (const Spring& spring : robot.springs) {
     std::vector<Substance> shared;
+    std::vector<double> stiffnesses;
     std::set<std::string> shared_names;
     for (const std::size_t cell : voxels.of(spring)) {
       shared.push_back(body.substances[body.cells[cell] - 1]);
+      stiffnesses.push_back(shared.back().stiffness * (softness.empty() ? 1 : softness[cell]));
       shared_names.insert(body.names[body.cells[cell] - 1]);
     }
-    substances.push_back(mean_substance(shared));
+    if (rule == SpringRule::equal) {
+      substances.push_back(mean_substance(shared));
+    } else {
+      // Springs side by side pull with the sum of their forces.
+      substances.push_back(mean_substance(shared, stiffnesses));
+      substances.back().stiffness = spring_share(voxels.direction(spring)) * slice_stiffness(BeamModel{}.thickness) *
+                                    std::accumulate(stiffnesses.begin(), stiffnesses.end(), 0.0);
+    }
     names.push_back(fmt::format("{}", fmt::join(shared_names, " + ")));
   }
+  if (rule != SpringRule::equal) robot.mass = shares_of_voxels(robot, body);
   set_substances(robot, substances, names, most_materials, rounding);
   robot.origin = import_origin(used, provenance);
   return robot;

@@ -43,14 +43,22 @@ struct Provenance {
   std::string environment;
 };
 
+// How the springs of a robot with a table of its own stand for a body of voxels.
+enum class SpringRule {
+  equal,       // a spring has the mean stiffness of the voxels that share it; masses of 1 kg
+  stretching,  // each voxel adds springs and 1 kg, so that a body of any thickness stretches, shears and weighs as
+               // beams
+  bending      // the same, but limbs are softer, so that they bend as beams do
+};
+
 // The one body of a grid as a robot.
 // With at most 22 substances that all have size 1 it is a voxel robot (mercury/voxel.h), so that it mutates, crosses
 // and evolves: substance i is base material i + 1, the materials of pairs are the mean substances of two. Otherwise it
-// has a table of its own: each spring has the mean substance of all voxels that share it, and its origin, of kind
-// "import", keeps grid and substances. `most_materials` limits the table; what does not fit is rounded, see `rounding`.
-// Throws InputError for a body that needs more masses than a robot can have.
+// has a table of its own, by `rule`: each spring has the mean movement of all voxels that share it, and its origin, of
+// kind "import", keeps grid and substances. `most_materials` limits the table; what does not fit is rounded, see
+// `rounding`. Throws InputError for a body that needs more masses than a robot can have.
 Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Provenance& provenance,
-                       std::size_t most_materials, Rounding& rounding);
+                       std::size_t most_materials, Rounding& rounding, SpringRule rule = SpringRule::equal);
 
 // Grid and substances of an origin: of a robot that was imported, was painted, or is any other voxel robot. Nothing for
 // robots of other kinds. Throws InputError("/origin: ...") for an origin that breaks a rule.

@@ -55,7 +55,9 @@ class VxaImport {
                                 .time_scale = scaling_->calibration.time_scale,
                                 .environment = import.settings.environment};
     try {
-      add_bodies(body(import.report), name_, provenance, options_, import);
+      // Swimmers bend and weigh nothing; on land legs carry a weight.
+      add_bodies(body(import.report), name_, provenance, options_, import,
+                 model_.in_fluid ? SpringRule::bending : SpringRule::stretching);
     } catch (const InputError& error) {
       throw InputError("/VXA/VXC/Structure", error.what());
     }
@@ -113,13 +115,14 @@ class VxaImport {
       for (std::size_t id = 1; id < robot.materials.size(); ++id) robot.materials[id].relaxation_time = relaxation_time;
   }
 
-  // The drag of the calibration, for the masses that the robots have per voxel.
+  // The drag of the calibration, for the mass that the robots have per voxel.
   void set_drag(Import& import) const {
-    double masses = 0;
-    for (const Robot& robot : import.robots) masses += static_cast<double>(robot.masses.size());
+    double masses = 0;  // [kg]
+    for (const Robot& robot : import.robots)
+      for (std::size_t i = 0; i < robot.masses.size(); ++i) masses += static_cast<double>(mass_of(robot, i));
     BeamModel model = scaling_->model;
     model.aggregate_drag = model_.drag_coefficient;
-    model.thickness = 0;  // one mass per voxel
+    model.thickness = 0;  // 1 kg per voxel
     const Calibration bulk = calibrate(model, scaling_->calibration.time_scale);
     import.settings.drag_coefficient = bulk.drag_coefficient * masses / static_cast<double>(voxels_);
   }

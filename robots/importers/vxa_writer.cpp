@@ -86,9 +86,9 @@ struct World {
 
 class VxaWriter {
  public:
-  VxaWriter(const VoxelBody& body, const World& world, double relaxation_time, std::size_t masses)
+  VxaWriter(const VoxelBody& body, const World& world, double relaxation_time, double mass)
       : body_(body), palette_(palette_of(body)), world_(world), scale_(world.stiffness_scale),
-        relaxation_time_(relaxation_time), masses_(static_cast<double>(masses)) {}
+        relaxation_time_(relaxation_time), mass_(mass) {}
 
   std::string document() {
     text_ = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VXA Version=\"1.1\">\n";
@@ -144,7 +144,7 @@ class VxaWriter {
   double aggregate_drag() const {
     const auto voxels =
         static_cast<double>(std::ranges::count_if(body_.cells, [](std::uint32_t cell) { return cell != 0; }));
-    return *world_.normal_coefficient * density * voxels / masses_;
+    return *world_.normal_coefficient * density * voxels / mass_;
   }
 
   void write_world() {
@@ -249,7 +249,7 @@ class VxaWriter {
   Scaling scaling_{imported_edge, 1e6, density, 9.81};
   const World world_;
   std::string text_;
-  double scale_, relaxation_time_, masses_;
+  double scale_, relaxation_time_, mass_;
 };
 
 World usual_world(const Robot& robot) {
@@ -287,8 +287,9 @@ std::string vxa_document(const Robot& robot, const std::optional<ImportedSetting
   double relaxation_time = 0;  // of all springs, as the importer sets it
   for (const Material& material : materials_of(robot))
     relaxation_time = std::max(relaxation_time, static_cast<double>(material.relaxation_time));
-  return VxaWriter(*body, world ? world_of(*world) : usual_world(robot), relaxation_time, robot.masses.size())
-      .document();
+  double mass = 0;
+  for (std::size_t i = 0; i < robot.masses.size(); ++i) mass += static_cast<double>(mass_of(robot, i));
+  return VxaWriter(*body, world ? world_of(*world) : usual_world(robot), relaxation_time, mass).document();
 }
 
 void write_vxa(const Robot& robot, const std::filesystem::path& path, const std::optional<ImportedSettings>& world) {
