@@ -286,8 +286,8 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
   if (near) {
     const Node& node = graph_.nodes[*near];
     const std::optional<std::size_t> neuron = neuron_of(*near);
-    ImGui::SetTooltip("%s: %.3g%s\nclick: plot it%s", node.name.c_str(), static_cast<double>(value_of(now, *near)),
-                      node.gates.c_str(), neuron ? "\nright-click: silence or hold it" : "");
+    tooltip_now(fmt::format("{}: {:.3g}{}\nclick: plot it{}", node.name, value_of(now, *near), node.gates,
+                            neuron ? "\nright-click: silence or hold it" : ""));
     if (neuron && ImGui::IsMouseClicked(1)) {
       menu_of_ = *neuron;
       ImGui::OpenPopup("neuron");

@@ -135,7 +135,10 @@ bool pointer_rests() {
 }
 
 void tooltip(const char* text) {
-  if (!text || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || !pointer_rests()) return;
+  if (text && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && pointer_rests()) tooltip_now(text);
+}
+
+void tooltip_now(const std::string& text) {
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(22 * ImGui::GetFontSize());
   ImGui::TextUnformatted(brief(text, longest_tooltip).c_str());

@@ -30,6 +30,8 @@ bool pointer_rests();
 
 // A tooltip for the item that was just drawn.
 void tooltip(const char* text);
+// The same at once, whatever the pointer is over. Long lines are wrapped, and long texts cut (brief()).
+void tooltip_now(const std::string& text);
 
 // Secondary text in a fainter color, wrapped at the panel's edge.
 void note(const char* text);

@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from window_case import SAMPLES, WindowCase, main, numpy
-from window_driver import SIZE
+from window_driver import SIZE, scratch
 
 
 def near(place, item):
@@ -239,6 +239,24 @@ class PanelsTest(WindowCase):
         window.frame()
         window.do("click", 1)
         window.wait("brain", since, lambda event: event["node"] == "turn 0" and event["plotted"] == 4)
+        self.finish(window)
+
+    def test_a_long_name_of_a_neuron_is_wrapped(self):
+        folder = scratch()
+        name = "a layer whose name is much longer than the window is wide: " + 4 * "model.encoder.blocks.0.attention.weight/"
+        text = (SAMPLES.parent / "hunter.json").read_text().replace('"turn"', f'"{name}"')
+        (folder / "long.json").write_text(text)
+        window = self.window_in(folder, str(folder / "long.json"), "--paused")
+        window.open("Brain")
+        x, y = map(round, window.place("brain.neuron.0"))
+        window.do("mousemove", x, y + 150)
+        window.standing()
+        before = window.screenshot()
+        window.do("mousemove", x, y)
+        window.standing()
+        changed = (numpy.abs(window.screenshot() - before).max(axis=2) > 0.05).any(axis=0)
+        self.assertGreater(changed[920:1200].sum(), 200, "there is a tooltip")
+        self.assertEqual(changed[:340].sum(), 0, "it is wrapped, and does not reach the left panel")
         self.finish(window)
 
     def test_a_neuron_is_silenced_and_the_whole_brain_is_its_ghost(self):
