@@ -7,8 +7,8 @@
 //
 // Two things of a straight bar stay what they were: its first longitudinal frequency, and its stretch by its own weight
 // as a share of its length. Both follow from the speed of waves along the bar, so one stiffness gives both. Bending,
-// shear and torsion of beams do not stay: springs have the ratios of their lattice (Poisson's ratio 0.35), beams other
-// ones.
+// shear and torsion of beams do not stay: equal springs have the ratios of their lattice (Poisson's ratio 0.35), beams
+// other ones. Bodies with springs of their own (voxel_body.h) keep more of them.
 #pragma once
 
 #include <optional>

@@ -376,7 +376,8 @@ class VxaReader {
         mark(mechanical, "Elastic_Mod", mapped, "stiffness of springs; springs between two materials have the mean");
       else
         mark(mechanical, "Elastic_Mod", ignored, "Structure/Stiffness replaces it");
-      mark(mechanical, "Density", approximated, "every mass is 1 kg: the mean over the voxels goes into the stiffness");
+      mark(mechanical, "Density", approximated,
+           "all voxels weigh the same: the mean over them goes into the stiffness");
       mark(mechanical, "CTE", mapped,
            model_.temperature_varies ? "amplitude of muscles, times the amplitude of the temperature"
                                      : "nothing moves: the temperature does not vary");
