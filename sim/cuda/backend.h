@@ -154,6 +154,7 @@ class CudaBackend final : public Backend {
   mutable std::shared_ptr<float> positions_copy_;  // where steps leave the positions; nullptr = nowhere
   mutable bool copy_valid_ = false;                // it holds those of the current state
   mutable bool queued_ = false;                    // something in a caller's stream that may not be done
+  mutable unsigned long long queued_in_ = 0;       // id of that stream
   mutable bool views_valid_ = false;
   bool rest_valid_ = false;
   Configuration configuration_;

@@ -34,8 +34,7 @@ class MaterialTable {
       float value = static_cast<float>(stiffness);
       if constexpr (solver == Solver::xpbd)
         value = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
-      for (std::uint32_t copy = 0; copy < copies_; ++copy)
-        table_[(chunk * lanes + lane_) * copies_ + copy].*coefficient = value;
+      spread(chunk, coefficient, value);
     }
     update(arguments, 0);
   }

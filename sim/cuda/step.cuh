@@ -27,14 +27,8 @@ class RobotStepper {
   }
 
   __device__ void load_state() {
-    for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
-      const Mass<Memory> mass = robot_.own_mass(tile);
-      const float* from = robot_.state(tile);
-      for (std::uint32_t field = 0; field < state_fields; ++field) mass.set_value(field, from[field * lanes]);
-      mass.set_sum(solver == Solver::force ? robot_.incoming_bias(tile) : 0);
-      if constexpr (solver == Solver::xpbd && Memory::keeps_valence)
-        mass.set_value(field_valence, robot_.load_valence(robot_.own_slot(tile)));
-    }
+    for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); tile += tiles_at_once)
+      load_tiles(tile, min(tiles_at_once, robot_.last_tile() - tile));
   }
 
   __device__ void store_state() const {
@@ -162,6 +156,32 @@ class RobotStepper {
   }
 
  private:
+  // Tiles whose states are on their way at the same time.
+  static constexpr std::uint32_t tiles_at_once = 4;
+  __device__ void load_tiles(std::uint32_t first, std::uint32_t count) {
+    float values[tiles_at_once][state_fields], valences[tiles_at_once];
+    int sums[tiles_at_once];
+#pragma unroll
+    for (std::uint32_t i = 0; i < tiles_at_once; ++i) {
+      const std::uint32_t tile = min(first + i, first + count - 1);
+      const float* from = robot_.state(tile);
+#pragma unroll
+      for (std::uint32_t field = 0; field < state_fields; ++field) values[i][field] = from[field * lanes];
+      sums[i] = solver == Solver::force ? robot_.incoming_bias(tile) : 0;
+      if constexpr (solver == Solver::xpbd && Memory::keeps_valence)
+        valences[i] = robot_.load_valence(robot_.own_slot(tile));
+    }
+#pragma unroll
+    for (std::uint32_t i = 0; i < tiles_at_once; ++i) {
+      if (i >= count) break;
+      const Mass<Memory> mass = robot_.own_mass(first + i);
+#pragma unroll
+      for (std::uint32_t field = 0; field < state_fields; ++field) mass.set_value(field, values[i][field]);
+      mass.set_sum(sums[i]);
+      if constexpr (solver == Solver::xpbd && Memory::keeps_valence) mass.set_value(field_valence, valences[i]);
+    }
+  }
+
   // The longest |d|^2 of this thread's springs, padding included [m2].
   __device__ float add_all_springs() const {
     const SpringPass<Robot> springs(robot_);

@@ -48,6 +48,13 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
+// No other stream has the same one, not even later.
+inline unsigned long long id_of(cudaStream_t stream) {
+  unsigned long long id = 0;
+  check(cudaStreamGetId(stream, &id), "naming a stream");
+  return id;
+}
+
 class Stream {
  public:
   // What an `urgent` stream does comes before what waits in other streams: short work beside the steps of others.
