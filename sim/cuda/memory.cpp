@@ -137,16 +137,6 @@ void free_on_device(void* data) noexcept {
   if (data) cudaFreeAsync(data, cudaStreamPerThread);
 }
 
-std::size_t free_device_memory() {
-  std::size_t free = 0, total = 0;
-  check(cudaMemGetInfo(&free, &total), "querying the device's memory");
-  std::uint64_t reserved = 0, used = 0;  // of the pool
-  const cudaMemPool_t pool = present_pool();
-  check(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrReservedMemCurrent, &reserved), "querying the device's memory");
-  check(cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &used), "querying the device's memory");
-  return free + (reserved - used);
-}
-
 PinnedBuffer::PinnedBuffer(std::size_t bytes) {
   if (bytes == 0) return;
   constexpr std::size_t smallest = std::size_t{1} << 16;

@@ -28,9 +28,6 @@ void free_on_device(void* data) noexcept;
 // other devices and processes can map only what cudaMalloc() allocates.
 std::shared_ptr<void> allocate_to_share(std::size_t bytes);
 
-// What can be allocated on the current device [bytes].
-std::size_t free_device_memory();
-
 // An array in device memory.
 template <class T>
 class DeviceArray {

@@ -97,7 +97,6 @@ class Window {
   WindowSize size() const;      // in screen coordinates
   WindowSize pixels() const;    // of the framebuffer
   float content_scale() const;  // how much larger text should be on this screen; 1 = normal
-  void set_title(const std::string& title);
   void toggle_full_screen();
 
   // Mouse and keyboard input.

@@ -53,8 +53,7 @@ class Viewport {
 
   render::Renderer& renderer() { return renderer_; }
   const render::Renderer& renderer() const { return renderer_; }
-  double draw_seconds() const { return draw_seconds_; }  // of the last frame, from draw() to the end of finish()
-  float share() const { return share_; }                 // of the area's width and height that was drawn, 0.5 to 1
+  float share() const { return share_; }  // of the area's width and height that was drawn, 0.5 to 1
   // True if the last frame had reduced resolution.
   bool coarse() const { return share_ < 1; }
 
@@ -67,7 +66,7 @@ class Viewport {
   float share_ = 1, moving_share_ = 1;
   std::chrono::steady_clock::time_point begun_;
   bool drawing_ = false;
-  double draw_seconds_ = 0;
+  double draw_seconds_ = 0;  // of the last frame, from draw() to the end of finish()
 };
 
 }  // namespace mercury::window
