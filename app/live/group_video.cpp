@@ -9,6 +9,8 @@
 #include <thread>
 
 #include "app/base/bounded_queue.h"
+#include "app/scene/hero_style.h"
+#include "app/video/contact_sheet.h"
 #include "app/video/video_pipeline.h"
 #include "mercury/error.h"
 
@@ -47,28 +49,73 @@ struct GroupVideo::Parts {
     }
   }
 
-  bool write() {
+  // A frame, how many there are, and what writes them.
+  struct Plan {
+    PictureSize size;
+    render::PixelFormat pixels;
+    VideoTiming timing;
+    std::unique_ptr<FrameWriter> writer;
+  };
+
+  Plan plan_video() const {
     const VideoKind kind = video_kind_of(options.output);
     const PictureSize size = encoded_size(kind, options.size);
     const VideoTiming timing = video_timing(options.seconds, options.speed, options.frames_per_second);
+    return {size, pixel_format_of(kind), timing,
+            open_frame_writer(options.output, {.size = size,
+                                               .frames_per_second = options.frames_per_second,
+                                               .expected_frames = timing.frames,
+                                               .comment = comment_of(*robots.front().robot, configuration)})};
+  }
+
+  Plan plan_picture() const {
+    return {options.size, render::PixelFormat::rgb, VideoTiming{.frames = 1, .start = *options.still},
+            std::make_unique<ContactSheet>(options.output, Grid{}, options.size, 0,
+                                           comment_of(*robots.front().robot, configuration))};
+  }
+
+  // The style has a camera and an arrangement of its own, and shows the robots alone.
+  void become_hero() {
+    view.camera = {};
+    view.compare.reset();
+    view.shown.clock = view.shown.path = view.shown.labels = view.shown.captions = view.shown.scale_bar = false;
+    set_hero_style(view, configuration.environment);
+    if (options.quality == render::Quality::automatic) options.quality = render::Quality::medium;
+    std::vector<std::shared_ptr<const Robot>> bodies;
+    RobotId last = 0;
+    for (const LiveRobot& one : robots) {
+      bodies.push_back(one.robot);
+      last = std::max(last, one.id);
+    }
+    const std::size_t given = bodies.size();
+    add_siblings(bodies, configuration.environment);
+    for (std::size_t i = given; i < bodies.size(); ++i) {
+      LiveRobot sibling = robots[i % given];
+      sibling.robot = bodies[i];
+      sibling.id = ++last;
+      sibling.begins_as = 0;
+      robots.push_back(std::move(sibling));
+    }
+  }
+
+  bool write() {
+    if (robots.empty()) throw InputError("there is no robot to show");
+    Plan plan = options.still ? plan_picture() : plan_video();
+    const auto& [size, pixels, timing, writer] = plan;
     {
       const std::lock_guard lock(mutex);
       status.total = timing.frames;
     }
-    if (robots.empty()) throw InputError("there is no robot to show");
-    const auto writer =
-        open_frame_writer(options.output, {.size = size,
-                                           .frames_per_second = options.frames_per_second,
-                                           .expected_frames = timing.frames,
-                                           .comment = comment_of(*robots.front().robot, configuration)});
-    view.speed = options.speed;
+    view.speed = options.still ? 1 : options.speed;
+    if (options.still) view.aperture = options.aperture;
+    if (options.still && options.hero) become_hero();
     Simulation simulation = simulation_of(robots, configuration, options.start);
     OffscreenRenderer offscreen = make_offscreen_renderer(options.context, size, options.quality);
     std::vector<FilmedGroup> groups;
     groups.push_back({std::move(simulation)});
     if (view.compare) groups.push_back({simulation_of(robots, view.compare->over(configuration), options.start)});
     VideoPipeline pipeline(offscreen, std::move(groups), view);
-    const VideoResult result = pipeline.run(*writer, pixel_format_of(kind), timing, true, &control);
+    const VideoResult result = pipeline.run(*writer, pixels, timing, true, &control);
     if (control.stop || result.interrupted) return false;
     set_state(VideoStatus::State::finishing);
     writer->finish();

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The videos that the window makes: of the scene's robots from time 0, and of its own frames. Both are made in the
-// background; other threads can watch and cancel them.
+// The videos and pictures that the window makes: of the scene's robots from time 0, and of its own frames. All are made
+// in the background; other threads can watch and cancel them.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,12 @@ struct GroupVideoOptions {
   std::string output;            // .mp4, .webm, .gif, or a folder for PNG pictures; an existing file is replaced
   PictureSize size{1920, 1080};  // rounded to even numbers where the format needs it
   double frames_per_second = 30;
-  double seconds = 10;  // simulated
-  double speed = 1;     // simulated seconds per second of video
-  TrialStart start;     // where robots begin
+  double seconds = 10;          // simulated
+  double speed = 1;             // simulated seconds per second of video
+  std::optional<double> still;  // a picture (.png) of this moment rather than a video [s]
+  bool hero = false;            // the style of a still, see hero_style.h
+  float aperture = 0;           // of its lens, see ViewSettings
+  TrialStart start;             // where robots begin
   render::Quality quality = render::Quality::automatic;
   render::ContextKind context = render::ContextKind::automatic;
 };

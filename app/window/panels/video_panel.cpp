@@ -23,12 +23,12 @@ class VideoPanel : public Panel {
 
 namespace {
 
-void report_end(PanelContext& context, const VideoStatus& status) {
+void report_end(PanelContext& context, const VideoStatus& status, const std::string& what = "video") {
   if (status.state == VideoStatus::State::failed) context.toasts.show(Tone::error, status.error);
   if (status.state == VideoStatus::State::canceled)
-    context.toasts.show(Tone::info, "the video was canceled; no file was kept");
+    context.toasts.show(Tone::info, "the " + what + " was canceled; no file was kept");
   if (status.state != VideoStatus::State::done) return;
-  context.toasts.show(Tone::success, "video saved: " + status.file);
+  context.toasts.show(Tone::success, what + " saved: " + status.file);
   context.log.write("recorded", {{"file", status.file}, {"frames", status.frames}});
 }
 
@@ -73,7 +73,6 @@ void draw_recording(PanelContext& context) {
 }
 
 void draw_group_options(VideoSettings& settings) {
-  combo("size", "of the video", settings.group_size, {"1280 x 720", "1920 x 1080", "2560 x 1440", "3840 x 2160"});
   auto length = static_cast<float>(settings.group_seconds), speed = static_cast<float>(settings.group_speed);
   if (slider("length", "simulated time", length, 10, {1, 120, "%.0f s", true}) && length > 0)
     settings.group_seconds = static_cast<double>(length);
@@ -82,19 +81,41 @@ void draw_group_options(VideoSettings& settings) {
     settings.group_speed = static_cast<double>(speed);
 }
 
+void draw_picture(PanelContext& context) {
+  VideoSettings& settings = context.recorder.settings;
+  int style = settings.hero ? 1 : 0;
+  if (combo("style", "hero: the first robot against the light, the others or copies of it behind, out of focus", style,
+            {"as in the window", "hero"}))
+    settings.hero = style == 1;
+  slider("lens",
+         "blurs what is nearer or farther than what the camera follows: diameter of the lens over its distance; "
+         "0: all is sharp, or as the style has it",
+         settings.aperture, 0, {0, 0.3f, "%.3f", false});
+  settings.aperture = std::clamp(settings.aperture, 0.0f, 1.0f);
+  ImGui::BeginDisabled(context.scene.entries().empty());
+  if (ImGui::Button("Save a picture", {-1, 0})) context.recorder.start_group_picture(context);
+  context.log.item("video.picture");
+  ImGui::EndDisabled();
+  tooltip("this moment of all robots, simulated from the start, as mercury render --still draws it");
+}
+
 void draw_group(PanelContext& context) {
-  heading("Clean video of the group");
+  heading("Clean video and picture of the group");
   if (const GroupVideo* video = context.recorder.group_video()) {
     progress(video->status(), "filming");
     if (ImGui::Button("Cancel##group", {-1, 0})) context.recorder.cancel_group_video();
     return;
   }
-  draw_group_options(context.recorder.settings);
+  VideoSettings& settings = context.recorder.settings;
+  combo("size", "of the video or picture", settings.group_size,
+        {"1280 x 720", "1920 x 1080", "2560 x 1440", "3840 x 2160"});
+  draw_group_options(settings);
   ImGui::BeginDisabled(context.scene.entries().empty());
   if (ImGui::Button("Make the video", {-1, 0})) context.recorder.start_group_video(context);
   context.log.item("video.group");
   ImGui::EndDisabled();
   tooltip("all robots from the start, seen as now but without panels, made in the background");
+  draw_picture(context);
 }
 
 }  // namespace
@@ -134,7 +155,7 @@ void VideoRecorder::start(PanelContext& context, WindowSize pixels) {
 
 void VideoRecorder::capture_frame(PanelContext& context, WindowSize pixels) {
   if (group_ && group_->status().over()) {
-    report_end(context, group_->status());
+    report_end(context, group_->status(), group_is_picture_ ? "picture" : "video");
     group_.reset();
   }
   if (start_requested_) start(context, pixels);
@@ -149,16 +170,28 @@ void VideoRecorder::capture_frame(PanelContext& context, WindowSize pixels) {
   screen_.reset();
 }
 
-void VideoRecorder::start_group_video(PanelContext& context) {
-  GroupVideoOptions options;
-  options.output = new_video_file(context, settings).string();
-  options.size = VideoSettings::group_sizes[static_cast<std::size_t>(settings.group_size)];
-  options.frames_per_second = settings.frames_per_second;
-  options.seconds = settings.group_seconds;
-  options.speed = settings.group_speed;
-  options.quality = context.preferences.quality;
+void VideoRecorder::start_group(PanelContext& context, const GroupVideoOptions& options) {
+  group_is_picture_ = options.still.has_value();
   with_window_camera(context, [&] { group_ = context.scene.export_video(options); });
   context.log.write("filming", {{"file", options.output}});
+}
+
+void VideoRecorder::start_group_video(PanelContext& context) {
+  start_group(context, {.output = new_video_file(context, settings).string(),
+                        .size = VideoSettings::group_sizes[static_cast<std::size_t>(settings.group_size)],
+                        .frames_per_second = static_cast<double>(settings.frames_per_second),
+                        .seconds = settings.group_seconds,
+                        .speed = settings.group_speed,
+                        .quality = context.preferences.quality});
+}
+
+void VideoRecorder::start_group_picture(PanelContext& context) {
+  start_group(context, {.output = unused_path(picture_folder(context), ".png").string(),
+                        .size = VideoSettings::group_sizes[static_cast<std::size_t>(settings.group_size)],
+                        .still = context.scene.snapshot().time,
+                        .hero = settings.hero,
+                        .aperture = settings.aperture,
+                        .quality = context.preferences.quality});
 }
 
 void draw_recording_sign(ImDrawList& list, PanelContext& context, const ViewportArea& area) {

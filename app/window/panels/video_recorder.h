@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Videos of the window, clean videos of the group, screenshots.
+// Videos of the window, clean videos and pictures of the group, screenshots.
 #pragma once
 
 #include <array>
@@ -24,6 +24,8 @@ struct VideoSettings {
   int group_size = 1;         // index into group_sizes
   double group_seconds = 10;  // simulated time of a group video [s]
   double group_speed = 1;     // simulated seconds per second of the group video
+  bool hero = false;          // the style of pictures of the group
+  float aperture = 0;         // of their lens; 0 = all is sharp, or that of the style
 };
 
 class VideoRecorder {
@@ -41,16 +43,20 @@ class VideoRecorder {
 
   // Simulates all robots from their start and films them without panels, in the background.
   void start_group_video(PanelContext& context);
+  // The same, a picture of the moment that the window shows.
+  void start_group_picture(PanelContext& context);
   const GroupVideo* group_video() const { return group_.get(); }  // null = none is being made
   void cancel_group_video() { group_->cancel(); }
 
   bool busy() const { return start_requested_ || screen_ || group_; }
 
  private:
+  void start_group(PanelContext& context, const GroupVideoOptions& options);
   void start(PanelContext& context, WindowSize pixels);
 
   std::unique_ptr<ScreenRecording> screen_;
   std::unique_ptr<GroupVideo> group_;
+  bool group_is_picture_ = false;
   bool start_requested_ = false;  // starts in the next frame
   bool ending_ = false;
   std::chrono::steady_clock::time_point start_time_;

@@ -6,6 +6,9 @@
 #include <cmath>
 
 #include "app/live/group_video.h"
+#include "mercury/robot_file.h"
+#include "mercury/voxel.h"
+#include "render/png.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/nap.h"
@@ -92,6 +95,44 @@ TEST_F(LiveVideo, GroupVideoIsMadeWhileTheSceneContinues) {
   EXPECT_EQ(status.frames, 5);
   EXPECT_EQ(status.total, 5);
   EXPECT_EQ(test::probe(path("group.mp4"))["nb_read_frames"], "5");
+}
+
+TEST_F(LiveVideo, APictureHasThePixelsOfTheCommands) {
+  for (const std::string environment : {"land", "ocean"}) {
+    const std::string robot = path(environment + ".json");
+    const auto as_command = [&](const std::string& name, std::vector<std::string> more) {
+      std::vector<std::string> arguments{"render",  robot, "--environment", environment, "--size", "160x90",
+                                         "--still", "0.2", "--quality",     "low",       "-o",     path(name)};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const test::Outcome outcome = test::mercury(arguments);
+      EXPECT_EQ(outcome.status, 0) << outcome.messages;
+      return render::read_png(path(name)).bytes;
+    };
+    save_robot(robot, make_voxel_robot(VoxelGrid(2, 2, 2, 3)));
+    LiveScene scene(test::on_cpu(environment == "land" ? Environment(Land{}) : Environment(Ocean{})));
+    ViewSettings view = scene.view();
+    view.layout = Layout::grid;
+    scene.set_view(view);
+    scene.open({robot});
+    scene.wait_until_done();
+    ASSERT_EQ(scene.entries().size(), 1u);
+    const auto as_window = [&](const std::string& name, bool hero, float aperture) {
+      const auto picture = scene.export_video({.output = path(name),
+                                               .size = {160, 90},
+                                               .still = 0.2,
+                                               .hero = hero,
+                                               .aperture = aperture,
+                                               .quality = render::Quality::low});
+      const VideoStatus status = over(*picture);
+      EXPECT_EQ(status.state, VideoStatus::State::done) << status.error;
+      EXPECT_EQ(status.frames, 1);
+      return render::read_png(path(name)).bytes;
+    };
+    const std::string start = environment + "-";
+    EXPECT_EQ(as_window(start + "a.png", true, 0), as_command(start + "b.png", {"--style", "hero"}));
+    EXPECT_EQ(as_window(start + "c.png", false, 0.1f), as_command(start + "d.png", {"--aperture", "0.1"}));
+    EXPECT_NE(as_window(start + "e.png", false, 0), as_window(start + "f.png", false, 0.1f));
+  }
 }
 
 TEST_F(LiveVideo, CanceledGroupVideoLeavesNoFileAndEmptyOneReportsWhy) {

@@ -2,6 +2,7 @@
 """Messages, columns, keys and other tools of the real window: window_tools_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
 import shutil
 import subprocess
+from pathlib import Path
 
 from window_case import PROGRAM, SAMPLES, WindowCase, main, numpy
 from window_driver import SIZE, Window, scratch
@@ -274,6 +275,16 @@ class ToolsTest(WindowCase):
         film = subprocess.run(["ffmpeg", "-v", "error", "-i", file, "-frames:v", "1", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
                               capture_output=True, check=True).stdout
         self.assertEqual(red(numpy.frombuffer(film, numpy.uint8).reshape(SIZE[1], SIZE[0], 3)), 0)
+        self.finish(window)
+
+    def test_a_clean_picture_of_the_group_is_saved(self):
+        window = self.small("--paused")
+        window.open("Video")
+        since = window.mark()
+        window.click("video.picture")
+        file = Path(window.wait("recorded", since)["file"])
+        self.assertEqual(file.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(file.read_bytes()[16:24], (1920).to_bytes(4, "big") + (1080).to_bytes(4, "big"))
         self.finish(window)
 
     def test_the_first_gestures_fade_after_use(self):
