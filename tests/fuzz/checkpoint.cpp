@@ -9,7 +9,7 @@
 namespace mercury::fuzz {
 namespace {
 
-std::string checkpoint_of(bool measured, bool recorded, bool own_points = false) {
+std::string checkpoint_of(bool measured, bool recorded, bool own_points = false, bool thinks = false) {
   Robot robot;
   robot.name = "own";
   robot.masses = {{0, 0, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
@@ -20,7 +20,14 @@ std::string checkpoint_of(bool measured, bool recorded, bool own_points = false)
     robot.velocity = {{}, {0, 0, 0.25f}, {0.1f, 0, 0}};
     robot.fixed = {2};
   }
-  Simulation simulation({.device = {.kind = DeviceKind::cpu, .threads = 1}}, std::vector<Robot>{robot, robot});
+  Robot thinker = robot;  // with a gate and memory
+  thinker.actuators = {{.name = "all", .materials = {1}}};
+  thinker.sensors = {{.kind = SensorKind::strain, .actuator = "all", .delay = 0.02f}};
+  thinker.brain.emplace().layers = {
+      {.name = "gate", .neurons = 1, .activation = Activation::sigmoid},
+      {.name = "motor", .neurons = 1, .inputs = {{.from = "senses", .weights = {1}}}, .gate = "gate", .keep = {0.5f}}};
+  Simulation simulation({.device = {.kind = DeviceKind::cpu, .threads = 1}},
+                        std::vector<Robot>{robot, thinks ? thinker : robot});
   simulation.step(30);
   CheckpointNotes notes{.seconds = 1,
                         .settle = 0.01,
@@ -66,7 +73,8 @@ void check_checkpoint(std::string_view input) {
 }
 
 std::vector<std::string> checkpoint_seeds() {
-  return {checkpoint_of(false, false), checkpoint_of(true, true), checkpoint_of(false, false, true)};
+  return {checkpoint_of(false, false), checkpoint_of(true, true), checkpoint_of(false, false, true),
+          checkpoint_of(true, false, false, true)};
 }
 
 }  // namespace mercury::fuzz

@@ -13,6 +13,7 @@
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/run_folder.h"
+#include "mercury/voxel.h"
 #include "robots/bytes.h"
 #include "tests/fuzz/target.h"
 
@@ -47,23 +48,64 @@ RunSettings settings(const std::string& algorithm) {
   return settings;
 }
 
+// Its genomes have a step.
+const GenomeSpaceRequest adaptive{.genes = Genes::muscles, .muscles = {.muscle_adaptation = true, .muscle_tail = 1}};
+// Its brains have neurons and connections.
+const GenomeSpaceRequest growing{.kind = "tapered",
+                                 .genes = Genes::muscles | Genes::brain,
+                                 .growth = {.brain_growth = true, .new_neurons = 0.5, .new_connections = 0.5}};
+// Their muscles are fields.
+const GenomeSpaceRequest painted_fields{
+    .kind = "cppn",
+    .values = {{"painted_muscles", std::string("fields")}, {"muscle_frequencies", std::int64_t{2}}},
+    .genes = Genes::both};
+const GenomeSpaceRequest network_fields{
+    .kind = "nn", .values = {{"network_muscles", std::string("fields")}}, .genes = Genes::both};
+
+// A brain that grows around gates.
+GenomeSpaceRequest growing_gates() {
+  VoxelGrid grid(2, 1, 1);
+  for (int x = 0; x < 2; ++x) grid.cell(x, 0, 0) = static_cast<MaterialId>(1 + x);
+  Robot robot = make_voxel_robot(grid);
+  const auto muscles = static_cast<std::uint32_t>(actuators_of(robot).size());
+  robot.sensors = {{.kind = SensorKind::clock, .frequency = 3}};
+  robot.brain.emplace().layers = {
+      {.name = "gate", .neurons = muscles, .activation = Activation::sigmoid, .inputs = {{.from = "motor"}}},
+      {.name = "motor", .neurons = muscles, .inputs = {{.from = "senses"}}, .gate = "gate", .keep = {0.5f}}};
+  robot.brain->layers[0].inputs[0].weights.assign(muscles * muscles, 0.5f);
+  robot.brain->layers[1].inputs[0].weights.assign(2 * muscles, 0.5f);
+  return {.genes = Genes::brain, .founders = {robot}, .growth = growing.growth};
+}
+
+RunSettings island_run() {
+  RunSettings islands = settings("afpo");
+  islands.evolution.algorithm.population = 6;
+  islands.evolution.algorithm.islands = 2;
+  islands.evolution.algorithm.migration_interval = 1;
+  islands.evolution.algorithm.migrants = 1;
+  return islands;
+}
+// Of brains that grow, in species.
+RunSettings neat_run() {
+  RunSettings neat = settings("neat");
+  neat.evolution.algorithm.population = 4;
+  neat.space = growing;
+  return neat;
+}
+
 // A run folder of three generations.
-const std::filesystem::path& run_folder() {
-  static const std::filesystem::path folder = [] {
-    const std::filesystem::path made = scratch_folder() + "/run";
-    RunSettings islands = settings("afpo");
-    islands.evolution.algorithm.population = 6;
-    islands.evolution.algorithm.islands = 2;
-    islands.evolution.algorithm.migration_interval = 1;
-    islands.evolution.algorithm.migrants = 1;
-    RunFolder run = RunFolder::create(made, islands);
-    Evolution evolution(run.history().settings().evolution, run.space());
-    DrawnScores scores;
-    while (const std::optional<Generation> generation = evolution.advance(scores))
-      run.append(*generation, {.seconds = 0.5, .device = "none"});
-    return made;
-  }();
-  return folder;
+std::filesystem::path made_folder(const std::string& name, const RunSettings& wanted) {
+  const std::filesystem::path made = scratch_folder() + "/" + name;
+  RunFolder run = RunFolder::create(made, wanted);
+  Evolution evolution(run.history().settings().evolution, run.space());
+  DrawnScores scores;
+  while (const std::optional<Generation> generation = evolution.advance(scores))
+    run.append(*generation, {.seconds = 0.5, .device = "none"});
+  return made;
+}
+const std::filesystem::path& run_folder(bool of_neat) {
+  static const std::filesystem::path islands = made_folder("run", island_run()), neat = made_folder("neat", neat_run());
+  return of_neat ? neat : islands;
 }
 
 }  // namespace
@@ -86,19 +128,27 @@ std::vector<std::string> run_file_seeds() {
   land.evolution.configuration.environment = Land{};
   land.space.kind = "cppn";
   seeds.push_back(run_file_texts(land).run);
+  seeds.push_back(run_file_texts(neat_run()).run);
+  for (const GenomeSpaceRequest& fields : {painted_fields, network_fields}) {
+    RunSettings of_fields = settings("ga");
+    of_fields.space = fields;
+    seeds.push_back(run_file_texts(of_fields).run);
+  }
   return seeds;
 }
 
-// The first byte chooses: a whole journal, or the index of a record, preceded by two bytes for the size of its genomes.
+// The first byte chooses: a whole journal of one run or the other, or the index of a record, preceded by two bytes for
+// the size of its genomes.
 void check_journal(std::string_view input) {
   if (input.empty()) return;
   const std::string_view rest = input.substr(1);
   if (input[0] % 2 == 0) {
-    static const std::string path = (run_folder() / journal_name).string();
-    std::ofstream(path, std::ios::binary | std::ios::trunc)
+    const std::filesystem::path& folder = run_folder(input[0] % 4 != 0);
+    std::ofstream(folder / journal_name, std::ios::binary | std::ios::trunc)
         .write(rest.data(), static_cast<std::streamsize>(rest.size()));
-    const RunHistory history(run_folder());
+    const RunHistory history(folder);
     for (const Individual& individual : history.individuals()) history.genome(individual.id);
+    history.species();
     return;
   }
   if (rest.size() < 2) return;
@@ -114,21 +164,15 @@ void check_journal(std::string_view input) {
 }
 
 std::vector<std::string> journal_seeds() {
-  static const std::string journal = content_of((run_folder() / journal_name).string());
+  static const std::string journal = content_of((run_folder(false) / journal_name).string()),
+                           of_neat = content_of((run_folder(true) / journal_name).string());
   const std::size_t mark = journal.find(head_mark);
   const RecordHead head = decode_head(std::string_view(journal).substr(mark, RecordHead::size)).value();
   const std::string index = journal.substr(mark + RecordHead::size, head.index_size);
-  return {std::string(1, '\0') + journal,
+  return {std::string(1, '\0') + journal, '\2' + of_neat,
           std::string{'\1', static_cast<char>(head.genomes_size / 256), static_cast<char>(head.genomes_size % 256)} +
               index};
 }
-
-// Its genomes have a step.
-const GenomeSpaceRequest adaptive{.genes = Genes::muscles, .muscles = {.muscle_adaptation = true, .muscle_tail = 1}};
-// Its brains have neurons and connections.
-const GenomeSpaceRequest growing{.kind = "tapered",
-                                 .genes = Genes::muscles | Genes::brain,
-                                 .growth = {.brain_growth = true, .new_neurons = 0.5, .new_connections = 0.5}};
 
 // The first byte chooses the kind.
 void check_genome(std::string_view input) {
@@ -138,6 +182,9 @@ void check_genome(std::string_view input) {
       made.push_back(make_genome_space({.kind = kind}));
     made.push_back(make_genome_space(adaptive));
     made.push_back(make_genome_space(growing));
+    made.push_back(make_genome_space(painted_fields));
+    made.push_back(make_genome_space(network_fields));
+    made.push_back(make_genome_space(growing_gates()));
     return made;
   }();
   if (input.empty()) return;
@@ -160,9 +207,15 @@ std::vector<std::string> genome_seeds() {
     seeds.push_back(choice++ + space->random(1, 0)->encode());
   }
   seeds.push_back(choice++ + make_genome_space(adaptive)->random(1, 0)->mutate(1, 1)->encode());
-  GenomePointer grown = make_genome_space(growing)->random(1, 0);
-  for (std::uint64_t seed = 0; seed < 6; ++seed) grown = grown->mutate(1, seed);
-  seeds.push_back(choice + grown->encode());
+  const auto add_grown = [&](const GenomeSpaceRequest& request) {
+    GenomePointer grown = make_genome_space(request)->random(1, 0);
+    for (std::uint64_t seed = 0; seed < 6; ++seed) grown = grown->mutate(1, seed);
+    seeds.push_back(choice++ + grown->encode());
+  };
+  add_grown(growing);
+  for (const GenomeSpaceRequest& fields : {painted_fields, network_fields})
+    seeds.push_back(choice++ + make_genome_space(fields)->random(1, 0)->mutate(1, 1)->encode());
+  add_grown(growing_gates());
   return seeds;
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t most_frames = 16;  // that are compared
 
 std::vector<Vec3> copy(std::span<const Vec3> values) { return {values.begin(), values.end()}; }
+std::vector<float> copy(std::span<const float> values) { return {values.begin(), values.end()}; }
 
 // Writes what was read to another file.
 std::string written_again(TrajectoryReader& reader, std::size_t frames) {
@@ -31,12 +32,15 @@ std::string written_again(TrajectoryReader& reader, std::size_t frames) {
                           {.configuration = reader.configuration(),
                            .device_name = reader.device_name(),
                            .seed = reader.seed(),
-                           .every = reader.every()},
+                           .every = reader.every(),
+                           .brains = reader.has_brains()},
                           robots, materials, "again");
   for (std::size_t i = 0; i < frames; ++i) {
     const TrajectoryWriter::Frame frame = writer.add(reader.step(i), reader.time(i));
     std::ranges::copy(copy(reader.positions(i)), frame.positions.begin());
     std::ranges::copy(copy(reader.velocities(i)), frame.velocities.begin());
+    std::ranges::copy(reader.senses(i), frame.senses.begin());
+    std::ranges::copy(reader.neurons(i), frame.neurons.begin());
     writer.commit();
   }
   writer.finish(std::vector<Telemetry>(robots.size()));
@@ -62,12 +66,16 @@ std::string recording_of(const std::vector<Robot>& robots, int deflate, bool fin
     materials.resize(pointers.size() * max_materials);
   }
   const std::string path = scratch_folder() + "/seed.h5";
-  TrajectoryWriter writer(path, {.device_name = "CPU", .seed = 1, .deflate = deflate, .flush_period = 0}, pointers,
-                          materials, "seed");
+  const bool brains = std::ranges::any_of(robots, [](const Robot& robot) { return robot.brain.has_value(); });
+  TrajectoryWriter writer(path,
+                          {.device_name = "CPU", .seed = 1, .brains = brains, .deflate = deflate, .flush_period = 0},
+                          pointers, materials, "seed");
   for (std::int64_t i = 0; i < 3; ++i) {
     const TrajectoryWriter::Frame frame = writer.add(10 * i, 0.1 * static_cast<double>(i));
     std::ranges::fill(frame.positions, Vec3{1, 2, static_cast<float>(i)});
     std::ranges::fill(frame.velocities, Vec3{});
+    std::ranges::fill(frame.senses, 0.5f);
+    std::ranges::fill(frame.neurons, static_cast<float>(i));
     writer.commit();
   }
   if (!finished)
@@ -87,6 +95,8 @@ void check_recording(std::string_view input) {
   for (std::size_t i = 0; i < frames; ++i) {
     reader.positions(i);
     reader.velocities(i);
+    reader.senses(i);
+    reader.neurons(i);
   }
   TrajectoryReader again(written_again(reader, frames));
   require(again.configuration() == reader.configuration(), "the configuration does not read back as it was written");
@@ -97,6 +107,8 @@ void check_recording(std::string_view input) {
     require(again.step(i) == reader.step(i) && again.time(i) == reader.time(i), "a time does not read back");
     require(same_bits(copy(again.positions(i)), reader.positions(i)), "positions do not read back");
     require(same_bits(copy(again.velocities(i)), reader.velocities(i)), "velocities do not read back");
+    require(same_bits(copy(again.senses(i)), reader.senses(i)), "senses do not read back");
+    require(same_bits(copy(again.neurons(i)), reader.neurons(i)), "neurons do not read back");
   }
 }
 
@@ -110,8 +122,17 @@ std::vector<std::string> recording_seeds() {
   points.mass = {0.5f, 1, 3};
   points.velocity = {{}, {0, 0, 0.25f}, {0.1f, 0, 0}};
   points.fixed = {2, 0};
-  return {recording_of({points}, 0, true), recording_of({triangle("a")}, 0, true),
-          recording_of({triangle("a"), own}, 0, true), recording_of({own}, 1, true), recording_of({own}, 0, false)};
+  Robot thinker = own;
+  thinker.sensors = {{.kind = SensorKind::up}};
+  thinker.brain.emplace().layers = {
+      {.name = "gate", .neurons = 1, .activation = Activation::sigmoid},
+      {.name = "motor", .neurons = 1, .inputs = {{.from = "senses", .weights = {1, 2, 3}}}, .gate = "gate"}};
+  return {recording_of({triangle("a"), thinker}, 0, true),
+          recording_of({points}, 0, true),
+          recording_of({triangle("a")}, 0, true),
+          recording_of({triangle("a"), own}, 0, true),
+          recording_of({own}, 1, true),
+          recording_of({own}, 0, false)};
 }
 
 }  // namespace mercury::fuzz

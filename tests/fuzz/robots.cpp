@@ -66,6 +66,20 @@ std::string with_brain() {
   return json;
 }
 
+// With an LSTM per actuator: three layers are gates of the other two.
+std::string with_lstm() {
+  std::string json = with_actuators(pair());
+  json.insert(
+      json.find('{') + 1,
+      R"("sensors":[{"kind":"clock","frequency":2},{"kind":"strain","actuator":"self"}],"brain":{"per":"actuator",)"
+      R"("layers":[{"name":"i","neurons":1,"activation":"sigmoid","inputs":[{"from":"senses","weights":[[1,2,3]]}]},)"
+      R"({"name":"f","neurons":1,"activation":"sigmoid","bias":[1],"inputs":[{"from":"h","weights":[[0.5]]}]},)"
+      R"({"name":"o","neurons":1,"activation":"sigmoid"},)"
+      R"({"name":"c","neurons":1,"gate":"i","keep":"f","inputs":[{"from":"senses","edges":[[0,2,-1]]}]},)"
+      R"({"name":"h","neurons":1,"gate":"o","keep":0,"inputs":[{"from":"c","edges":[[0,0,1]]}]}]},)");
+  return json;
+}
+
 std::string as_cbor(const std::string& json) {
   std::string cbor;
   CborWriter writer(cbor);
@@ -79,13 +93,21 @@ void check_robot_json(std::string_view input) { check_robot(input, RobotFormat::
 void check_robot_cbor(std::string_view input) { check_robot(input, RobotFormat::cbor); }
 
 std::vector<std::string> robot_json_seeds() {
-  return {serialize_robot(pair(), RobotFormat::json), serialize_robot(small_robot(), RobotFormat::json),
-          with_actuators(pair()), with_actuators(small_robot()), with_brain()};
+  return {serialize_robot(pair(), RobotFormat::json),
+          serialize_robot(small_robot(), RobotFormat::json),
+          with_actuators(pair()),
+          with_actuators(small_robot()),
+          with_brain(),
+          with_lstm()};
 }
 
 std::vector<std::string> robot_cbor_seeds() {
-  return {serialize_robot(pair(), RobotFormat::cbor), serialize_robot(small_robot(), RobotFormat::cbor),
-          as_cbor(with_actuators(pair())), as_cbor(with_actuators(small_robot())), as_cbor(with_brain())};
+  return {serialize_robot(pair(), RobotFormat::cbor),
+          serialize_robot(small_robot(), RobotFormat::cbor),
+          as_cbor(with_actuators(pair())),
+          as_cbor(with_actuators(small_robot())),
+          as_cbor(with_brain()),
+          as_cbor(with_lstm())};
 }
 
 void check_repro(std::string_view input) {
