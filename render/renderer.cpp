@@ -274,8 +274,16 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera, const
   if (has_ground_cover(scene)) ground_cover.draw(scene, style, variant);
   glDepthFunc(GL_GEQUAL);
   const std::string on_ground = variant + passes->prints.variant();
-  passes->backdrop.draw((scene.patches.empty() ? on_ground : variant) +
-                        (shows_horizon(camera, width, height) ? "#define HORIZON\n" : ""));
+  const std::string& floor = scene.patches.empty() ? on_ground : variant;
+  if (scene.surroundings != Surroundings::none && shows_horizon(camera, width, height)) {
+    // Two parts, since renderers on the CPU compute both sides of a branch.
+    glEnable(GL_CLIP_DISTANCE0);
+    passes->backdrop.draw(variant + "#define HORIZON\n#define FAR_PART\n");
+    passes->backdrop.draw(floor + "#define NEAR_PART\n");
+    glDisable(GL_CLIP_DISTANCE0);
+  } else {
+    passes->backdrop.draw(floor);
+  }
   if (scene.surroundings == Surroundings::land) patches.draw(scene.patches, on_ground);
   if (has_ground_cover(scene)) ground_cover.draw_shades(scene);
   timer.mark("surroundings");

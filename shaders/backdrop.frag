@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surroundings: the floor, and beyond it the backdrop. HORIZON: the picture reaches the horizon.
+// FAR_PART: only what is beyond the floor.
 #include "frame.glsl"
 #include "caustics.glsl"
 #include "floor.glsl"
@@ -49,7 +50,7 @@ void main() {
 #elif AROUND == AROUND_LAND && defined(HORIZON)
   light = sky(direction);
 #endif
-#if AROUND != AROUND_NONE
+#if AROUND != AROUND_NONE && !defined(FAR_PART)
   // `sight` has length 1 along the camera's axis, so `steps` is the depth along that axis.
   float steps = (frame.ground.w - frame.eye.z) / sight.z;
   vec3 point = frame.eye.xyz + steps * sight;

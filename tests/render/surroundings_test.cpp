@@ -59,6 +59,26 @@ TEST_F(SurroundingsTest, OnlyTheGroundOfAPatchSlides) {
   EXPECT_EQ(outside, 0);
 }
 
+// They are two parts of a picture.
+TEST_F(SurroundingsTest, NothingOfAnEarlierPictureShowsWhereTheFloorEnds) {
+  Renderer renderer = make_renderer();
+  Scene black, white;
+  black.surroundings = white.surroundings = Surroundings::none;
+  black.flat_backdrop = 0;
+  white.flat_backdrop = 1;
+  for (const Surroundings around : {Surroundings::water, Surroundings::land})
+    for (int i = -4; i <= 4; ++i) {
+      Scene scene;
+      scene.surroundings = around;
+      const Camera camera =
+          Orbit{.target = {0, 0, 1}, .azimuth = 0.3f * float(i), .elevation = 0.11f * float(i)}.camera();
+      drawn(renderer, black);
+      const Image after_black = drawn(renderer, scene, camera);
+      drawn(renderer, white);
+      EXPECT_EQ(count_differing(after_black, drawn(renderer, scene, camera), 0), 0) << "elevation " << 0.11 * i;
+    }
+}
+
 TEST_F(SurroundingsTest, HazeJoinsGroundAndSkyAtTheHorizon) {
   Renderer renderer = make_renderer();
   for (const Theme theme : {Theme::dark, Theme::light}) {
