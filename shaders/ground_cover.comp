@@ -15,14 +15,14 @@ layout(std430, binding = 11) readonly buffer Boxes { Box boxes[]; };  // of the 
 layout(std430, binding = 12) readonly buffer Patches { Patch patches[]; };
 layout(std430, binding = 13) buffer Items { Item items[]; };  // one per cell
 layout(std430, binding = 14) buffer Lists { uint lists[]; };  // plants, then stones
-layout(std430, binding = 15) buffer Commands { uint commands[16]; };  // DrawArraysIndirectCommand, four times
+layout(std430, binding = 15) buffer Commands { uint commands[20]; };  // DrawElementsIndirectCommand, four times
 layout(location = 0) uniform uint bodies;
 layout(location = 1) uniform uint patch_count;
 layout(location = 2) uniform vec4 sizes;    // side of a cell of level 0, tallest plant, highest stone [m]; share of plants
 layout(location = 3) uniform vec4 clear;    // rectangle that stays bare: low x, y, high x, y [m]
 layout(location = 4) uniform vec4 middle;   // of the grid: x, y [m]; where plants end, from there [m]; share of stones
 layout(location = 5) uniform vec2 level;    // of the cells, and how much of those is shown that the next level leaves out
-layout(location = 6) uniform uvec2 vertices;  // per plant, per stone
+layout(location = 6) uniform uvec4 corners;   // of triangles per plant and per stone, and where each begins in the list of indices
 
 const int cells = CELLS;  // per side
 
@@ -158,11 +158,12 @@ void main() {
   }
   if (lane != 255u) return;
   uvec2 all = sums[255];
-  // The plants and the stones, then the shade below each.
+  // The plants and the stones, then the shade below each, which has no indices.
   for (uint i = 0u; i < 4u; ++i) {
-    commands[4u * i] = i < 2u ? vertices[i] : 6u;
-    commands[4u * i + 1u] = i % 2u == 0u ? all.x : all.y;
-    commands[4u * i + 2u] = commands[4u * i + 3u] = 0u;
+    commands[5u * i] = i < 2u ? corners[i] : 6u;
+    commands[5u * i + 1u] = i % 2u == 0u ? all.x : all.y;
+    commands[5u * i + 2u] = i < 2u ? corners[i + 2u] : 0u;
+    commands[5u * i + 3u] = commands[5u * i + 4u] = 0u;
   }
 }
 #endif

@@ -54,22 +54,19 @@ void main() {
   Item item = items[lists[first + uint(gl_InstanceID)]];
   own = item.phase;
 #ifdef PLANT
-  int blade = gl_VertexID / (6 * SEGMENTS);
-  int segment = (gl_VertexID / 6) % SEGMENTS;
-  vec2 corner = ribbon_corner(gl_VertexID % 6);
-  along = (float(segment) + corner.x) / float(SEGMENTS);
+  int blade = gl_VertexID / (2 * (SEGMENTS + 1));
+  float across = float(gl_VertexID % 2) * 2.0 - 1.0;
+  along = float((gl_VertexID / 2) % (SEGMENTS + 1)) / float(SEGMENTS);
   vec3 point = blade_point(item, blade, along);
   vec3 axis = blade_point(item, blade, along + 0.05) - blade_point(item, blade, along - 0.05);
   vec3 to_eye = normalize(frame.eye.xyz - point);
   vec3 side = across_of(normalize(axis), to_eye);
   float width = max(0.5 * slender.x * item.height * (0.75 + 0.5 * own), 0.35 * pixel_size(point));
   width *= along < 0.999 ? mix(0.8, 1.0, smoothstep(0.0, 0.4, along)) * sqrt(max(1.0 - along, 0.0)) * 1.15 : 0.0;
-  world = point + side * corner.y * width;
-  normal = normalize(cross(side, normalize(axis)) + 0.5 * corner.y * side);
+  world = point + side * across * width;
+  normal = normalize(cross(side, normalize(axis)) + 0.5 * across * side);
 #else
-  ivec2 cell = ivec2((gl_VertexID / 6) % COLUMNS, (gl_VertexID / 6) / COLUMNS);
-  int vertex = gl_VertexID % 6;
-  ivec2 corner = cell + ivec2(vertex == 1 || vertex == 3 || vertex == 4, vertex == 2 || vertex == 4 || vertex == 5);
+  ivec2 corner = ivec2(gl_VertexID % (COLUMNS + 1), gl_VertexID / (COLUMNS + 1));
   vec2 at = vec2(corner) / vec2(COLUMNS, ROWS);
   vec3 d = on_sphere(at);
   world = stone_point(d, item);

@@ -11,7 +11,7 @@ namespace mercury::render {
 namespace {
 
 constexpr int most_cells = 128;                 // of the grid, per side
-constexpr std::size_t draw_command_bytes = 16;  // DrawArraysIndirectCommand
+constexpr std::size_t draw_command_bytes = 20;  // DrawElementsIndirectCommand
 constexpr int stone_columns = 12, stone_rows = 6;
 
 // How plants look: blades of a sea plant are long, grass is short.
@@ -26,7 +26,7 @@ struct PlantShape {
   float stone;        // the highest stone, in heights of the tallest plant
   float stones;       // share of cells with a stone, where stones are densest
   float reach;        // where they end, in distances from the eye to the target
-  int vertices() const { return 6 * blades * segments; }
+  int corners() const { return 6 * blades * segments; }  // of triangles
 };
 constexpr PlantShape sea_plant{.cells = 64,
                                .blades = 11,
@@ -59,6 +59,30 @@ const PlantShape& shape_in(Surroundings surroundings) {
 
 std::string plant_defines(const PlantShape& shape) { return "#define PLANT\n" + define("SEGMENTS", shape.segments); }
 
+// Two triangles between four vertices.
+void add_quad(std::vector<GLuint>& indices, GLuint a, GLuint b, GLuint c, GLuint d) {
+  indices.insert(indices.end(), {a, b, c, b, d, c});
+}
+
+// The triangles of a sea plant, of a tuft of grass and of a stone. With indices, a vertex is computed once for all of
+// its triangles.
+std::vector<GLuint> indices_of_all() {
+  std::vector<GLuint> indices;
+  for (const PlantShape& shape : {sea_plant, grass})
+    for (int blade = 0; blade < shape.blades; ++blade)
+      for (int segment = 0; segment < shape.segments; ++segment) {
+        const auto low = GLuint(2 * (blade * (shape.segments + 1) + segment));
+        add_quad(indices, low, low + 2, low + 1, low + 3);
+      }
+  const GLuint row = stone_columns + 1;
+  for (GLuint y = 0; y < stone_rows; ++y)
+    for (GLuint x = 0; x < stone_columns; ++x) {
+      const GLuint corner = y * row + x;
+      add_quad(indices, corner, corner + 1, corner + row, corner + row + 1);
+    }
+  return indices;
+}
+
 // The layout of shaders/ground_cover.comp.
 struct DiscRecord {
   Vector4 disc, slide;
@@ -74,7 +98,7 @@ Vector2 middle_of(const Camera& camera) {
 }  // namespace
 
 GroundCoverPass::GroundCoverPass()
-    : empty_(make_vertex_array()), place_({"ground_cover.comp"}, ""),
+    : empty_(make_vertex_array()), indexed_(make_vertex_array()), place_({"ground_cover.comp"}, ""),
       plant_({"ground_cover.vert", "ground_cover.frag"}, ""),
       stone_({"ground_cover.vert", "ground_cover.frag"},
              define("COLUMNS", stone_columns) + define("ROWS", stone_rows)) {}
@@ -85,6 +109,8 @@ void GroundCoverPass::place(const Scene& scene, const Camera& camera, const Boun
     items_.reserve(sizeof(Item) * most_cells * most_cells);
     lists_.reserve(2 * sizeof(GLuint) * most_cells * most_cells);
     commands_.reserve(4 * draw_command_bytes);
+    indices_.write(indices_of_all());
+    glVertexArrayElementBuffer(indexed_.get(), indices_.get());
   }
   const GroundCover& cover = *scene.ground_cover;
   const PlantShape& shape = shape_in(scene.surroundings);
@@ -116,7 +142,8 @@ void GroundCoverPass::place(const Scene& scene, const Camera& camera, const Boun
   glDispatchCompute(GLuint(placed_) / 64, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   glUseProgram(place_.get(cells + define("STAGE", 1)));
-  glUniform2ui(6, GLuint(shape.vertices()), 6 * stone_columns * stone_rows);
+  glUniform4ui(6, GLuint(shape.corners()), 6 * stone_columns * stone_rows,
+               &shape == &grass ? GLuint(sea_plant.corners()) : 0, GLuint(sea_plant.corners() + grass.corners()));
   glDispatchCompute(1, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
@@ -130,7 +157,7 @@ void GroundCoverPass::draw(const Scene& scene, const Style& style, const std::st
   const PlantShape& shape = shape_in(scene.surroundings);
   bind();
   glDisable(GL_CULL_FACE);
-  glBindVertexArray(empty_.get());
+  glBindVertexArray(indexed_.get());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.get());
   const auto draw_all = [&](GLuint program, GLuint first, const Vector3& low, const Vector3& high) {
     glUseProgram(program);
@@ -142,7 +169,8 @@ void GroundCoverPass::draw(const Scene& scene, const Style& style, const std::st
     glUniform2f(2, shape.blade, shape.tuft);
     glUniform3f(3, low.x, low.y, low.z);
     glUniform3f(4, high.x, high.y, high.z);
-    glDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(first > 0 ? draw_command_bytes : std::size_t{0}));
+    const std::size_t command = first > 0 ? draw_command_bytes : 0;
+    glDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, reinterpret_cast<const void*>(command));
   };
   draw_all(plant_.get(plant_defines(shape) + variant), 0, style.plant_low, style.plant_high);
   draw_all(stone_.get(variant), GLuint(placed_), style.stone, style.stone);

@@ -48,10 +48,10 @@ class GroundCoverPass {
  private:
   void bind() const;
 
-  VertexArray empty_;
+  VertexArray empty_, indexed_;
   ProgramVariants place_, plant_, stone_;
   Program shade_;
-  Buffer items_, lists_, commands_;
+  Buffer items_, lists_, commands_, indices_;
   StreamBuffer patches_;
   int placed_ = 0;  // cells
 };
