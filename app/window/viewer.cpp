@@ -142,7 +142,7 @@ Viewer::Viewer(ViewerOptions options)
       imgui_(window_, folder_.empty() ? folder_ : folder_ / "window.ini"),
       viewport_(window_.gl_context(), preferences_.quality), second_(window_.gl_context()),
       scene_({.configuration = options_.configuration, .start = options_.start, .view = options_.view}),
-      pacing_(options_.paced) {
+      pacing_(options_.paced, window_.gl_context().is_software()) {
   if (ChosenBridge chosen = choose_bridge(scene_.cuda_device(), options_.interop); chosen.on_device)
     scene_.set_bridge(std::move(chosen.bridge));
   mouse_.set_actions({.click = [this](const Hit& hit) { return edit_body_at(context_, hit); },
@@ -458,7 +458,8 @@ void Viewer::present(bool draws) {
   const WindowSize pixels = window_.pixels();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, pixels.width, pixels.height);
-  glClearColor(0.08f, 0.10f, 0.13f, 1);
+  const ImVec4 background = panel_background();
+  glClearColor(background.x, background.y, background.z, background.w);
   glClear(GL_COLOR_BUFFER_BIT);
   if (pixels.width > 0 && pixels.height > 0 && drawn_ > 0) {
     viewport_.present(pixels.height);

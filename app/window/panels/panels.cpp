@@ -54,6 +54,7 @@ void PanelColumn::draw(PanelContext& context, float top, float bottom, float siz
   const float screen = ImGui::GetIO().DisplaySize.x, rail = rail_pixels();
   ImGui::SetNextWindowPos({right_ ? screen - rail - size : rail, top});
   ImGui::SetNextWindowSize({size, bottom - top});
+  ImGui::SetNextWindowBgAlpha(0);  // see panel_background()
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   ImGui::Begin(id_, nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
@@ -75,6 +76,7 @@ const PanelEntry* PanelColumn::draw_rail(EventLog& log, float top, float bottom,
   const float text = ImGui::GetFontSize(), width = rail_pixels(), side = 2.1f * text;
   ImGui::SetNextWindowPos({right_ ? ImGui::GetIO().DisplaySize.x - width : 0, top});
   ImGui::SetNextWindowSize({width, bottom - top});
+  ImGui::SetNextWindowBgAlpha(0);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {(width - side) / 2, 0.5f * text});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0.25f * text});

@@ -320,6 +320,7 @@ float play_bar_height() {
 void draw_play_bar(PanelContext& context, ImVec2 low, ImVec2 high) {
   ImGui::SetNextWindowPos(low);
   ImGui::SetNextWindowSize({high.x - low.x, high.y - low.y});
+  ImGui::SetNextWindowBgAlpha(0);  // see panel_background()
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   ImGui::Begin("##play", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |

@@ -6,7 +6,8 @@
 namespace mercury::window {
 namespace {
 
-constexpr double frame_time = 1.0 / 60;       // minimum, if the display does not limit the frame rate [s]
+constexpr double frame_time = 1.0 / 60;  // minimum, if the display does not limit the frame rate [s]
+constexpr double software_frame_time = 1.0 / 30;
 constexpr double rare_frame_time = 1.0 / 20;  // while the GPU is left to the steps [s]
 constexpr double longest_rest = 0.6;          // of the panels, then [s]
 constexpr double frame_share = 0.05;          // of the GPU's time, then
@@ -19,7 +20,7 @@ double Pacing::rest() const { return (1 / frame_share - 1) * robots_seconds_ - s
 
 double Pacing::wait(double spent, bool gpu_for_steps) const {
   if (gpu_for_steps) return std::max({0.0, rare_frame_time - spent, std::min(rest(), longest_rest - spent)});
-  return paced_ ? std::max(0.0, frame_time - spent) : 0;
+  return paced_ ? std::max(0.0, (software_ ? software_frame_time : frame_time) - spent) : 0;
 }
 
 bool Pacing::leaves_out_frame(bool backlog) const {

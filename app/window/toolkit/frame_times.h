@@ -10,8 +10,9 @@ namespace mercury::window {
 
 class Pacing {
  public:
-  // `paced`: at most as often as displays show frames; otherwise as often as possible.
-  explicit Pacing(bool paced) : paced_(paced) {}
+  // `paced`: at most as often as displays show frames, and half as often if the processor draws, whose cores the steps
+  // need, too; otherwise as often as possible.
+  Pacing(bool paced, bool software) : paced_(paced), software_(software) {}
 
   // How long the next frame may wait for events [s]. `spent`: since the last one began [s]. `gpu_for_steps`: the user
   // only watches robots that step as fast as a GPU can, and what drawing takes of its time is missing there.
@@ -29,7 +30,7 @@ class Pacing {
   double rest() const;  // from now on, so that frames have their share of the GPU's time [s]
   static double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-  bool paced_;
+  bool paced_, software_;
   Clock::time_point shown_at_, drawn_at_;
   double frame_seconds_ = 0, robots_seconds_ = 0;  // of the last frame that was shown, and with robots
 };

@@ -113,6 +113,12 @@ void apply_theme(render::Theme theme, float scale) {
   chosen.mark_outline = ImGui::GetColorU32(hex(dark ? 0x14060a : 0xffffff, 0.9f));
 }
 
+ImVec4 panel_background() {
+  const ImVec4 panel = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
+  const float dark = 1 - panel.w;  // of what is behind panels, which shines through a little
+  return {panel.w * panel.x + dark * 0.08f, panel.w * panel.y + dark * 0.10f, panel.w * panel.z + dark * 0.13f, 1};
+}
+
 const Palette& palette() { return chosen; }
 
 }  // namespace mercury::window

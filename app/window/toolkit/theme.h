@@ -19,6 +19,10 @@ struct Palette {
 };
 const Palette& palette();
 
+// What columns and bars lie on. The window is cleared with it, so they need not paint it, which takes long without a
+// GPU.
+ImVec4 panel_background();
+
 // Converts to ImGui's color format.
 inline ImU32 packed(render::Color color, float opacity = 1) {
   return IM_COL32(color.r, color.g, color.b, static_cast<int>(opacity * static_cast<float>(color.a)));

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "app/window/dialogs/folder_listing.h"
+#include "app/window/toolkit/frame_times.h"
 #include "app/window/toolkit/window.h"
 #include "app/window/viewport/orbit_controller.h"
 #include "mercury/random.h"
@@ -172,6 +173,14 @@ TEST(KeyPresses, AreCharactersForKeysThatTypeAndKeysOtherwise) {
   EXPECT_EQ(presses[1].character, 0u);
   EXPECT_TRUE(presses[2].control);
   EXPECT_EQ(presses[2].character, U's');
+}
+
+TEST(Pacing, LeavesThirtyFramesPerSecondToARendererOnTheProcessorAndSixtyToAGpu) {
+  constexpr double spent = 0.010;  // since the last frame began [s]
+  EXPECT_NEAR(Pacing(true, true).wait(spent, false) + spent, 1.0 / 30, 1e-9);
+  EXPECT_NEAR(Pacing(true, false).wait(spent, false) + spent, 1.0 / 60, 1e-9);
+  EXPECT_EQ(Pacing(true, true).wait(0.05, false), 0) << "a slow frame is not slowed down";
+  EXPECT_EQ(Pacing(false, true).wait(spent, false), 0) << "unpaced";
 }
 
 TEST(OrbitController, StaysAboveTheFloor) {
