@@ -73,8 +73,7 @@ void main() {
   vec3 u = normalize(cross(d, abs(d.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0))), v = cross(d, u);
   vec3 du = stone_point(normalize(d + 0.05 * u), item) - stone_point(normalize(d - 0.05 * u), item);
   vec3 dv = stone_point(normalize(d + 0.05 * v), item) - stone_point(normalize(d - 0.05 * v), item);
-  normal = normalize(cross(du, dv));
-  if (dot(normal, d) < 0.0) normal = -normal;
+  normal = normalize(cross(du, dv));  // outward, as u, v and d are right-handed
   along = clamp((world.z - item.foot.z) / max(item.height, 1e-6), 0.0, 1.0);
 #endif
   gl_Position = frame.view_projection * vec4(world, 1.0);

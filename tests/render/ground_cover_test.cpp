@@ -75,6 +75,40 @@ TEST_F(GroundCoverTest, NothingIsHigherThanTheRoomBelowABodyOrThanItsDistanceFro
     }
 }
 
+TEST_F(GroundCoverTest, StonesAreBrightWhereTheLightFalls) {
+  constexpr int width = 640, height = 480;
+  const WobblingGroup group = make_wobbling_group(1, 2, 4, 1);
+  Scene scene;
+  scene.surroundings = Surroundings::land;
+  scene.floor = -1;
+  scene.ground_cover = GroundCover{.height = 0.35f};
+  // The eye is on the side of the light.
+  const Vector3 to_key = style_of(scene.surroundings, scene.theme).to_key.normalized();
+  Renderer renderer = make_renderer(width, height);
+  renderer.set_bodies(group.views());
+  int stones = 0, dark = 0;
+  for (int place = 0; place < 8; ++place) {
+    const Camera camera = Orbit{.target = {9.0f * float(place), 0, -1},
+                                .azimuth = std::atan2(to_key.y, to_key.x),
+                                .elevation = 0.8f,
+                                .distance = 5}
+                              .camera();
+    const Items all = items(scene, group, camera);
+    scene.placements = group.placements;
+    const Image image = drawn(renderer, scene, camera);
+    for (const auto& item : all) {
+      if (item.kind != 1) continue;
+      const Vector3 flank = item.foot + item.height * Vector3(1.1f * to_key.x, 1.1f * to_key.y, 0.25f);
+      const Vector3 at = camera.project(flank, width, height);
+      if (at.x < 0 || at.y < 0 || at.x >= float(width) || at.y >= float(height)) continue;
+      ++stones;
+      dark += pixel(image, int(at.x), int(at.y)).sum() < 220;  // what the sky alone lights
+    }
+  }
+  EXPECT_GT(stones, 10);
+  EXPECT_LE(dark, stones / 10) << "some are behind grass";
+}
+
 TEST_F(GroundCoverTest, NothingHidesABodyFromTheEye) {
   const WobblingGroup group = make_wobbling_group(4, 6, 4, 1.4f);
   for (const float elevation : {0.03f, 0.12f, 0.6f}) {
