@@ -137,9 +137,16 @@ CameraPlan OrbitController::plan() const {
   return plan;
 }
 
+// Ever slower, but not slower than can be seen: otherwise the view would have to be drawn again for seconds.
 void OrbitController::glide_to(const render::Orbit& wanted, double dt, double lag) {
-  const auto share = static_cast<float>(1 - std::exp(-dt / lag));
-  orbit_.azimuth += share * std::remainder(wanted.azimuth - orbit_.azimuth, 2 * std::numbers::pi_v<float>);
+  constexpr float slowest = 0.01f;  // [rad/s], and of the distance per second
+  const float turn = std::remainder(wanted.azimuth - orbit_.azimuth, 2 * std::numbers::pi_v<float>);
+  const float rest = std::max({std::abs(turn), std::abs(wanted.elevation - orbit_.elevation),
+                               (wanted.target - orbit_.target).norm() / orbit_.distance,
+                               std::abs(wanted.distance - orbit_.distance) / orbit_.distance});
+  const auto lagging = static_cast<float>(1 - std::exp(-dt / lag));
+  const float share = std::min(1.0f, std::max(lagging, slowest * static_cast<float>(dt) / std::max(rest, 1e-9f)));
+  orbit_.azimuth += share * turn;
   orbit_.elevation += share * (wanted.elevation - orbit_.elevation);
   orbit_.target += share * (wanted.target - orbit_.target);
   orbit_.distance += share * (wanted.distance - orbit_.distance);

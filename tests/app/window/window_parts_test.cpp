@@ -4,7 +4,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <vector>
 
 #include "app/window/dialogs/folder_listing.h"
 #include "app/window/toolkit/frame_times.h"
@@ -181,6 +183,29 @@ TEST(Pacing, LeavesThirtyFramesPerSecondToARendererOnTheProcessorAndSixtyToAGpu)
   EXPECT_NEAR(Pacing(true, false).wait(spent, false) + spent, 1.0 / 60, 1e-9);
   EXPECT_EQ(Pacing(true, true).wait(0.05, false), 0) << "a slow frame is not slowed down";
   EXPECT_EQ(Pacing(false, true).wait(spent, false), 0) << "unpaced";
+}
+
+// Otherwise the view would be drawn again and again for moves that nobody sees.
+TEST(OrbitController, AGlideToTheGroupIsSeenUntilItEnds) {
+  const auto eye = [](OrbitController& camera, float side) {
+    const render::Bounds box{{side, 0, 0}, {side + 1, 1, 1}};
+    return camera.at({&box, 1}, 1.5f, 1.0 / 30).eye;
+  };
+  OrbitController camera;
+  const render::Bounds first{{0, 0, 0}, {1, 1, 1}};
+  camera.set_mode(CameraMode::group);
+  camera.start({&first, 1}, 1.5f);
+  render::Vector3 before = eye(camera, 0.5f);
+  std::vector<float> moves;  // per distance
+  for (int i = 0; i < 150; ++i) {
+    const render::Vector3 now = eye(camera, 0.5f);
+    moves.push_back((now - before).norm() / camera.orbit().distance);
+    before = now;
+  }
+  const auto end = std::find(moves.begin(), moves.end(), 0.0f);
+  ASSERT_NE(end, moves.end()) << "it ends within 5 s";
+  for (auto move = moves.begin(); move + 1 < end; ++move) EXPECT_GT(*move, 2e-4f) << move - moves.begin();
+  for (auto move = end; move != moves.end(); ++move) EXPECT_EQ(*move, 0);
 }
 
 TEST(OrbitController, StaysAboveTheFloor) {
