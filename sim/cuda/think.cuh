@@ -236,12 +236,6 @@ class Thought {
     const std::uint32_t masses_of_robot = of_.masses;
     const Vec3* const at_rest = of_.rest;
     const float* const point_masses = of_.point_masses;
-    // Read at once, since each of them waits for device memory.
-    Vec3 rest[tiles_per_share] = {};
-    if (uses_frame)
-#pragma unroll
-      for (std::uint32_t tile = 0; tile < tiles_per_share; ++tile)
-        rest[tile] = at_rest[min((share * tiles_per_share + tile) * lanes + robot_.lane, masses_of_robot - 1)];
     MassSums masses;
     TurningSums turning;
     float shape[9] = {};
@@ -249,12 +243,13 @@ class Thought {
     for (std::uint32_t tile = 0; tile < tiles_per_share; ++tile) {
       const std::uint32_t slot = (share * tiles_per_share + tile) * lanes + robot_.lane;
       if (slot >= masses_of_robot) break;
+      const Vec3 rest = uses_frame ? at_rest[slot] : Vec3{};
       const float m = point_masses ? point_masses[slot] : 1;
       const Vec3 x = robot_.mass_at(slot).vector(field_x), d = x - origin,
                  v = robot_.mass_at(slot).vector(field_v) - moving;
       masses.add(m, d, v, x.z);
       if (uses_turn_rate) turning.add(m, d, v);
-      const Vec3 X = m * rest[tile];
+      const Vec3 X = m * rest;
       shape[0] = fmaf(X.x, d.x, shape[0]), shape[1] = fmaf(X.x, d.y, shape[1]), shape[2] = fmaf(X.x, d.z, shape[2]);
       shape[3] = fmaf(X.y, d.x, shape[3]), shape[4] = fmaf(X.y, d.y, shape[4]), shape[5] = fmaf(X.y, d.z, shape[5]);
       shape[6] = fmaf(X.z, d.x, shape[6]), shape[7] = fmaf(X.z, d.y, shape[7]), shape[8] = fmaf(X.z, d.z, shape[8]);
