@@ -9,10 +9,9 @@
 //             each thread   one neuron, one weight that learns                    -> values, activations, weights
 //   drive     each thread   one output, one driven material                       -> drives, materials, their table
 //
-// The order of every sum depends only on the robot, not on its number of warps. A thought's time is that of a chain of
-// accesses and of instructions that are fetched once per thought. So all that it reads lies in the brain's memory from
-// the beginning of the launch on (brain_tables.h), what it stores to device memory is not waited for, and loops are
-// short rather than unrolled.
+// The order of every sum depends only on the robot, not on its number of warps. A thought is a chain of short sums,
+// whose time is that of its accesses and instructions. So all that it reads lies in the brain's memory from the
+// beginning of the launch on (brain_tables.h), and what it stores to device memory is not waited for.
 #pragma once
 
 #include <cmath>
