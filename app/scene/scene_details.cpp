@@ -22,7 +22,8 @@ DetailObserver::DetailObserver(const Simulation& simulation, const ViewSettings&
   if (settings.shown.arrows.any()) arrows_.emplace(simulation, settings.shown.arrows);
   if (simulation.size() > most_with_extras) return;
   touch_.emplace(simulation);
-  if (settings.footprints && has_ground(simulation.configuration().environment)) footprints_.emplace(simulation);
+  if (settings.footprints && settings.layout != Layout::race && has_ground(simulation.configuration().environment))
+    footprints_.emplace(simulation);
   if (footprints_) looked_at_ = simulation.steps() - footprints_->interval();
 }
 

@@ -32,8 +32,7 @@ struct SceneDetails {
 ViewSettings known_in(const ViewSettings& settings, const Environment& environment);
 
 // Computes them on the simulating thread, so that this overlaps with drawing. Does not read positions and velocities
-// when only shapes are shown, of robots that do
-// not feel the ground and leave no footprints.
+// when only shapes are shown, of robots that do not feel the ground and leave no footprints.
 class DetailObserver {
  public:
   // Throws InputError when the environment does not have a color quantity or kind of arrow.

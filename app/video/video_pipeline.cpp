@@ -97,6 +97,8 @@ VideoPipeline::VideoPipeline(OffscreenRenderer& offscreen, std::vector<FilmedGro
   };
   for (std::size_t i = 0; i < groups_; ++i) {
     if (background_) of_groups[i].flat_backdrop = figure_backdrops[0];
+    // Which low quality does not draw.
+    if (offscreen.renderer.quality() == render::Quality::low) of_groups[i].footprints = false;
     const std::optional<PictureSize> size = groups_ > 1 ? std::optional(sizes[i]) : std::nullopt;
     sides_.push_back(std::make_unique<Side>(groups[i], offscreen, size, of_groups[i]));
     if (groups_ > 1) show(i);

@@ -108,10 +108,9 @@ def test_ppo_learns_to_swim_nearer(tmp_path):
     table = run("ppo.py", "--robots", 64, "--iterations", 52, folder=tmp_path).splitlines()
     rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(table)]
     assert [row["episodes"] for row in rows[:2]] == [64, 64]  # an untrained eel reaches no target in 20 s
-    # Before and after: returns are at most about 2.5, of which 1 is for a target. How much it learns depends on the random
-    # numbers, which differ between versions of PyTorch; rows before it has learned differ by 0.02.
+    # Before and after: returns are at most about 2.5, of which 1 is for a target.
     assert rows[0]["reached"] == 0 and rows[0]["return"] < 0.05
-    assert np.mean([row["return"] for row in rows[-2:]]) > rows[0]["return"] + 0.06
+    assert np.mean([row["return"] for row in rows[-2:]]) > rows[0]["return"] + 0.1
 
 
 @slow

@@ -36,7 +36,7 @@ class MaterialTable {
         value = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
       spread(chunk, coefficient, value);
     }
-    update(arguments, 0);
+    update(arguments, 0, 0xffffffffu);
   }
 
   // Writes the relaxation times of all materials.
@@ -45,14 +45,15 @@ class MaterialTable {
       table[chunk * lanes + lane_] = materials_[chunk * lanes + lane_].relaxation_time;
   }
 
-  // Writes the length factors of this many steps after the launch's first.
+  // Of this warp, as bits: those with a material whose length changes by itself.
   __device__ std::uint32_t moving_chunks() const {
     std::uint32_t moving = 0;
     for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_)
       moving |= (moving_[chunk] != 0 ? 1u : 0u) << chunk;
     return moving;
   }
-  __device__ void update(const StepArguments& arguments, std::uint32_t step, std::uint32_t which = 0xffu) {
+  // Writes the length factors of this many steps after the launch's first, of these chunks.
+  __device__ void update(const StepArguments& arguments, std::uint32_t step, std::uint32_t which) {
     for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
       if (!(which >> chunk & 1)) continue;
       const std::uint32_t id = chunk * lanes + lane_;

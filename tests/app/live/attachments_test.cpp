@@ -35,18 +35,43 @@ class Attachments : public test::FolderTest {
     scene.attach_perturbation();
     scene.wait_until_done();
   }
-  static std::vector<std::string> texts_of(const LiveScene& scene) {
+  template <class Held>
+  static std::vector<std::string> texts_of(const LiveScene& scene, std::vector<Held> HeldParts::*held) {
     std::vector<std::string> texts;
-    for (const AttachedMass& one : held_in(scene.document()).attached) texts.push_back(text_of(one));
+    const HeldParts all = held_in(scene.document());
+    for (const Held& one : all.*held) texts.push_back(text_of(one));
     return texts;
   }
-  static std::string refusal(const std::string& text) {
+  static std::vector<std::string> texts_of(const LiveScene& scene) { return texts_of(scene, &HeldParts::attached); }
+  // Why something is not accepted.
+  template <class Read>
+  static std::string refusal(const Read& read) {
     try {
-      attached_mass_from("--attach", text);
+      read();
       return "accepted";
     } catch (const InputError& error) {
       return error.what();
     }
+  }
+  // A scene file with these lines after the first two.
+  std::string scene_with(const std::string& lines) const {
+    write("bad.toml", "format = \"mercury-scene\"\nversion = 1\n" + lines);
+    return path("bad.toml");
+  }
+  // The messages of a window that opens it.
+  std::vector<std::string> messages_about(LiveScene& scene, const std::string& lines) const {
+    scene.open({scene_with(lines)});
+    scene.wait_until_done();
+    scene.frame();
+    std::vector<std::string> texts;
+    for (const Message& message : scene.take_messages()) texts.push_back(message.text);
+    return texts;
+  }
+  // That a line of a scene file is refused as an option with a value.
+  void expect_line_refused(const std::string& line, const std::string& option, const std::string& text) const {
+    const std::string file = scene_with(line);
+    EXPECT_THAT(refusal([&] { SceneFile{file}; }),
+                testing::StartsWith(file + ":3: " + option + ": \"" + text + "\" is not accepted"));
   }
 };
 
@@ -162,15 +187,10 @@ TEST_F(Attachments, GoingBackBeforeAPinTakesItAwayAndUndoBringsItBack) {
 
 TEST_F(Attachments, WhatDoesNotExistIsReported) {
   save_robot(path("eel.json"), random_voxel_robot({.smallest = {1, 1, 1}, .largest = {1, 1, 1}}, 1));
-  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\nrobots = [\"eel.json\"]\nattach = [\"1:0\", \"0:8\"]\n");
   LiveScene scene(test::on_cpu());
-  scene.open({path("bad.toml")});
-  scene.wait_until_done();
-  scene.frame();
-  std::vector<std::string> texts;
-  for (const Message& message : scene.take_messages()) texts.push_back(message.text);
-  EXPECT_THAT(texts, testing::UnorderedElementsAre("attach 1:0: robot 1 is out of range, the scene has 1 robot",
-                                                   "attach 0:8: mass 8 is out of range, voxel-1-0 has 8"));
+  EXPECT_THAT(messages_about(scene, "robots = [\"eel.json\"]\nattach = [\"1:0\", \"0:8\"]\n"),
+              testing::UnorderedElementsAre("attach 1:0: robot 1 is out of range, the scene has 1 robot",
+                                            "attach 0:8: mass 8 is out of range, voxel-1-0 has 8"));
   EXPECT_THAT(texts_of(scene), IsEmpty());
 }
 
@@ -187,11 +207,7 @@ class Drives : public Attachments {
     robot.actuators[1].materials.assign(std::next(muscles.begin()), muscles.end());
     save_robot(path("fins.json"), robot);
   }
-  static std::vector<std::string> drives_of(const LiveScene& scene) {
-    std::vector<std::string> texts;
-    for (const HeldValue& one : held_in(scene.document()).drives) texts.push_back(text_of(one));
-    return texts;
-  }
+  static std::vector<std::string> drives_of(const LiveScene& scene) { return texts_of(scene, &HeldParts::drives); }
 };
 
 TEST_F(Drives, ASceneFileKeepsThem) {
@@ -224,37 +240,20 @@ TEST_F(Drives, ASceneFileKeepsThem) {
 }
 
 TEST_F(Drives, WhatDoesNotExistIsReported) {
-  write("bad.toml",
-        "format = \"mercury-scene\"\nversion = 1\nrobots = [\"fins.json\"]\ndrive = [\"1:tail:0\", \"0:wing:1\"]\n");
   LiveScene scene(test::on_cpu());
-  scene.open({path("bad.toml")});
-  scene.wait_until_done();
-  scene.frame();
-  std::vector<std::string> texts;
-  for (const Message& message : scene.take_messages()) texts.push_back(message.text);
-  EXPECT_THAT(texts, testing::UnorderedElementsAre("drive 1:tail:0: robot 1 is out of range, the scene has 1 robot",
-                                                   testing::AllOf(testing::StartsWith("drive 0:wing:1: "),
-                                                                  testing::EndsWith(" has no actuator \"wing\""))));
+  EXPECT_THAT(messages_about(scene, "robots = [\"fins.json\"]\ndrive = [\"1:tail:0\", \"0:wing:1\"]\n"),
+              testing::UnorderedElementsAre("drive 1:tail:0: robot 1 is out of range, the scene has 1 robot",
+                                            testing::AllOf(testing::StartsWith("drive 0:wing:1: "),
+                                                           testing::EndsWith(" has no actuator \"wing\""))));
   EXPECT_THAT(drives_of(scene), IsEmpty());
 }
 
 TEST_F(Drives, BadTextIsRefused) {
   for (const std::string text :
        {"", "0", "0:", "0:tail", "0::1", ":tail:1", "0:tail:2", "0:tail:nan", "0:tail:", "-1:tail:0", "a:tail:0"})
-    try {
-      drive_from("--drive", text);
-      ADD_FAILURE() << "accepted: " << text;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(),
-                  testing::StartsWith("--drive: \"" + text + "\" is not accepted; give ROBOT:ACTUATOR:U"));
-    }
-  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\ndrive = [\"0:tail:1.5\"]\n");
-  try {
-    const SceneFile scene(path("bad.toml"));
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith(path("bad.toml") + ":3: --drive: \"0:tail:1.5\" is not accepted"));
-  }
+    EXPECT_THAT(refusal([&] { drive_from("--drive", text); }),
+                testing::StartsWith("--drive: \"" + text + "\" is not accepted; give ROBOT:ACTUATOR:U"));
+  expect_line_refused("drive = [\"0:tail:1.5\"]\n", "--drive", "0:tail:1.5");
 }
 
 // Neurons that are held by hand, of the Brain panel.
@@ -270,11 +269,7 @@ class HeldNeurons : public Attachments {
     robot.brain->layers[1].inputs = {{.from = "left: a", .weights = std::vector<float>(2 * muscles, 0.8f)}};
     save_robot(path("thinker.json"), robot);
   }
-  static std::vector<std::string> neurons_of(const LiveScene& scene) {
-    std::vector<std::string> texts;
-    for (const HeldValue& one : held_in(scene.document()).neurons) texts.push_back(text_of(one));
-    return texts;
-  }
+  static std::vector<std::string> neurons_of(const LiveScene& scene) { return texts_of(scene, &HeldParts::neurons); }
   // Where the masses are after that many steps.
   static std::vector<Vec3> positions_after(LiveScene& scene, std::int64_t steps) {
     scene.step(steps);
@@ -321,38 +316,22 @@ TEST_F(HeldNeurons, ASceneFileKeepsThem) {
 }
 
 TEST_F(HeldNeurons, WhatDoesNotExistIsReported) {
-  write("bad.toml",
-        "format = \"mercury-scene\"\nversion = 1\nrobots = [\"thinker.json\"]\n"
-        "neuron = [\"1:motor 0:0\", \"0:motor 99:1\"]\n");
   LiveScene scene(test::on_cpu());
-  scene.open({path("bad.toml")});
-  scene.wait_until_done();
-  scene.frame();
-  std::vector<std::string> texts;
-  for (const Message& message : scene.take_messages()) texts.push_back(message.text);
-  EXPECT_THAT(texts, testing::UnorderedElementsAre("neuron 1:motor 0:0: robot 1 is out of range, the scene has 1 robot",
-                                                   testing::AllOf(testing::StartsWith("neuron 0:motor 99:1: "),
-                                                                  testing::EndsWith(" has no neuron \"motor 99\""))));
+  EXPECT_THAT(messages_about(scene,
+                             "robots = [\"thinker.json\"]\n"
+                             "neuron = [\"1:motor 0:0\", \"0:motor 99:1\"]\n"),
+              testing::UnorderedElementsAre("neuron 1:motor 0:0: robot 1 is out of range, the scene has 1 robot",
+                                            testing::AllOf(testing::StartsWith("neuron 0:motor 99:1: "),
+                                                           testing::EndsWith(" has no neuron \"motor 99\""))));
   EXPECT_THAT(neurons_of(scene), IsEmpty());
 }
 
 TEST_F(HeldNeurons, BadTextIsRefused) {
   for (const std::string text : {"", "0", "0:", "0:motor 0", "0::1", ":motor 0:1", "0:motor 0:inf", "0:motor 0:nan",
                                  "0:motor 0:", "0:motor 0:1e39", "-1:motor 0:0", "a:motor 0:0"})
-    try {
-      neuron_from("--neuron", text);
-      ADD_FAILURE() << "accepted: " << text;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(),
-                  testing::StartsWith("--neuron: \"" + text + "\" is not accepted; give ROBOT:NEURON:VALUE"));
-    }
-  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\nneuron = [\"0:motor 0:x\"]\n");
-  try {
-    const SceneFile scene(path("bad.toml"));
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith(path("bad.toml") + ":3: --neuron: \"0:motor 0:x\" is not accepted"));
-  }
+    EXPECT_THAT(refusal([&] { neuron_from("--neuron", text); }),
+                testing::StartsWith("--neuron: \"" + text + "\" is not accepted; give ROBOT:NEURON:VALUE"));
+  expect_line_refused("neuron = [\"0:motor 0:x\"]\n", "--neuron", "0:motor 0:x");
   // Other commands leave them out, and say so.
   write("held.toml",
         "format = \"mercury-scene\"\nversion = 1\nrobots = [\"thinker.json\"]\nneuron = [\"0:motor 0:0\"]\n");
@@ -365,14 +344,9 @@ TEST_F(HeldNeurons, BadTextIsRefused) {
 TEST_F(Attachments, BadTextIsRefused) {
   for (const char* text : {"", "0", "0:", ":1", "0:65536", "-1:0", "0:1:2,3,4", "0:1:2,3:40", "0:1:2,3,4:0",
                            "0:1:2,3,4:-1", "0:1:nan,3,4:1", "0:1:2,3,4:inf", "0:1:2,3,4:1:1", "a:b"})
-    EXPECT_THAT(refusal(text), HasSubstr("ROBOT:MASS[:X,Y,Z:STIFFNESS]")) << text;
-  write("bad.toml", "format = \"mercury-scene\"\nversion = 1\nattach = [\"0:1:2\"]\n");
-  try {
-    const SceneFile scene(path("bad.toml"));
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith(path("bad.toml") + ":3: --attach: \"0:1:2\" is not accepted"));
-  }
+    EXPECT_THAT(refusal([&] { attached_mass_from("--attach", text); }), HasSubstr("ROBOT:MASS[:X,Y,Z:STIFFNESS]"))
+        << text;
+  expect_line_refused("attach = [\"0:1:2\"]\n", "--attach", "0:1:2");
 }
 
 }  // namespace
