@@ -13,7 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from . import InputError
 
 ACTIVATIONS = {"Tanh": "tanh", "Sigmoid": "sigmoid", "Relu": "relu", "Sin": "sine", "Identity": "linear"}
-LAYERS = ["Gemm", "MatMul", "Add", "RNN", "LSTM"]
+# Of ONNX: how many matrices they stack, and the activations that they may have.
+RECURRENT: dict[str, tuple[int, list[list[str]]]] = {
+    "RNN": (1, [["Tanh"], ["Relu"], ["Sigmoid"]]),
+    "LSTM": (4, [["Sigmoid", "Tanh", "Tanh"]]),
+    "GRU": (3, [["Sigmoid", "Tanh"]]),
+}
+LAYERS = ["Gemm", "MatMul", "Add", *RECURRENT]
 # Of one element, they change nothing. Drives are limited to [-1, 1] in any case.
 PASSING = ["Flatten", "Squeeze", "Unsqueeze", "Reshape", "Transpose", "Clip"]
 
@@ -103,8 +109,9 @@ def from_torch(*modules: Any, period: float = 0.02) -> dict[str, Any]:
 
 def from_onnx(path: str | os.PathLike[str], *, period: float = 0.02) -> dict[str, Any]:
     """The brain of an ONNX file: layers in a row (Gemm, or MatMul and Add), each with an activation (Tanh, Sigmoid, Relu,
-    Sin, or none), and recurrent layers: RNN with Tanh, and LSTM with its default activations, without peepholes. Each
-    thought is one element of their sequence, and their state is 0 at the start. Needs the package onnx.
+    Sin, or none), and recurrent layers: RNN with Tanh, Relu or Sigmoid, and LSTM (without peepholes) and GRU with their
+    default activations. Each thought is one element of their sequence, and their state is 0 at the start. Needs the package
+    onnx.
 
     Raises InputError, which names the node, for others.
     """
@@ -138,7 +145,7 @@ def from_onnx(path: str | os.PathLike[str], *, period: float = 0.02) -> dict[str
         if len(read) != 1 or read[0] not in current:
             raise InputError(f"{place}: must read what the node before it gives; a brain has its layers in a row")
         first = first or read[0]
-        current = set(node.output[: 2 if node.op_type in ("RNN", "LSTM") else 1]) - {""}
+        current = set(node.output[: 2 if node.op_type in RECURRENT else 1]) - {""}
         name = f"layer {len(layers)}"
         if node.op_type == "Gemm":
             weights = _constant(constants, node.input[1], place)
@@ -153,7 +160,7 @@ def from_onnx(path: str | os.PathLike[str], *, period: float = 0.02) -> dict[str
             constant = node.input[1] if node.input[0] == read[0] else node.input[0]
             bias = np.broadcast_to(_constant(constants, constant, place), layers[-1]["neurons"])
             layers[-1]["bias"] = (np.asarray(layers[-1].get("bias", 0.0)) + bias).tolist()
-        elif node.op_type in ("RNN", "LSTM"):
+        elif node.op_type in RECURRENT:
             if any(size > 1 for size in shapes[first][:-1]):
                 raise InputError(f"{place}: a robot thinks once at a time; give sequences and batches of 1")
             layers += _recurrent(layers, node, given, constants, name, place)
@@ -286,9 +293,17 @@ def _torch_recurrent(before: list[dict[str, Any]], module: Any, level: int, plac
 
 
 def _gru(
-    weights: NDArray[Any], own: NDArray[Any], bias: NDArray[Any] | None, own_bias: NDArray[Any] | None, name: str, source: str
+    weights: NDArray[Any],
+    own: NDArray[Any],
+    bias: NDArray[Any] | None,
+    own_bias: NDArray[Any] | None,
+    name: str,
+    source: str,
+    *,
+    reset_after: bool = True,
 ) -> list[dict[str, Any]]:
-    """h = (1 - z) n + z h, n = tanh(W s + b + r (R h + c)); weights in PyTorch's order: r, z, n."""
+    """h = (1 - z) n + z h, with n = tanh(W s + b + r (R h + c)), or n = tanh(W s + b + R (r h) + c) without `reset_after`;
+    weights in PyTorch's order: r, z, n."""
     count = own.shape[1]
     of_source, of_hidden = weights.reshape(3, count, -1), own.reshape(3, count, count)
     b, c = (np.zeros((3, count), np.float32) if part is None else part.reshape(3, count) for part in (bias, own_bias))
@@ -300,11 +315,16 @@ def _gru(
                        {"from": name, "weights": (sign * of_hidden[k]).tolist()}],
         }  # fmt: skip
 
+    product, one_to_one = {"weights": of_hidden[2].tolist()}, {"edges": [[i, i, 1] for i in range(count)]}
+    recalled, read = (product, one_to_one) if reset_after else (one_to_one, product)
     recall = {"name": f"{name} recall", "neurons": count, "activation": "linear", "gate": f"{name} reset", "keep": 0}
-    recall |= {"bias": c[2].tolist(), "inputs": [{"from": name, "weights": of_hidden[2].tolist()}]}
-    one_to_one = {"from": f"{name} recall", "edges": [[i, i, 1] for i in range(count)]}
-    hidden = {"name": name, "neurons": count, "gate": f"{name} change", "bias": b[2].tolist()}
-    hidden["inputs"] = [{"from": source, "weights": of_source[2].tolist()}, one_to_one]
+    recall["inputs"] = [{"from": name, **recalled}]
+    hidden = {"name": name, "neurons": count, "gate": f"{name} change"}
+    hidden["inputs"] = [{"from": source, "weights": of_source[2].tolist()}, {"from": f"{name} recall", **read}]
+    if reset_after:
+        recall["bias"], hidden["bias"] = c[2].tolist(), b[2].tolist()
+    else:
+        hidden["bias"] = (b[2] + c[2]).tolist()
     return [gate("reset", 1, 0), gate("change", -1, 1), recall, hidden]  # 1 - sigmoid(x) = sigmoid(-x)
 
 
@@ -317,11 +337,12 @@ def _constant(constants: dict[str, Any], name: str, place: str) -> Any:
 def _recurrent(
     before: list[dict[str, Any]], node: Any, given: dict[str, Any], constants: dict[str, Any], name: str, place: str
 ) -> list[dict[str, Any]]:
-    """The layers of an RNN or an LSTM node."""
+    """The layers of an RNN, LSTM or GRU node."""
     inputs = [*node.input, *[""] * 8][:8]  # X, W, R, B, sequence_lens, initial_h, initial_c, P
-    wanted = [b"Tanh"] if node.op_type == "RNN" else [b"Sigmoid", b"Tanh", b"Tanh"]
-    if given.get("direction", b"forward") != b"forward" or given.get("activations", wanted) != wanted:
-        raise InputError(f"{place}: must run forward, with {', '.join(text.decode() for text in wanted)}")
+    stacked, accepted = RECURRENT[node.op_type]
+    activations = [text.decode() for text in given.get("activations", [])] or accepted[0]
+    if given.get("direction", b"forward") != b"forward" or activations not in accepted:
+        raise InputError(f"{place}: must run forward, with {' or '.join(', '.join(names) for names in accepted)}")
     if "clip" in given or given.get("input_forget", 0):
         raise InputError(f"{place}: a brain has neither clip nor input_forget")
     if inputs[7]:
@@ -330,20 +351,37 @@ def _recurrent(
         raise InputError(f"{place}: has sequence_lens; a brain has one sequence, which goes on")
     if any(np.any(constants[state]) for state in inputs[5:7] if state in constants):
         raise InputError(f"{place}: has a state at the start that is not 0")
-    weights, own = (_constant(constants, part, place)[0] for part in inputs[1:3])
-    size = own.shape[1]
-    bias = _constant(constants, inputs[3], place)[0] if inputs[3] else None
-    sums = None if bias is None else bias[: len(bias) // 2] + bias[len(bias) // 2 :]
+    if not inputs[1] or not inputs[2]:
+        raise InputError(f"{place}: needs W and R, its weights")
+    given_weights, given_own = (_constant(constants, part, place) for part in inputs[1:3])
+    size = given_own.shape[-1] if given_own.ndim == 3 else 0
+    rows = stacked * size
+    if given_weights.ndim != 3 or given_weights.shape[:2] != (1, rows) or given_own.shape != (1, rows, size):
+        count = f"{stacked} neurons" if stacked > 1 else "neurons"
+        sizes = f"(1, {count}, inputs) and (1, {count}, neurons)"
+        raise InputError(f"{place}: W and R must be {sizes}, not {given_weights.shape} and {given_own.shape}")
+    given_bias = _constant(constants, inputs[3], place) if inputs[3] else np.zeros((1, 2 * rows), np.float32)
+    if given_bias.shape != (1, 2 * rows):
+        raise InputError(f"{place}: B must be (1, {2 * rows}), not {given_bias.shape}")
+    weights, own, bias, own_bias = given_weights[0], given_own[0], given_bias[0, :rows], given_bias[0, rows:]
     if before and weights.shape[1] != before[-1]["neurons"]:
         raise InputError(f"{place}: {weights.shape[1]} inputs, the layer before has {before[-1]['neurons']} neurons")
+    source = before[-1]["name"] if before else "senses"
     if node.op_type == "LSTM":
-        order = np.concatenate([np.arange(size) + part * size for part in (0, 2, 3, 1)])  # of i, o, f, c
-        source = before[-1]["name"] if before else "senses"
-        sums = None if sums is None else sums[order]
-        return _lstm(weights[order], own[order], sums, name, source, place)
-    layer = _layer(before, weights, sums, "tanh", name, place)
+        order = _rows(size, 0, 2, 3, 1)  # of i, o, f, c
+        return _lstm(weights[order], own[order], (bias + own_bias)[order] if inputs[3] else None, name, source, place)
+    if node.op_type == "GRU":
+        order = _rows(size, 1, 0, 2)  # of z, r, h
+        reset_after = bool(given.get("linear_before_reset", 0))
+        return _gru(weights[order], own[order], bias[order], own_bias[order], name, source, reset_after=reset_after)
+    layer = _layer(before, weights, bias + own_bias if inputs[3] else None, ACTIVATIONS[activations[0]], name, place)
     layer["inputs"].append({"from": name, "weights": own.tolist()})
     return [layer]
+
+
+def _rows(size: int, *parts: int) -> NDArray[Any]:
+    """Indices of the rows of stacked matrices of `size` rows each, in another order of the matrices."""
+    return np.concatenate([np.arange(size) + part * size for part in parts])
 
 
 def _lstm(

@@ -118,6 +118,79 @@ def test_an_lstm_reads_a_sequence_of_senses(tmp_path):
     np.testing.assert_allclose(np.stack(drives), expected.reshape(50, count), atol=5e-6)
 
 
+# Of a GRU of ONNX, by its documentation: X (steps, 1, inputs), W and R of the gates z, r, h, B = all of W, then all of R.
+def gru_of_onnx(x, w, r, b=None, linear_before_reset=0):
+    size = r.shape[2]
+    b = np.zeros((1, 6 * size)) if b is None else b
+    (wz, wr, wh), (rz, rr, rh) = np.split(w[0].astype(float), 3), np.split(r[0].astype(float), 3)
+    wbz, wbr, wbh, rbz, rbr, rbh = np.split(b[0].astype(float), 6)
+    h, hidden = np.zeros(size), []
+    for senses in x[:, 0].astype(float):
+        zt = 1 / (1 + np.exp(-(wz @ senses + rz @ h + wbz + rbz)))
+        rt = 1 / (1 + np.exp(-(wr @ senses + rr @ h + wbr + rbr)))
+        recalled = rt * (rh @ h + rbh) if linear_before_reset else rh @ (rt * h) + rbh
+        h = (1 - zt) * np.tanh(wh @ senses + recalled + wbh) + zt * h
+        hidden.append(h)
+    return np.array(hidden)
+
+
+@pytest.mark.parametrize("reset", [{}, {"linear_before_reset": 0}, {"linear_before_reset": 1}], ids=str)
+@pytest.mark.parametrize("bias", [True, False])
+def test_a_gru_reads_a_sequence_of_senses(tmp_path, reset, bias):
+    robot = body()
+    count = len(robot.actuators)
+    constants = {"w": numbers(1, 3 * count, 6), "r": 0.7 * numbers(1, 3 * count, count)}
+    if bias:  # of six parts, none of which is another
+        constants["b"] = numbers(1, 6 * count)
+    path = model(tmp_path / "gru.onnx", [helper.make_node("GRU", ["x", *constants], ["y"], hidden_size=count, **reset)],
+                 constants, shape=["steps", 1, 6])  # fmt: skip
+    batch = mercurysim.Batch(robot.with_brain(brains.from_onnx(path), SENSORS), device="cpu")
+    senses, drives = [], []
+    for _ in range(50):
+        batch.step(20)
+        senses.append(batch.brain.senses)
+        drives.append(np.array(batch.actuation.drive)[0])
+    expected = gru_of_onnx(np.stack(senses), *constants.values(), **reset)
+    np.testing.assert_allclose(np.stack(drives), expected, atol=5e-6)
+    evaluated = ReferenceEvaluator(str(path)).run(None, {"x": np.stack(senses)})[0]
+    np.testing.assert_allclose(np.stack(drives), evaluated.reshape(50, count), atol=5e-6)
+    other = gru_of_onnx(np.stack(senses), *constants.values(), linear_before_reset=1 - reset.get("linear_before_reset", 0))
+    assert abs(other - expected).max() > 1e-3  # the two kinds differ here
+
+
+def test_grus_follow_one_another_between_layers(tmp_path):
+    robot = body()
+    count = len(robot.actuators)
+    state = [helper.make_tensor_value_info(name, TensorProto.FLOAT, [1, 1, CELLS]) for name in "hk"]
+    path = model(tmp_path / "grus.onnx", [
+        helper.make_node("Gemm", ["x", "w0"], ["s0"], transB=1), helper.make_node("Tanh", ["s0"], ["h0"]),
+        helper.make_node("Unsqueeze", ["h0", "axis"], ["i"]),
+        helper.make_node("GRU", ["i", "w", "r", "b", "", "h"], ["all", "nh"], hidden_size=CELLS, linear_before_reset=1),
+        helper.make_node("GRU", ["nh", "v", "q", "", "", "k"], ["", "nk"], hidden_size=CELLS),
+        helper.make_node("Squeeze", ["nk", "axis"], ["l"]), helper.make_node("Gemm", ["l", "w1"], ["y"], transB=1),
+    ], {"w0": numbers(5, 6), "w": numbers(1, 3 * CELLS, 5), "r": numbers(1, 3 * CELLS, CELLS), "b": numbers(1, 6 * CELLS),
+        "v": numbers(1, 3 * CELLS, CELLS), "q": -numbers(1, 3 * CELLS, CELLS), "w1": 0.5 * numbers(count, CELLS),
+        "axis": np.zeros(1, np.int64)}, more=state, outputs=("y", "nh", "nk"))  # fmt: skip
+    batch = mercurysim.Batch(robot.with_brain(brains.from_onnx(path), SENSORS), device="cpu")
+    expect_the_same(batch, ReferenceEvaluator(str(path)), "x", "hk")
+
+
+@pytest.mark.parametrize(("name", "function"), [("Relu", lambda x: np.maximum(x, 0)), ("Sigmoid", lambda x: 1 / (1 + np.exp(-x)))])
+def test_a_recurrent_layer_may_have_another_activation(tmp_path, name, function):
+    robot = body()
+    count = len(robot.actuators)
+    constants = {"w": numbers(1, count, 6), "r": 0.1 * numbers(1, count, count), "b": numbers(1, 2 * count)}
+    node = helper.make_node("RNN", ["x", *constants], ["y"], hidden_size=count, activations=[name])
+    path = model(tmp_path / "recurrent.onnx", [node], constants, shape=["steps", 1, 6])
+    batch = mercurysim.Batch(robot.with_brain(brains.from_onnx(path), SENSORS), device="cpu")
+    h = np.zeros(count)
+    for _ in range(30):
+        batch.step(20)
+        total = constants["w"][0] @ batch.brain.senses[0] + constants["r"][0] @ h + constants["b"].reshape(2, count).sum(axis=0)
+        h = function(total.astype(float))
+    np.testing.assert_allclose(batch.brain.neurons[0], h, rtol=1e-5, atol=5e-6)
+
+
 def test_an_lstm_is_written_and_read_again(tmp_path):
     robot = body()
     brain = brains.from_onnx(policy_with_lstm(tmp_path / "policy.onnx", len(robot.actuators)))
@@ -223,7 +296,34 @@ def test_other_lstms_are_refused_in_one_line(tmp_path, change, message):
     constants = {"w": numbers(1, 12, 6), "r": numbers(1, 12, 3), "p": numbers(1, 9), "one": np.ones((1, 1, 3), np.float32),
                  "lengths": np.ones(1, np.int32)}  # fmt: skip
     path = model(tmp_path / "lstm.onnx", nodes, constants, shape=shape, outputs=("z" if last else "y",))
+    expect_refusal(path, message)
+
+
+def expect_refusal(path, message):
     with pytest.raises(mercurysim.InputError) as error:
         brains.from_onnx(path)
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(("kind", "change", "message"), [
+    ("GRU", {"activations": ["Sigmoid", "Relu"]}, "node 0 (GRU): must run forward, with Sigmoid, Tanh"),
+    ("GRU", {"direction": "bidirectional"}, "node 0 (GRU): must run forward, with Sigmoid, Tanh"),
+    ("GRU", {"clip": 3.0}, "node 0 (GRU): a brain has neither clip nor input_forget"),
+    ("GRU", {"inputs": ["x", "w", "r", "", "lengths"]}, "node 0 (GRU): has sequence_lens"),
+    ("GRU", {"inputs": ["x", "w", "r", "", "", "one"]}, "node 0 (GRU): has a state at the start that is not 0"),
+    ("GRU", {"shape": [50, 1, 6]}, "node 0 (GRU): a robot thinks once at a time"),
+    ("GRU", {"inputs": ["x", "lengths", "r"]},
+     "node 0 (GRU): W and R must be (1, 3 neurons, inputs) and (1, 3 neurons, neurons), not (1,) and (1, 9, 3)"),
+    ("GRU", {"inputs": ["x", "w", "unknown"]}, "node 0 (GRU): unknown is no constant of the file"),
+    ("GRU", {"inputs": ["x", "w"]}, "node 0 (GRU): needs W and R"),
+    ("GRU", {"inputs": ["x", "w", "r", "one"]}, "node 0 (GRU): B must be (1, 18), not (1, 1, 3)"),
+    ("RNN", {}, "node 0 (RNN): W and R must be (1, neurons, inputs) and (1, neurons, neurons), not (1, 9, 6) and (1, 9, 3)"),
+    ("RNN", {"activations": ["Elu"]}, "node 0 (RNN): must run forward, with Tanh or Relu or Sigmoid"),
+])  # fmt: skip
+def test_other_recurrent_layers_are_refused_in_one_line(tmp_path, kind, change, message):
+    given = {"inputs": ["x", "w", "r"], "shape": ["steps", 1, 6], **change}
+    shape, inputs = given.pop("shape"), given.pop("inputs")
+    constants = {"w": numbers(1, 9, 6), "r": numbers(1, 9, 3), "one": np.ones((1, 1, 3), np.float32), "lengths": np.ones(1, np.int32)}
+    node = helper.make_node(kind, inputs, ["y"], hidden_size=3, **given)
+    expect_refusal(model(tmp_path / "recurrent.onnx", [node], constants, shape=shape), message)
