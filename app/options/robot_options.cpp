@@ -116,6 +116,13 @@ LoadedRobots RobotOptions::load(const MemoryUse& use) const {
   return all;
 }
 
+std::vector<std::string> RobotSequence::environment_per_robot() const {
+  std::vector<std::string> all(environments.begin(), environments.begin() + static_cast<std::ptrdiff_t>(files.size()));
+  for (std::size_t i = 0; i < random.size(); ++i)
+    all.insert(all.end(), random[i].count, environments[files.size() + i]);
+  return all;
+}
+
 RobotSequence RobotOptions::sequence() const {
   require_robots();
   RobotSequence sequence{.random = random()};

@@ -27,10 +27,13 @@ struct RobotSequence {
   std::size_t count = 0;
   std::vector<std::filesystem::path> files;  // of the first robots of the sequence, one each
   std::vector<RandomRobots> random;          // the last robots of the sequence, one request after the other
-  // The environments that the robots are made for, see environment_of().
+  // The environments that the robots are made for, see environment_of(): one per file, then one per request.
   std::vector<std::string> environments;
   Physics physics = Physics::paper;
   std::optional<RunSettings> run;  // if all robots are of one run folder
+
+  // The environment that each robot is made for, one per robot.
+  std::vector<std::string> environment_per_robot() const;
 };
 
 // Robots that are there.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <type_traits>
 #include <utility>
@@ -206,6 +207,13 @@ Configuration SimulationOptions::configuration_over(const Configuration& base) c
   return configuration;
 }
 
+std::string SimulationOptions::home_of(const std::string& environment, Physics physics) {
+  if (!is_environment(environment)) return {};
+  return has_water(environment_named(environment)) && physics == Physics::real
+             ? std::string(name_of(default_configuration(physics).environment))
+             : environment;
+}
+
 void SimulationOptions::check(Physics physics) const {
   if (environment_) return (void)configuration(physics);
   validate(given_);
@@ -226,19 +234,33 @@ Configuration SimulationOptions::configuration(std::span<const Robot> robots, st
 Configuration SimulationOptions::configuration(std::span<const std::string> environments,
                                                std::vector<std::string>& notes, Physics physics) const {
   if (environment_) return configuration(physics);
-  // Robots that were made for the paper's water are put into the water of their physics.
-  const Configuration own = default_configuration(physics);
   std::set<std::string> wanted;
-  for (const std::string& environment : environments)
-    if (is_environment(environment))
-      wanted.insert(has_water(environment_named(environment)) && physics == Physics::real
-                        ? std::string(name_of(own.environment))
-                        : environment);
+  for (const std::string& environment : environments) wanted.insert(home_of(environment, physics));
+  wanted.erase("");
   if (wanted.size() == 1) return configuration_in(*wanted.begin(), physics);
   if (wanted.size() > 1)
     notes.push_back(fmt::format("the robots are made for {}; all are put into {}, --environment chooses",
-                                fmt::join(wanted, " and "), name_of(own.environment)));
+                                fmt::join(wanted, " and "), name_of(default_configuration(physics).environment)));
   return configuration(physics);
+}
+
+std::vector<EnvironmentGroup> SimulationOptions::groups(std::span<const std::string> environments,
+                                                        Physics physics) const {
+  std::map<std::string, std::vector<std::size_t>> members;  // by the name of their environment
+  for (std::size_t i = 0; i < environments.size(); ++i)
+    members[environment_ ? *environment_ : home_of(environments[i], physics)].push_back(i);
+  if (const auto homeless = members.find(""); homeless != members.end() && members.size() > 1) {
+    const std::string home(members.size() == 2 ? std::prev(members.end())->first
+                                               : name_of(default_configuration(physics).environment));
+    auto& others = members[home];
+    others.insert(others.end(), homeless->second.begin(), homeless->second.end());
+    std::ranges::sort(others);
+    members.erase(homeless);
+  }
+  std::vector<EnvironmentGroup> groups;
+  for (auto& [environment, robots] : members)
+    groups.push_back({configuration_in(environment, physics), std::move(robots)});
+  return groups;
 }
 
 double SimulationOptions::seconds(double otherwise) const {

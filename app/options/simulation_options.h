@@ -24,6 +24,12 @@ Physics physics_of(std::span<const Robot> robots);
 Physics physics_of(std::span<const Robot* const> robots);
 Physics physics_of(std::span<const std::shared_ptr<const Robot>> robots);
 
+// Robots that live in one environment.
+struct EnvironmentGroup {
+  Configuration configuration;
+  std::vector<std::size_t> members;  // their indices, rising
+};
+
 class SimulationOptions {
  public:
   // Adds the options to a command. The object must outlive it.
@@ -42,6 +48,12 @@ class SimulationOptions {
   // options leave out is as the physics of the robots has it.
   Configuration configuration(std::span<const std::string> environments, std::vector<std::string>& notes,
                               Physics physics = Physics::paper) const;
+
+  // Each robot in the environment that it is made for, given its name per robot; a robot without one is put where those
+  // with one agree, else into the default environment. With --environment, or if all agree, there is one group. Throws
+  // InputError as above, also for a parameter that one of the environments does not have.
+  std::vector<EnvironmentGroup> groups(std::span<const std::string> environments,
+                                       Physics physics = Physics::paper) const;
 
   // Of robots that were loaded (robot_options.h): over the configuration of their run, if they are all of one.
   template <class Robots>
@@ -69,6 +81,9 @@ class SimulationOptions {
 
   double dt() const;  // divided by --substeps [s]
   void add_environment_parameters(const Command& command);
+  // The environment for robots that are made for this one; empty if the name is none. Robots with real bodies that were
+  // made for the paper's water are put into the water of their physics.
+  static std::string home_of(const std::string& environment, Physics physics);
   Configuration configuration_in(std::string_view environment, Physics physics) const;
   // Writes the options of its parameters into an environment. Throws InputError for options that do not apply to it.
   void set_parameters(Environment& environment) const;

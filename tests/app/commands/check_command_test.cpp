@@ -49,7 +49,8 @@ TEST_F(CheckCommand, WritesALinePerRobot) {
   EXPECT_THAT(outcome.output, HasSubstr(" of 3 confirmed\n"));
   const std::string csv = read("a.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
-  EXPECT_THAT(csv, testing::StartsWith("index,name,file,random,verdict,reason,objective,fate_dt,median_dt,"));
+  EXPECT_THAT(csv,
+              testing::StartsWith("index,name,file,random,environment,verdict,reason,objective,fate_dt,median_dt,"));
   EXPECT_EQ(mercury(Arguments{"check", "--csv", "-"} + robots).output, csv);
 }
 
@@ -71,6 +72,47 @@ TEST_F(CheckCommand, RefusesWhatMeansNothing) {
   EXPECT_THAT(refusal({"--objective", "distanse"}), HasSubstr("did you mean distance?"));
   EXPECT_THAT(refusal({"--trials", "0"}), HasSubstr("--trials: 0 is not accepted"));
   EXPECT_THAT(refusal({"--jitter", "0.7"}), HasSubstr("--jitter: 0.7 is not accepted"));
+}
+
+// In one call, each robot gets the figures and the verdict that it gets alone.
+TEST_F(CheckCommand, TriesEachRobotInItsOwnEnvironment) {
+  const Arguments mixed{"sample:paper/strider", "sample:paper/eel", "--random", "voxel:1", "sample:paper/inchworm"},
+      short_json{"--json", "--seconds", "0.5", "--trials", "2"};
+  const auto report_of = [&](const Arguments& arguments) {
+    const Outcome outcome = mercury(Arguments{"check"} + arguments + short_json);
+    EXPECT_EQ(outcome.messages, "");
+    return nlohmann::json::parse(outcome.output);
+  };
+  const auto together = report_of(mixed);
+  EXPECT_FALSE(together.contains("configuration"));
+  const char* const environments[] = {"land", "ocean", "land", "ocean"};  // in the order of the files, then the random
+  ASSERT_EQ(together["robots"].size(), std::size(environments));
+  const Arguments alone[] = {
+      {"sample:paper/strider"}, {"sample:paper/eel"}, {"sample:paper/inchworm"}, {"--random", "voxel:1"}};
+  for (std::size_t i = 0; i < std::size(environments); ++i) {
+    auto expected = report_of(alone[i]);
+    EXPECT_EQ(together["robots"][i]["environment"], environments[i]);
+    EXPECT_EQ(together["configurations"][environments[i]], expected["configuration"]);
+    expected["robots"][0]["index"] = i;
+    EXPECT_EQ(together["robots"][i], expected["robots"][0]);
+  }
+  EXPECT_THAT(mercury(Arguments{"check"} + mixed + Arguments{"--seconds", "0.1"}).output,
+              AllOf(HasSubstr(", land and ocean, "), HasSubstr("strider    land  "), HasSubstr("eel        ocean ")));
+  const Outcome refusal = mercury(Arguments{"check"} + mixed + Arguments{"--friction", "0.5"});
+  EXPECT_EQ(refusal.status, 2);
+  EXPECT_THAT(refusal.messages, HasSubstr("--friction: ocean has no such parameter"));
+}
+
+// A robot that is made for no environment goes where the others live; --environment holds for all.
+TEST_F(CheckCommand, PutsAllIntoOneEnvironmentWhereNoneObjects) {
+  for (const Arguments& robots_there :
+       {Arguments{"sample:paper/strider", "--random", "voxel:1"},
+        Arguments{"sample:paper/strider", "sample:paper/eel", "--environment", "land"}}) {
+    const auto report = nlohmann::json::parse(
+        mercury(Arguments{"check", "--json", "--seconds", "0.2", "--trials", "1"} + robots_there).output);
+    EXPECT_TRUE(report.contains("configuration"));
+    for (const auto& robot : report["robots"]) EXPECT_EQ(robot["environment"], "land");
+  }
 }
 
 TEST_F(CheckCommand, ADryRunChangesNothing) {
