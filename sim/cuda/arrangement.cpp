@@ -54,14 +54,15 @@ void shorten_padding(Schedule& schedule, const Robot& robot, const SlotOrder& or
 
 }  // namespace
 
-Arrangement arrange(const Robot& robot) {
-  std::vector<FacePair> pairs = pair_faces(robot);
-  auto order = std::make_shared<const SlotOrder>(choose_slots(robot, pairs));
+Arrangement arrange(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts) {
+  auto order = std::make_shared<const SlotOrder>(choose_slots(robot, pairs, ghosts));
   const std::vector<std::uint16_t>& slot = order->slots;
-  for (FacePair& p : pairs) p = {slot[p.a], slot[p.b], slot[p.c], slot[p.d]};
-  Schedule schedule = schedule_springs(robot.masses.size(), in_slots(robot.springs, slot));
+  std::vector<FacePair> faces;
+  faces.reserve(pairs.size());
+  for (const FacePair& p : pairs) faces.push_back({slot[p.a], slot[p.b], slot[p.c], slot[p.d]});
+  Schedule schedule = schedule_springs(robot.masses.size() - ghosts, in_slots(robot.springs, slot), ghosts);
   shorten_padding(schedule, robot, *order);
-  return {std::move(order), std::move(schedule), make_face_tiles(pairs)};
+  return {std::move(order), std::move(schedule), make_face_tiles(faces)};
 }
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {

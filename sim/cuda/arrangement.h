@@ -20,7 +20,9 @@ struct Arrangement {
   std::vector<FacePair> faces;  // in face tiles, padding included
 };
 
-Arrangement arrange(const Robot& robot);
+// `pairs` = pair_faces(robot). The last `ghosts` masses are ghosts (parts.h).
+Arrangement arrange(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts = 0);
+inline Arrangement arrange(const Robot& robot) { return arrange(robot, pair_faces(robot)); }
 
 // For each robot the first one of the same topology (mercury/robot.h), which may be the robot itself. Uses all cores.
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots);

@@ -32,7 +32,9 @@ CudaBackend::~CudaBackend() {
 }
 
 std::vector<std::string> CudaBackend::notes() const {
-  const auto on_chip = [](const auto& robots) { return robots->size() == 0 || robots->launch().on_chip; };
+  const auto on_chip = [](const auto& robots) {
+    return robots->size() == 0 || robots->launch().on_chip || robots->launch_in_parts();
+  };
   if (std::ranges::all_of(classes(), on_chip)) return {};
   return {"the largest robot does not fit on the chip of " + name_ + ": it is stepped in device memory, more slowly"};
 }
@@ -43,8 +45,9 @@ std::size_t CudaBackend::robots_at_once() const {
   double rounds = 0;
   for (const auto& robots : classes())
     if (robots->size() > 0)
-      rounds += static_cast<double>(robots->size()) /
-                robots_in_flight(configuration_.solver, model_for(*robots), robots->launch());
+      rounds +=
+          static_cast<double>(robots->size()) / robots_in_flight(configuration_.solver, model_for(*robots),
+                                                                 robots->launch_in_parts().value_or(robots->launch()));
   return rounds > 0 ? static_cast<std::size_t>(std::llround(static_cast<double>(places_.size()) / rounds)) : 0;
 }
 
@@ -249,6 +252,7 @@ void CudaBackend::choose_launches() {
     if (robots.size() == 0) continue;
     robots.choose_launch(configuration_, places_.size(), owned_->brains.bytes(c));
     prepare_steps(configuration_.solver, model_for(robots), robots.launch());
+    if (robots.launch_in_parts()) prepare_steps(configuration_.solver, model_for(robots), *robots.launch_in_parts());
     brains_elsewhere = brains_elsewhere || !robots.launch().on_chip;
   }
   if (brains_elsewhere) owned_->brains.reserve_workspace();

@@ -155,14 +155,23 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
                             .launch = robots.launch(),
                             .thoughts = owned_->brains.thoughts(c, configuration_.environment, owned_->actuators)};
     const StepModel model = model_for(robots);
+    const cudaStream_t of_class = c == launch_order_.front() ? stream : robots.stream().get();
     std::int64_t done = 0;
     do {
       arguments.clock.step = clock.step + done;
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, max_steps_per_launch));
       done += arguments.steps;
       arguments.report = done == steps && report ? report + first_report_[c] : nullptr;
-      launch_steps(configuration_.solver, model, arguments,
-                   c == launch_order_.front() ? stream : robots.stream().get());
+      if (robots.launch_in_parts() && arguments.steps > 0) {
+        StepArguments in_parts = arguments;
+        in_parts.batch = robots.view_of_parts();
+        in_parts.launch = *robots.launch_in_parts();
+        in_parts.report = nullptr;
+        launch_steps(configuration_.solver, model, in_parts, of_class);
+        if (!arguments.report) continue;
+        arguments.clock.step += std::exchange(arguments.steps, 0);
+      }
+      launch_steps(configuration_.solver, model, arguments, of_class);
     } while (done < steps);
   }
 }

@@ -17,7 +17,7 @@ class BlockRobot {
   using SpringRecord = std::conditional_t<record_words == 1, uint1, uint2>;  // .x = key, .y = rest length (layout.h)
 
   __device__ BlockRobot(const StepArguments& arguments, const ThreadContext<Memory>& context)
-      : arguments_(arguments), header_(arguments.batch.robots[context.robot]), context_(context) {
+      : arguments_(arguments), header_(header_of(arguments.batch, context.robot)), context_(context) {
     const std::uint32_t tiles_per_warp = (header_.tiles + warps() - 1) / warps();
     first_tile_ = min(context.warp * tiles_per_warp, header_.tiles);
     last_tile_ = min(first_tile_ + tiles_per_warp, header_.tiles);
@@ -57,24 +57,37 @@ class BlockRobot {
     return slot / lanes * tile_bytes + slot % lanes * 4;
   }
 
+  // Where the chunks begin that each part of a robot has, if robots are in parts.
+  __device__ std::size_t chunk() const { return Memory::in_parts ? blockIdx.x : context_.robot; }
+
   // This thread's part of a tile's state in device memory.
   __device__ float* state(std::uint32_t tile) const {
+    if constexpr (Memory::in_parts) {
+      const std::size_t first = std::size_t{context_.robot} * arguments_.batch.parts.robot_tile_stride;
+      return arguments_.batch.state + first * state_fields * lanes +
+             offset_of_slot(slot_in_robot(own_slot(tile)), state_fields);
+    }
     const std::size_t index = std::size_t{context_.robot} * arguments_.batch.tile_stride + tile;
     return arguments_.batch.state + index * state_fields * lanes + context_.lane;
   }
   // The index of this thread's slot in a tile among those of the batch.
   __device__ std::size_t slot_in_batch(std::uint32_t tile) const {
-    return (std::size_t{context_.robot} * arguments_.batch.tile_stride + tile) * lanes + context_.lane;
+    return (chunk() * arguments_.batch.tile_stride + tile) * lanes + context_.lane;
+  }
+  // Where the whole robot has the mass of a slot.
+  __device__ std::uint32_t slot_in_robot(std::uint32_t slot) const {
+    if constexpr (Memory::in_parts)
+      return __ldg(arguments_.batch.parts.slots + chunk() * arguments_.batch.tile_stride * lanes + slot);
+    else
+      return slot;
   }
   // The number of the mass that stands in a slot.
   __device__ std::uint32_t number_of(std::uint32_t slot) const {
-    return arguments_.batch.masses[std::size_t{context_.robot} * arguments_.batch.tile_stride * lanes + slot];
+    return arguments_.batch.masses[first_slot_of_robot() + slot_in_robot(slot)];
   }
   // The number of springs at a slot.
   __device__ float load_valence(std::uint32_t slot) const {
-    const float* valences =
-        arguments_.batch.valences + std::size_t{context_.robot} * arguments_.batch.tile_stride * lanes;
-    return __ldg(valences + slot);
+    return __ldg(arguments_.batch.valences + first_slot_of_robot() + slot_in_robot(slot));
   }
   // The reactions that this thread's slot in a tile receives per step.
   __device__ std::uint32_t incoming_count(std::uint32_t tile) const {
@@ -95,11 +108,11 @@ class BlockRobot {
   }
 
   __device__ const std::uint32_t* row_start() const {
-    return arguments_.batch.row_start + std::size_t{context_.robot} * (arguments_.batch.tile_stride + 1);
+    return arguments_.batch.row_start + chunk() * (arguments_.batch.tile_stride + 1);
   }
   __device__ const SpringRecord* springs() const {
     return reinterpret_cast<const SpringRecord*>(arguments_.batch.springs) +
-           std::size_t{context_.robot} * arguments_.batch.row_stride * lanes;
+           chunk() * arguments_.batch.row_stride * lanes;
   }
 
   // Units of fixed point per newton, or per meter of correction: a power of two. Rest lengths and the 1 of the
@@ -177,6 +190,22 @@ class BlockRobot {
   }
 
  private:
+  // Of a part: its own numbers of masses, tiles and faces.
+  __device__ static RobotHeader header_of(const BatchView& batch, std::uint32_t robot) {
+    RobotHeader header = batch.robots[robot];
+    if constexpr (Memory::in_parts) {
+      const PartHeader part = batch.parts.headers[blockIdx.x];
+      header.masses = part.masses;
+      header.tiles = part.tiles;
+      header.face_pairs = part.face_pairs;
+    }
+    return header;
+  }
+  __device__ std::size_t first_slot_of_robot() const {
+    const BatchView& batch = arguments_.batch;
+    return std::size_t{context_.robot} * (Memory::in_parts ? batch.parts.robot_tile_stride : batch.tile_stride) * lanes;
+  }
+
   __device__ float2 table_entry_of(const SpringRecord& record) const {
     const std::uint32_t bytes_per_material = parameter_bytes << arguments_.launch.table_copy_bits;
     return load_pair(context_.material_table + material_of(record) * bytes_per_material);

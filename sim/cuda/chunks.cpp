@@ -51,19 +51,29 @@ void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangem
 }
 
 void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule) {
-  const auto records = chunk(springs, k, sizes_.springs());
   const RestLengths rest = sizes_.record_words == 1 ? rest_lengths(robot) : RestLengths{};
   if (sizes_.record_words == 1) put(chunk(lengths, k, max_lengths), std::span<const float>(rest.table));
+  fill_records(chunk(springs, k, sizes_.springs()), robot, schedule, rest);
+}
+
+void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Schedule& schedule,
+                  const RestLengths& rest, const RecordNames& names) {
   // Keys without the partner. The last one is that of padding: of air, so it adds nothing.
   const auto count = static_cast<std::uint32_t>(robot.springs.size());
   std::vector<std::uint16_t> keys(count + 1);
-  for (std::uint32_t i = 0; i < count; ++i)
-    keys[i] = static_cast<std::uint16_t>((rest.index.empty() ? 0 : rest.index[i] << 8) | robot.springs[i].material);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const MaterialId own = robot.springs[i].material;
+    const MaterialId material = names.materials.empty() ? own : names.materials[own];
+    keys[i] = static_cast<std::uint16_t>((rest.index.empty() ? 0 : rest.index[i] << 8) | material);
+  }
   auto to = records.begin();
   for (const ScheduledSpring& entry : schedule.entries) {
-    *to++ = static_cast<std::uint32_t>(entry.partner) << 16 | keys[std::min(entry.spring, count)];
-    if (sizes_.record_words == 2)
-      *to++ = entry.spring == padding ? 0 : std::bit_cast<std::uint32_t>(robot.springs[entry.spring].rest_length);
+    const std::uint32_t spring = entry.spring == padding ? count
+                                 : names.numbers.empty() ? entry.spring
+                                                         : names.numbers[entry.spring];
+    *to++ = offset_of_slot(entry.partner, names.fields) << 16 | keys[spring];
+    if (rest.table.empty())
+      *to++ = spring == count ? 0 : std::bit_cast<std::uint32_t>(robot.springs[spring].rest_length);
   }
   std::fill(to, records.end(), 0u);
 }

@@ -8,6 +8,7 @@
 #include "mercury/robot.h"
 #include "sim/cuda/arrangement.h"
 #include "sim/cuda/layout.h"
+#include "sim/cuda/rest_lengths.h"
 
 namespace mercury::cuda {
 
@@ -46,6 +47,16 @@ class Chunks {
 
   ChunkSizes sizes_;
 };
+
+// How spring records name springs, partners and materials.
+struct RecordNames {
+  std::span<const std::uint32_t> numbers;  // [spring of the schedule], its number in the robot; empty = the same
+  std::span<const MaterialId> materials;   // [max_materials], the new id by the robot's; empty = the same
+  std::uint32_t fields = 0;                // partners are addressed by offset_of_slot()
+};
+// Fills the spring records of a schedule, and clears what comes after them. `rest` is empty for records of two words.
+void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Schedule& schedule,
+                  const RestLengths& rest, const RecordNames& names = {});
 
 // Where a mass is at rest if its robot is `lift` [m] higher than in its file.
 inline Vec3 at_rest(Vec3 mass, float lift) { return lift == 0 ? mass : mass + Vec3{0, 0, lift}; }

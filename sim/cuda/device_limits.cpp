@@ -21,7 +21,8 @@ DeviceLimits device_limits() {
   return {.shared_per_block = limit(cudaDevAttrMaxSharedMemoryPerBlockOptin),
           .shared_per_multiprocessor = limit(cudaDevAttrMaxSharedMemoryPerMultiprocessor),
           .reserved_per_block = limit(cudaDevAttrReservedSharedMemoryPerBlock),
-          .multiprocessors = limit(cudaDevAttrMultiProcessorCount)};
+          .multiprocessors = limit(cudaDevAttrMultiProcessorCount),
+          .clusters = attribute(cudaDevAttrClusterLaunch) != 0};
 }
 
 double spring_limit(Solver solver) {

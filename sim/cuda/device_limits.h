@@ -13,6 +13,7 @@ struct DeviceLimits {
   std::uint32_t shared_per_multiprocessor;  // [bytes]
   std::uint32_t reserved_per_block;         // by the system, of the multiprocessor's shared memory [bytes]
   std::uint32_t multiprocessors;
+  bool clusters;  // whether blocks can reach each other's shared memory
 };
 
 DeviceLimits device_limits();

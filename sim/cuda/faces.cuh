@@ -27,8 +27,9 @@ class FacePass {
       const Corners corners{next.x & 0xffff, next.x >> 16, next.y & 0xffff, next.y >> 16};
       if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
       if (corners.a == corners.c) continue;  // padding; a single face may have a = b or a = d
-      if (!add_pair(robot, model, units_per_newton, corners, dither + dither_of_pair(p)))
-        failure.report(step, phase_environment, lowest_mass(robot, corners));
+      if (!add_pair(robot, model, units_per_newton, corners, dither + dither_of(robot, p)))
+        failure.report<typename Robot::Memory>(robot.arguments().launch, step, phase_environment,
+                                               lowest_mass(robot, corners));
     }
   }
 
@@ -46,8 +47,16 @@ class FacePass {
   template <class Robot>
   __device__ static uint2 load(const Robot& robot, std::uint32_t p) {
     const BatchView& batch = robot.arguments().batch;
-    const FacePair* pairs = batch.face_pairs + std::size_t{robot.context().robot} * batch.face_stride;
+    const FacePair* pairs = batch.face_pairs + robot.chunk() * batch.face_stride;
     return __ldg(reinterpret_cast<const uint2*>(pairs + p));
+  }
+  template <class Robot>
+  __device__ static std::uint32_t dither_of(const Robot& robot, std::uint32_t p) {
+    if constexpr (Robot::Memory::in_parts)
+      return __ldg(robot.arguments().batch.parts.face_dithers + robot.chunk() * robot.arguments().batch.face_stride +
+                   p);
+    else
+      return dither_of_pair(p);
   }
 
   // Returns false if a force is too large for its fixed-point sum, or NaN.

@@ -93,6 +93,14 @@ __global__ void readdress_corners_kernel(std::uint16_t* corners, std::size_t cou
     corners[i] = static_cast<std::uint16_t>(offset_of_slot(slot_at_offset(corners[i], old_fields), new_fields));
 }
 
+// One block per part.
+__global__ void points_kernel(BatchView batch, const PointProperties* from, PointProperties* to) {
+  const std::size_t slots = std::size_t{batch.tile_stride} * lanes, first = blockIdx.x * slots;
+  const std::size_t robot = blockIdx.x / batch.parts.per_robot * std::size_t{batch.parts.robot_tile_stride} * lanes;
+  for (std::size_t slot = threadIdx.x; slot < slots; slot += blockDim.x)
+    to[first + slot] = from[robot + batch.parts.slots[first + slot]];
+}
+
 // One block per move.
 __global__ void move_kernel(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves) {
   const uint2 move = moves[blockIdx.x];
@@ -163,6 +171,12 @@ void readdress_corners(std::span<FacePair> pairs, std::uint32_t old_fields, std:
   const unsigned blocks = std::min(blocks_for(count), 65536u);
   readdress_corners_kernel<<<blocks, many_threads, 0, stream>>>(&pairs.data()->a, count, old_fields, new_fields);
   check(cudaGetLastError(), "addressing the corners of faces");
+}
+
+void copy_points_to_parts(const BatchView& parts, const PointProperties* from, PointProperties* to,
+                          cudaStream_t stream) {
+  points_kernel<<<parts.robot_count * parts.parts.per_robot, many_threads, 0, stream>>>(parts, from, to);
+  check(cudaGetLastError(), "copying the properties of masses");
 }
 
 void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves, std::size_t count,

@@ -44,6 +44,10 @@ void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t
 void readdress_corners(std::span<FacePair> pairs, std::uint32_t old_fields, std::uint32_t new_fields,
                        cudaStream_t stream);
 
+// Copies the properties of masses from whole robots to their parts. `parts` = DeviceParts::view().
+void copy_points_to_parts(const BatchView& parts, const PointProperties* from, PointProperties* to,
+                          cudaStream_t stream);
+
 // Copies chunks of words. `moves` is on the device: (from, to), of which no chunk is in two.
 void move_chunks(std::uint32_t* words, std::size_t words_per_chunk, const uint2* moves, std::size_t count,
                  cudaStream_t stream);

@@ -107,4 +107,20 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   return launch;
 }
 
+std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,
+                                                          bool same_materials, bool viscous, std::size_t batch_size,
+                                                          std::uint32_t table_chunks, std::uint32_t blocks) {
+  LaunchConfiguration launch;
+  launch.parts = parts.parts.per_robot;
+  launch.shared_table = same_materials;
+  launch.viscous = viscous;
+  launch.table_chunks = table_chunks;
+  launch.record_words = parts.record_words;
+  launch.fits_cache = parts.robot_count == batch_size;
+  launch.warps_per_robot = divide_up(parts.tile_stride, divide_up(parts.tile_stride, resident_warps / blocks));
+  const std::uint32_t fields = working_fields(configuration.solver, true);
+  if (!fit(launch, parts, fields, device_limits(), blocks, {})) return std::nullopt;
+  return launch;
+}
+
 }  // namespace mercury::cuda

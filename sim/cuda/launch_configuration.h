@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "mercury/configuration.h"
 #include "mercury/host_device.h"
@@ -25,7 +26,8 @@ struct BrainBytes {
 
 struct LaunchConfiguration {
   std::uint32_t robots_per_block = 1;
-  std::uint32_t warps_per_robot = 1;
+  std::uint32_t warps_per_robot = 1;                   // or per part of one
+  std::uint32_t parts = 1;                             // of a robot, each in a block of its own (parts.h)
   std::uint32_t table_copy_bits = 0;                   // 2^this many copies of the material table, at most 16
   std::uint32_t table_chunks = max_materials / lanes;  // of 32 materials in a table
   bool shared_table = false;                           // all robots of the batch have the same materials
@@ -68,5 +70,11 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
                                                 bool same_materials, bool viscous, std::size_t batch_size,
                                                 std::uint32_t table_chunks = max_materials / lanes,
                                                 const BrainBytes& brain = {});
+
+// The same for robots in parts: one part per block. `parts` = DeviceParts::view(). Returns nothing if a part does not
+// fit. `blocks` = that a multiprocessor should have at the same time.
+std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,
+                                                          bool same_materials, bool viscous, std::size_t batch_size,
+                                                          std::uint32_t table_chunks, std::uint32_t blocks);
 
 }  // namespace mercury::cuda

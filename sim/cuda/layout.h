@@ -74,6 +74,27 @@ struct alignas(8) MuscleSwing {
   }
 };
 
+// A robot that a cluster steps in parts (parts.h).
+struct PartHeader {
+  std::uint32_t masses, tiles, ghost_tiles, face_pairs;  // without ghosts, but for their tiles
+};
+// An own mass that is a ghost of another part.
+struct alignas(8) Export {
+  std::uint16_t from, to;  // its slot, the slot of the ghost
+  std::uint32_t part;      // that of the ghost
+};
+// The parts of a size class; part p of robot r is number r * per_robot + p.
+struct PartsView {
+  std::uint32_t per_robot = 1;
+  std::uint32_t robot_tile_stride = 0, export_stride = 0;
+  const PartHeader* headers = nullptr;
+  const std::uint16_t* slots = nullptr;         // [part][slot], where the whole robot has the mass
+  const std::uint32_t* face_dithers = nullptr;  // [part][pair]
+  const Export* exports = nullptr;              // [part][export_stride]
+  const std::uint32_t* export_start = nullptr;  // [part][tile + 1]
+  const std::uint32_t* places = nullptr;        // [robot][slot of the whole robot], part << 16 | slot of its own mass
+};
+
 // Pointers and strides of a size class in device memory. A stride is the length of one robot's chunk, in units of what
 // it counts.
 struct BatchView {
@@ -98,6 +119,9 @@ struct BatchView {
   std::uint32_t robot_count, tile_stride, row_stride, face_stride, perturbation_count;
   std::uint32_t workspace_stride;  // [bytes]
   std::uint32_t record_words;      // 1 or 2
+  // If robots are stepped in parts, springs, row_start, face_pairs, incoming_counts and points have a chunk for each
+  // part, and the strides are those of a part. All else is of whole robots.
+  PartsView parts;
 };
 
 }  // namespace mercury::cuda

@@ -15,6 +15,7 @@ class OnChip {
   using Address = std::uint32_t;
   static constexpr bool on_chip = true;
   static constexpr bool keeps_valence = true;  // in field_valence, for XPBD
+  static constexpr bool in_parts = false;      // a block has the whole robot
 
   __device__ static float load(Address at, std::uint32_t offset) {
     float value;
@@ -39,12 +40,38 @@ class OnChipWithoutValence : public OnChip {
   static constexpr bool keeps_valence = false;
 };
 
+// Shared memory of one part of a robot (parts.h).
+class InParts : public OnChip {
+ public:
+  static constexpr bool in_parts = true;
+
+  // The same address in the memory of the block that has this part of the robot.
+  __device__ static Address of_part(Address at, std::uint32_t part) {
+#if __CUDA_ARCH__ >= 900
+    asm("mapa.shared::cluster.u32 %0, %0, %1;" : "+r"(at) : "r"(part));
+#endif
+    return at;
+  }
+  __device__ static void store_there(Address at, std::uint32_t offset, float value) {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("st.shared::cluster.f32 [%0], %1;" ::"r"(at + offset), "f"(value));
+#endif
+  }
+  // Stores the smaller of the old and the given value.
+  __device__ static void lower_there(Address at, std::uint32_t value) {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("red.relaxed.cluster.shared::cluster.min.u32 [%0], %1;" ::"r"(at), "r"(value) : "memory");
+#endif
+  }
+};
+
 // Device memory.
 class OffChip {
  public:
   using Address = char*;
   static constexpr bool on_chip = false;
   static constexpr bool keeps_valence = true;
+  static constexpr bool in_parts = false;
 
   __device__ static float load(Address at, std::uint32_t offset) {
     return *reinterpret_cast<volatile float*>(at + offset);

@@ -213,13 +213,13 @@ class PaddingPartners {
 
 }  // namespace
 
-Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs) {
-  const OwnedSprings owned = choose_owners(masses, std::move(springs));
+Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts) {
+  const OwnedSprings owned = choose_owners(masses, std::move(springs), ghosts);
   Schedule schedule;
   schedule.row_start.push_back(0);
   for (const std::uint32_t rows : owned.rows) schedule.row_start.push_back(schedule.row_start.back() + rows);
   schedule.entries = color_springs(owned.springs, schedule.row_start);
-  for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile) {
+  for (std::uint32_t tile = 0; tile < tiles_for(masses); ++tile) {
     PaddingPartners partners(owned, masses, tile);
     for (std::uint32_t row = schedule.row_start[tile]; row < schedule.row_start[tile + 1]; ++row)
       partners.fill(&schedule.entries[std::size_t{row} * lanes]);

@@ -48,7 +48,8 @@ struct Schedule {
   std::uint32_t rows() const { return row_start.back(); }
 };
 
-// `springs` by their number; which end is the owner may change. Slots are below `masses`.
-Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs);
+// `springs` by their number; which end is the owner may change. Slots are below `masses`, or belong to ghosts, which
+// choose_owners() explains. Tiles of ghosts have no rows.
+Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts = 0);
 
 }  // namespace mercury::cuda

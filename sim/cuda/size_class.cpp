@@ -5,6 +5,7 @@
 
 #include "mercury/parallel.h"
 #include "sim/cuda/block_layout.h"
+#include "sim/cuda/device_limits.h"
 #include "sim/cuda/kernels.h"
 
 namespace mercury::cuda {
@@ -48,6 +49,7 @@ void SizeClass::for_each_array(const Visit& visit) {
 }
 
 std::uint32_t SizeClass::append(std::size_t count) {
+  parts_stale_ = true;
   const std::uint32_t first = size();
   headers_.resize(first + count);
   robots_.resize(first + count);
@@ -145,6 +147,7 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
 }
 
 void SizeClass::truncate(std::uint32_t first_place) {
+  parts_stale_ = true;
   headers_.resize(first_place);
   robots_.resize(first_place);
   measures_.resize(first_place);
@@ -244,6 +247,44 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
   reserve_workspace(workspace);
   publish_own_models(configuration);
+  launch_in_parts_.reset();
+  if (!launch_.on_chip && launch_.contact_buckets == 0 && brain.scratch == 0 && device_limits().clusters)
+    choose_launch_in_parts(configuration, batch_size);
+  if (!launch_in_parts_) parts_ = {};
+}
+
+// As few parts as fit, since springs between parts are computed twice; but more if multiprocessors are left idle.
+void SizeClass::choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size) {
+  const DeviceLimits limits = device_limits();
+  const std::uint32_t fields = working_fields(configuration.solver, true);
+  std::vector<DeviceParts::Source> sources;
+  for (std::uint32_t place = 0; place < size(); ++place)
+    sources.push_back(
+        {robots_[place], slot_tables_[place].get(),
+         driven_ids_.empty()
+             ? std::span<const MaterialId>()
+             : std::span<const MaterialId>(driven_ids_).subspan(std::size_t{place} * max_materials, max_materials)});
+  const bool same_materials = same_materials_ && driven_materials_.size() == 0;
+  for (std::uint32_t parts = 2; parts <= most_parts; parts *= 2) {
+    const bool idle = parts < most_parts && batch_size * 2 * parts <= limits.multiprocessors;
+    if (idle || sizes_.tiles / parts * fields * field_bytes > limits.shared_per_block) continue;
+    const bool is_new = parts_stale_ || parts_.per_robot() != parts || parts_.fields() != fields;
+    if (is_new) {
+      parts_ = {};
+      parts_.split(sources, parts, sizes_);
+    }
+    for (const std::uint32_t blocks : {2u, 1u}) {
+      launch_in_parts_ = cuda::choose_launch_in_parts(configuration, view_of_parts(), same_materials, launch_.viscous,
+                                                      batch_size, table_chunks_, blocks);
+      if (launch_in_parts_) break;
+    }
+    if (!launch_in_parts_) continue;
+    if (is_new) parts_.upload(fields, urgent_->get());
+    parts_.copy_points(view(), urgent_->get());
+    urgent_->synchronize();
+    parts_stale_ = false;
+    return;
+  }
 }
 
 void SizeClass::address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {

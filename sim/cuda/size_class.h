@@ -27,6 +27,7 @@
 #include "sim/cuda/actuation.h"
 #include "sim/cuda/chunked_array.h"
 #include "sim/cuda/chunks.h"
+#include "sim/cuda/device_parts.h"
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/layout.h"
 #include "sim/cuda/step.h"
@@ -73,7 +74,11 @@ class SizeClass {
   const OwnModel* own_models() const { return own_models_.data(); }
   // Chooses how to launch it beside the other classes; `batch_size` = robots of all classes.
   void choose_launch(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain = {});
+  // Of whole robots.
   const LaunchConfiguration& launch() const { return launch_; }
+  // If clusters step the robots in parts: those, and their launch. Reports are made of whole robots, without a step.
+  const std::optional<LaunchConfiguration>& launch_in_parts() const { return launch_in_parts_; }
+  BatchView view_of_parts() const { return parts_.view(view()); }
 
   // The table of a place; publish_materials() or publish_all_materials() uploads it.
   std::span<Material> table(std::uint32_t place) {
@@ -129,6 +134,7 @@ class SizeClass {
   // this many fields per tile, or by slots (0).
   void address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);
   void reserve_workspace(std::size_t bytes_per_robot);
+  void choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size);
   // Replaces the material that each spring record names; `ids` = [place][max_materials], the new id by the old one.
   void rename_materials(std::span<const MaterialId> ids);
   // Those of a place that springs have, after air; max_materials elements.
@@ -148,6 +154,9 @@ class SizeClass {
   std::vector<std::uint64_t> first_mass_;  // as in set_first_masses()
   std::vector<Material> materials_;        // [place][max_materials]
   LaunchConfiguration launch_;
+  std::optional<LaunchConfiguration> launch_in_parts_;
+  DeviceParts parts_;
+  bool parts_stale_ = true;
   std::uint32_t address_fields_ = 0;  // by which spring records and face pairs address masses; 0 = slots
   std::uint32_t table_chunks_ = max_materials / lanes;  // LaunchConfiguration::table_chunks
   std::size_t workspace_stride_ = 0, perturbation_count_ = 0;

@@ -117,6 +117,7 @@ void SizeClass::begin_actuation() {
   driven_materials_ = DeviceArray<Material>(tables.size());
   driven_materials_.write(0, tables, urgent_->get());
   rename_materials(driven_ids_);
+  parts_stale_ = true;
   table_chunks_ = (most + lanes - 1) / lanes;
   phases_stale_ = true;
 }
@@ -130,6 +131,7 @@ void SizeClass::end_actuation() {
   rename_materials(ids);
   driven_materials_ = DeviceArray<Material>();
   driven_ids_.clear();
+  parts_stale_ = true;
   table_chunks_ = max_materials / lanes;
   phases_stale_ = true;
 }

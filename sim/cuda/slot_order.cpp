@@ -37,8 +37,9 @@ std::array<PerBank, lanes> unit_vectors() {
 
 class SlotSearch {
  public:
-  SlotSearch(const Robot& robot, std::span<const FacePair> pairs)
-      : masses_(static_cast<std::uint32_t>(robot.masses.size())), tiles_(tiles_for(masses_)) {
+  SlotSearch(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts)
+      : masses_(static_cast<std::uint32_t>(robot.masses.size())), own_(masses_ - ghosts), own_tiles_(tiles_for(own_)),
+        tiles_(own_tiles_ + tiles_for(ghosts)) {
     count_springs(robot);
     sort_by_valence();
     list_neighbors(robot);
@@ -59,18 +60,18 @@ class SlotSearch {
     for (std::uint32_t& first : first_neighbor_) first = std::exchange(count, count + first);
   }
 
-  // By counting. Until then tiles are numbered by descending valence.
+  // By counting. Until then tiles are numbered by descending valence. Ghosts keep their order.
   void sort_by_valence() {
     std::uint32_t most = 0;
-    for (std::uint32_t mass = 0; mass < masses_; ++mass) most = std::max(most, valence(mass));
+    for (std::uint32_t mass = 0; mass < own_; ++mass) most = std::max(most, valence(mass));
     std::vector<std::uint32_t> next(most + 1);
-    for (std::uint32_t mass = 0; mass < masses_; ++mass) ++next[most - valence(mass)];
+    for (std::uint32_t mass = 0; mass < own_; ++mass) ++next[most - valence(mass)];
     std::uint32_t count = 0;
     for (std::uint32_t& n : next) n = std::exchange(count, count + n);
-    sorted_.resize(masses_);
+    sorted_.resize(std::size_t{tiles_} * lanes);
     tile_.resize(masses_);
     for (std::uint32_t mass = 0; mass < masses_; ++mass) {
-      const std::uint32_t rank = next[most - valence(mass)]++;
+      const std::uint32_t rank = mass < own_ ? next[most - valence(mass)]++ : own_tiles_ * lanes + mass - own_;
       sorted_[rank] = static_cast<std::uint16_t>(mass);
       tile_[mass] = static_cast<std::uint16_t>(rank / lanes);
     }
@@ -94,16 +95,21 @@ class SlotSearch {
   }
 
   void place_tiles() {
-    std::vector<std::uint32_t> work(tiles_);
-    for (std::uint32_t rank = 0; rank < masses_; ++rank) work[rank / lanes] += valence(sorted_[rank]);
-    position_ = deal_tiles(work, tiles_per_warp(tiles_));
+    std::vector<std::uint32_t> work(own_tiles_);
+    for (std::uint32_t rank = 0; rank < own_; ++rank) work[rank / lanes] += valence(sorted_[rank]);
+    position_ = deal_tiles(work, tiles_per_warp(own_tiles_));
+    while (position_.size() < tiles_) position_.push_back(static_cast<std::uint32_t>(position_.size()));
+  }
+
+  std::uint32_t masses_of(std::uint32_t tile) const {
+    return std::min(lanes, tile < own_tiles_ ? own_ - tile * lanes : masses_ - own_ - (tile - own_tiles_) * lanes);
   }
 
   void choose_lanes() {
     slots_.resize(masses_);
     used_.resize(tiles_);
     for (std::uint32_t tile = 0; tile < tiles_; ++tile) {
-      const std::uint32_t size = std::min(masses_ - tile * lanes, lanes);
+      const std::uint32_t size = masses_of(tile);
       std::uint32_t free = size == lanes ? ~0u : (1u << size) - 1;
       for (std::uint32_t rank = tile * lanes; rank < tile * lanes + size; ++rank) {
         const std::uint32_t mass = sorted_[rank], lane = best_lane(mass, free);
@@ -138,13 +144,13 @@ class SlotSearch {
     std::uint16_t shared = 0, outer = 0;  // as a or c, as b or d
   };
 
-  std::uint32_t masses_, tiles_;
-  std::vector<std::uint32_t> first_neighbor_;  // [mass]
-  std::vector<std::uint16_t> sorted_;          // masses by descending valence
-  std::vector<std::uint16_t> tile_;            // [mass]
-  std::vector<std::uint16_t> neighbor_tiles_;  // those of mass m at [first_neighbor_[m], first_neighbor_[m + 1])
-  std::vector<Corners> corners_;               // [mass]
-  std::vector<std::uint32_t> position_;        // [tile]
+  std::uint32_t masses_, own_, own_tiles_, tiles_;  // own: without ghosts
+  std::vector<std::uint32_t> first_neighbor_;       // [mass]
+  std::vector<std::uint16_t> sorted_;               // masses by descending valence, [slot before tiles are placed]
+  std::vector<std::uint16_t> tile_;                 // [mass]
+  std::vector<std::uint16_t> neighbor_tiles_;       // those of mass m at [first_neighbor_[m], first_neighbor_[m + 1])
+  std::vector<Corners> corners_;                    // [mass]
+  std::vector<std::uint32_t> position_;             // [tile]
   const std::array<PerBank, lanes> units_ = unit_vectors();
   std::vector<PerBank> used_;                   // [tile] by its springs, those within it twice
   PerBank used_by_shared_{}, used_by_outer_{};  // by corners
@@ -153,7 +159,9 @@ class SlotSearch {
 
 }  // namespace
 
-SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs) { return SlotSearch(robot, pairs).take(); }
+SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts) {
+  return SlotSearch(robot, pairs, ghosts).take();
+}
 
 std::vector<std::uint32_t> deal_tiles(std::span<const std::uint32_t> work, std::uint32_t per_warp) {
   const auto tiles = static_cast<std::uint32_t>(work.size());

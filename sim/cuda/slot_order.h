@@ -14,6 +14,7 @@
 //    also lie in all banks alike (face_tiles.h), and count in the same way.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,20 +25,22 @@
 
 namespace mercury::cuda {
 
-// A permutation: `masses` masses stand in the slots 0 .. masses - 1.
+// A permutation: `masses` masses stand in the slots 0 .. masses - 1. Ghosts begin a tile of their own, so that slots
+// may be empty before them.
 struct SlotOrder {
   std::vector<std::uint16_t> slots;  // [mass]
 
   std::uint32_t slot_of(std::uint32_t mass) const { return slots[mass]; }
-  std::vector<std::uint16_t> masses() const {  // [slot]
-    std::vector<std::uint16_t> inverse(slots.size());
+  std::vector<std::uint16_t> masses() const {  // [slot], of empty ones 0
+    std::vector<std::uint16_t> inverse(slots.empty() ? 0 : std::ranges::max(slots) + std::size_t{1});
     for (std::size_t mass = 0; mass < slots.size(); ++mass) inverse[slots[mass]] = static_cast<std::uint16_t>(mass);
     return inverse;
   }
 };
 
-// `pairs` = pair_faces(robot). The order follows from the topology alone.
-SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs);
+// `pairs` = pair_faces(robot). The order follows from the topology alone. The last `ghosts` masses are ghosts
+// (parts.h).
+SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts = 0);
 
 // Positions for tiles whose work is given in descending order, so that the groups of `per_warp` consecutive positions
 // have about the same work. The last tile stays last, because it may be partly empty.

@@ -22,9 +22,10 @@ OwnedSpring exchanged_if(bool condition, OwnedSpring s) {
 
 class OwnerSearch {
  public:
-  OwnerSearch(std::size_t masses, std::vector<OwnedSpring> springs)
+  OwnerSearch(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts)
       : springs_(std::move(springs)), tiles_(tiles_for(masses)), partly_empty_(masses % lanes != 0 && tiles_ > 1),
-        load_(tiles_ * tile_counters) {
+        load_((tiles_ + tiles_for(ghosts)) * tile_counters) {
+    std::fill(load_.begin() + tiles_ * tile_counters, load_.end(), too_busy);
     if (partly_empty_) add_to_last_lanes(head_start);
     choose_first();
     even_out(3);
@@ -42,6 +43,8 @@ class OwnerSearch {
   static constexpr std::uint32_t max_visited = 12;
   // Springs that the lanes of a partly empty tile seem to have from the start. So other tiles own its springs.
   static constexpr int head_start = 16;
+  // The load of ghosts, to which no spring is given.
+  static constexpr int too_busy = 1 << 20;
 
   // A step of a chain: `spring` makes `counter` too full, and the counter before it less full.
   struct Link {
@@ -113,7 +116,7 @@ class OwnerSearch {
   }
 
   void lower_peaks() {
-    limit_.resize(tiles_);
+    limit_.resize(load_.size() / tile_counters);
     for (std::uint32_t tile = 0; tile < tiles_; ++tile) {
       const int limit = busiest(tile);
       limit_[tile] = static_cast<std::uint32_t>(limit);
@@ -215,7 +218,7 @@ class OwnerSearch {
   }
 
   std::vector<OwnedSpring> springs_;
-  std::uint32_t tiles_;
+  std::uint32_t tiles_;                                      // without those of ghosts
   bool partly_empty_;                                        // the last tile
   std::vector<int> load_;                                    // [counter]
   std::vector<std::uint32_t> limit_;                         // [tile]
@@ -227,8 +230,8 @@ class OwnerSearch {
 
 }  // namespace
 
-OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs) {
-  return OwnerSearch(masses, std::move(springs)).take();
+OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts) {
+  return OwnerSearch(masses, std::move(springs), ghosts).take();
 }
 
 }  // namespace mercury::cuda

@@ -48,7 +48,8 @@ struct OwnedSprings {
   }
 };
 
-// Exchanges the ends of springs, so that the tiles need few rows in all.
-OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs);
+// Exchanges the ends of springs, so that the tiles need few rows in all. Slots after the tiles of the masses are of
+// ghosts (parts.h), which own no springs: they are partners from the start, and stay so.
+OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts = 0);
 
 }  // namespace mercury::cuda

@@ -82,6 +82,18 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   return end;
 }
 
+// Of all threads that step one robot.
+template <class Memory>
+__device__ void robot_barrier() {
+#if __CUDA_ARCH__ >= 900
+  if constexpr (Memory::in_parts) {
+    asm volatile("barrier.cluster.arrive.release.aligned;\nbarrier.cluster.wait.acquire.aligned;" ::: "memory");
+    return;
+  }
+#endif
+  __syncthreads();
+}
+
 // Registers are limited so that a multiprocessor holds 28 warps (launch_configuration.cpp).
 template <Solver solver, class Given, class Memory, int record_words>
 __global__ void __maxnreg__(72)
@@ -97,21 +109,22 @@ __global__ void __maxnreg__(72)
     const ThreadContext<Memory>& thread = part.context.thread;
     if (thread.warp == 0 && thread.lane == 0) {
       *part.context.failure = {part.active() ? Failure::never : 0, Failure::never};
-      if (arguments.thoughts.thinkers)
+      if (!Memory::in_parts && arguments.thoughts.thinkers)
         part.context.next_thought[part.context.number] =
             part.context.has_robot ? first_thought(arguments, thread.robot) : Thoughts::none;
     }
-    if (arguments.thoughts.thinkers && arguments.steps > 0 && part.context.has_robot &&
+    if (!Memory::in_parts && arguments.thoughts.thinkers && arguments.steps > 0 && part.context.has_robot &&
         arguments.thoughts.thinkers[thread.robot] != Thoughts::none)
       load_brain<typename Part::Memory>(arguments, part.context.brain, part.context.number, thread.robot, thread.warp);
     part.stepper.load_lengths(part.context.lengths);
     part.stepper.load_state();
-    __syncthreads();
+    robot_barrier<Memory>();
   }
 
   for (std::uint32_t step = 0; step < arguments.steps;) {
-    const std::uint32_t end =
-        arguments.thoughts.thinkers ? think_if_due<Part>(arguments, model, step) : arguments.steps;
+    std::uint32_t end = arguments.steps;
+    if constexpr (!Memory::in_parts)
+      if (arguments.thoughts.thinkers) end = think_if_due<Part>(arguments, model, step);
     // What the inner loop needs is worked out behind the call that a thought is: kept across it, it would cost the loop
     // an eighth of its speed.
     Part part(arguments, model);
@@ -120,41 +133,45 @@ __global__ void __maxnreg__(72)
     int list_contacts = 1;
     const std::uint32_t moving = materials.moving_chunks();
     for (; step < end; ++step) {
-      if constexpr (EnvironmentModel::has_contacts)
+      if constexpr (Part::Stepper::has_contacts)
         if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts();
       stepper.add_environment(step);
       if constexpr (solver == Solver::xpbd) {
         if (EnvironmentModel::has_faces || EnvironmentModel::has_contacts || arguments.batch.perturbation_count > 0)
-          __syncthreads();
+          robot_barrier<Memory>();
         stepper.predict(step);
-        __syncthreads();
+        stepper.export_state();
+        robot_barrier<Memory>();
       } else if (stepper.sums_apart()) {
-        __syncthreads();
+        robot_barrier<Memory>();
         stepper.accelerate(step);
-        __syncthreads();
+        stepper.export_state();
+        robot_barrier<Memory>();
       }
       stepper.add_springs(step);
       stepper.prefetch_end();
-      __syncthreads();
+      robot_barrier<Memory>();
       stepper.end(step);
+      stepper.export_state();
       stepper.prefetch_environment();
       materials.update(arguments, step + 1, moving);
-      if constexpr (EnvironmentModel::has_contacts)
+      if constexpr (Part::Stepper::has_contacts)
         list_contacts = __syncthreads_or(stepper.contacts_stale());
       else
-        __syncthreads();
+        robot_barrier<Memory>();
     }
   }
   Part part(arguments, model);
   const ThreadContext<Memory>& thread = part.context.thread;
   const bool active = part.active();
   if (active) part.stepper.store_status();
-  if (arguments.report) {
-    part.materials.write_rates(arguments, arguments.steps);
-    const std::uint32_t table = launch.shared_table ? 0 : thread.robot;
-    report<typename Part::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
-                                 part.context.has_robot ? arguments.report + thread.robot : nullptr);
-  }
+  if constexpr (!Memory::in_parts)
+    if (arguments.report) {
+      part.materials.write_rates(arguments, arguments.steps);
+      const std::uint32_t table = launch.shared_table ? 0 : thread.robot;
+      report<typename Part::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
+                                   part.context.has_robot ? arguments.report + thread.robot : nullptr);
+    }
   if (active) part.stepper.store_state();
 }
 
@@ -162,6 +179,7 @@ __global__ void __maxnreg__(72)
 template <Solver solver, class EnvironmentModel, int record_words>
 auto kernel_for(const LaunchConfiguration& launch) {
   if constexpr (std::is_same_v<EnvironmentModel, OwnModels>) {
+    if (launch.parts > 1) return step_kernel<solver, EnvironmentModel, InParts, record_words>;
     if (!launch.on_chip) return step_kernel<solver, EnvironmentModel, OffChip, record_words>;
     if constexpr (solver == Solver::xpbd)
       if (!launch.valence_on_chip) return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
@@ -177,22 +195,45 @@ auto kernel_for(const LaunchConfiguration& launch) {
 
 // Any thread may start this kernel with less shared memory, so it is allowed the most.
 template <class Kernel>
-void prepare(Kernel kernel) {
+void prepare(Kernel kernel, const LaunchConfiguration& launch) {
   const auto bytes = static_cast<int>(device_limits().shared_per_block);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), "reserving shared memory");
+  if (launch.parts > 1)
+    check(cudaFuncSetAttribute(kernel, cudaFuncAttributeNonPortableClusterSizeAllowed, 1), "allowing clusters");
 }
+
+// How a kernel is started whose blocks each step `launch.robots_per_block` robots or one part of one.
+class Start {
+ public:
+  Start(const LaunchConfiguration& launch, std::uint32_t robots, cudaStream_t stream) {
+    configuration_.gridDim = divide_up(robots * launch.parts, launch.robots_per_block);
+    configuration_.blockDim = launch.robots_per_block * launch.warps_per_robot * lanes;
+    configuration_.dynamicSmemBytes = launch.shared_bytes;
+    configuration_.stream = stream;
+    cluster_.id = cudaLaunchAttributeClusterDimension;
+    cluster_.val.clusterDim = {launch.parts, 1, 1};
+    configuration_.attrs = &cluster_;
+    configuration_.numAttrs = launch.parts > 1 ? 1 : 0;
+  }
+  Start(const Start&) = delete;
+  Start& operator=(const Start&) = delete;
+
+  const cudaLaunchConfig_t& configuration() const { return configuration_; }
+
+ private:
+  cudaLaunchConfig_t configuration_{};
+  cudaLaunchAttribute cluster_{};
+};
 
 template <Solver solver, class EnvironmentModel>
 void start(const EnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream) {
   const LaunchConfiguration& launch = arguments.launch;
   const auto kernel = kernel_for<solver, EnvironmentModel>(launch);
-  const std::uint32_t blocks = (arguments.batch.robot_count + launch.robots_per_block - 1) / launch.robots_per_block;
-  const std::uint32_t threads = launch.robots_per_block * launch.warps_per_robot * lanes;
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout,
                              static_cast<int>(launch.shared_percent)),
         "dividing memory between blocks and cache");
-  kernel<<<blocks, threads, launch.shared_bytes, stream>>>(arguments, model);
-  check(cudaGetLastError(), "starting the step kernel");
+  const Start how(launch, arguments.batch.robot_count, stream);
+  check(cudaLaunchKernelEx(&how.configuration(), kernel, arguments, model), "starting the step kernel");
 }
 
 template <class Use>
@@ -210,8 +251,13 @@ auto with_kernel(Solver solver, const StepModel& model, const LaunchConfiguratio
 
 std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const LaunchConfiguration& launch) {
   return with_kernel(solver, model, launch, [&](auto kernel) {
-    prepare(kernel);
+    prepare(kernel, launch);
     int blocks = 0;
+    if (launch.parts > 1) {
+      const Start how(launch, 1, nullptr);
+      check(cudaOccupancyMaxActiveClusters(&blocks, kernel, &how.configuration()), "querying the occupancy");
+      return static_cast<std::uint32_t>(blocks);
+    }
     const auto threads = static_cast<int>(launch.robots_per_block * launch.warps_per_robot * lanes);
     check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, launch.shared_bytes),
           "querying the occupancy");
@@ -220,7 +266,7 @@ std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const Laun
 }
 
 void prepare_steps(Solver solver, const StepModel& model, const LaunchConfiguration& launch) {
-  with_kernel(solver, model, launch, [](auto kernel) { prepare(kernel); });
+  with_kernel(solver, model, launch, [&](auto kernel) { prepare(kernel, launch); });
 }
 
 void launch_steps(Solver solver, const StepModel& model, const StepArguments& arguments, cudaStream_t stream) {

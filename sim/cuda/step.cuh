@@ -13,6 +13,8 @@ template <Solver solver, class EnvironmentModel, class Memory, int record_words>
 class RobotStepper {
  public:
   using Robot = BlockRobot<solver, Memory, record_words>;
+  // Robots in parts have none.
+  static constexpr bool has_contacts = EnvironmentModel::has_contacts && !Memory::in_parts;
 
   __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model,
                           const BlockContext<solver, Memory>& context)
@@ -29,10 +31,16 @@ class RobotStepper {
   __device__ void load_state() {
     for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); tile += tiles_at_once)
       load_tiles(tile, min(tiles_at_once, robot_.last_tile() - tile));
+    if constexpr (Memory::in_parts) {
+      const std::uint32_t end = robot_.header().tiles + batch().parts.headers[blockIdx.x].ghost_tiles;
+      for (std::uint32_t tile = robot_.header().tiles + robot_.context().warp; tile < end; tile += robot_.warps())
+        load_tiles(tile, 1);
+    }
   }
 
   __device__ void store_state() const {
     for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
+      if (Memory::in_parts && !robot_.has_mass(tile)) break;
       float* to = robot_.state(tile);
       for (std::uint32_t field = 0; field < state_fields; ++field)
         to[field * lanes] = robot_.own_mass(tile).value(field);
@@ -42,6 +50,7 @@ class RobotStepper {
   // The robot's first thread stores when it exploded, if it did.
   __device__ void store_status() const {
     if (robot_.thread() != 0 || !failure_->happened()) return;
+    if (Memory::in_parts && blockIdx.x % batch().parts.per_robot != 0) return;  // they all have the same failure
     batch().statuses[robot_.context().robot] = {robot_.arguments().clock.step + failure_->step(), failure_->bad_mass};
   }
 
@@ -62,7 +71,7 @@ class RobotStepper {
       if (model_.acts_on_faces())
         faces_.add(robot_, model_, environment_scale(), step, dither_of_step(robot_.arguments().clock.step + step),
                    *failure_);
-    if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
+    if constexpr (has_contacts) contacts_.add(robot_);
   }
 
   // Whether the forces of the environment are to be summed apart from those of springs, by accelerate().
@@ -113,7 +122,26 @@ class RobotStepper {
     const float longest = add_all_springs();
     // Padding counts in add_all() and may be long, so a failure is checked again without it.
     if (longest > limit && SpringPass<Robot>::longest_spring(robot_.arguments(), robot_.context()) > limit)
-      failure_->report(step, phase_springs, Failure::never);
+      report_failure(step, phase_springs, Failure::never);
+  }
+
+  // Copies the state of this warp's masses to where other parts of the robot have ghosts of them. A barrier follows.
+  __device__ void export_state() const {
+    if constexpr (Memory::in_parts) {
+      __syncwarp();
+      const PartsView& parts = batch().parts;
+      const std::uint32_t* const start = parts.export_start + robot_.chunk() * (batch().tile_stride + 1);
+      const Export* const exports = parts.exports + robot_.chunk() * parts.export_stride;
+      const bool moving = model_.acts_on_faces() || robot_.arguments().launch.viscous;
+      const std::uint32_t end = __ldg(start + robot_.last_tile());
+      for (std::uint32_t i = __ldg(start + robot_.first_tile()) + robot_.context().lane; i < end; i += lanes) {
+        const uint2 packed = __ldg(reinterpret_cast<const uint2*>(exports + i));
+        const Mass<Memory> mass = robot_.mass_at(packed.x & 0xffff);
+        const auto ghost = Memory::of_part(robot_.mass_at(packed.x >> 16).at, packed.y);
+        for (std::uint32_t field = field_x; field < (moving ? field_v + 3 : field_v); ++field)
+          Memory::store_there(ghost, field * field_bytes, mass.value(field));
+      }
+    }
   }
 
   // Loads early what end() needs first from device memory.
@@ -149,10 +177,10 @@ class RobotStepper {
         end_step(x, v, point.inverse_inertia, model_, end_constants());
       else
         end_step(x, v, model_, end_constants());
-      if constexpr (EnvironmentModel::has_contacts) farthest.add(mass, x);
+      if constexpr (has_contacts) farthest.add(mass, x);
       store(step, phase_end, tile, x, v);
     }
-    if constexpr (EnvironmentModel::has_contacts) contacts_.moved(farthest.bound(constants()));
+    if constexpr (has_contacts) contacts_.moved(farthest.bound(constants()));
   }
 
  private:
@@ -218,9 +246,17 @@ class RobotStepper {
     for (std::uint32_t p = 0; p < batch().perturbation_count; ++p) {
       const DevicePerturbation& perturbation = batch().perturbations[p];
       if (perturbation.robot != robot_.context().robot) continue;
-      const Vec3 units = perturbation.stiffness * environment_scale() *
-                         (perturbation.target - robot_.mass_at(perturbation.slot).vector(field_x));
-      if (fits(units)) robot_.mass_at(perturbation.slot).add_to_sum(units);
+      std::uint32_t slot = perturbation.slot;
+      if constexpr (Memory::in_parts) {
+        const PartsView& parts = batch().parts;
+        const std::uint32_t place =
+            parts.places[std::size_t{robot_.context().robot} * parts.robot_tile_stride * lanes + slot];
+        if (place >> 16 != blockIdx.x % parts.per_robot) continue;
+        slot = place & 0xffff;
+      }
+      const Vec3 units =
+          perturbation.stiffness * environment_scale() * (perturbation.target - robot_.mass_at(slot).vector(field_x));
+      if (fits(units)) robot_.mass_at(slot).add_to_sum(units);
     }
   }
 
@@ -252,13 +288,17 @@ class RobotStepper {
             static_cast<float>(mass.sum(2) - bias) * inverse_scale};
   }
 
+  __device__ void report_failure(std::uint32_t step, Phase phase, std::uint32_t mass) {
+    failure_->report<Memory>(robot_.arguments().launch, step, phase, mass);
+  }
+
   // Stores a mass's new state if it is finite. If not, the mass stays where it is, and the robot has exploded.
   __device__ void store(std::uint32_t step, Phase phase, std::uint32_t tile, Vec3 x, Vec3 v) {
     if (within_reach(x)) {
       robot_.own_mass(tile).set_vector(field_x, x);
       robot_.own_mass(tile).set_vector(field_v, v);
     } else {
-      failure_->report(step, phase, robot_.number_of(robot_.own_slot(tile)));
+      report_failure(step, phase, robot_.number_of(robot_.own_slot(tile)));
     }
   }
 

@@ -9,6 +9,12 @@
 
 namespace mercury::cuda {
 
+extern __shared__ char shared_memory[];
+
+__device__ inline std::uint32_t shared_address(const void* pointer) {
+  return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
+}
+
 // The phases of a step. A phase is skipped if the robot failed in an earlier one, or in an earlier step.
 enum Phase : std::uint32_t { phase_environment = 0, phase_prediction = 1, phase_springs = 2, phase_end = 3 };
 
@@ -22,9 +28,18 @@ struct Failure {
   __device__ bool before(std::uint32_t step, Phase phase) const {
     return *static_cast<const volatile std::uint32_t*>(&when) <= 4 * step + phase;
   }
-  __device__ void report(std::uint32_t step, Phase phase, std::uint32_t mass) {
-    atomicMin(&when, 1 + 4 * step + phase);
-    atomicMin(&bad_mass, mass);
+  // To all parts of the robot, if there are several.
+  template <class Memory>
+  __device__ void report(const LaunchConfiguration& launch, std::uint32_t step, Phase phase, std::uint32_t mass) {
+    if constexpr (Memory::in_parts) {
+      for (std::uint32_t part = 0; part < launch.parts; ++part) {
+        Memory::lower_there(Memory::of_part(shared_address(&when), part), 1 + 4 * step + phase);
+        Memory::lower_there(Memory::of_part(shared_address(&bad_mass), part), mass);
+      }
+    } else {
+      atomicMin(&when, 1 + 4 * step + phase);
+      atomicMin(&bad_mass, mass);
+    }
   }
   __device__ bool happened() const { return when != never; }
   __device__ std::uint32_t step() const { return (when - 1) / 4; }
@@ -39,12 +54,6 @@ struct ThreadContext {
   std::uint32_t lengths;
   std::uint32_t relaxation_times;  // by material, if the robot is viscous
 };
-
-extern __shared__ char shared_memory[];
-
-__device__ inline std::uint32_t shared_address(const void* pointer) {
-  return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
-}
 
 // The parts of shared memory that belong to a thread's robot.
 template <Solver solver, class Memory>
@@ -70,7 +79,7 @@ struct BlockContext {
     const std::uint32_t table_copies = 1u << launch.table_copy_bits;
     const BlockLayout layout = block_layout(launch, batch.tile_stride, fields);
     const std::uint32_t working_bytes = batch.tile_stride * fields * field_bytes;
-    first_robot = blockIdx.x * launch.robots_per_block;
+    first_robot = Memory::in_parts ? blockIdx.x / batch.parts.per_robot : blockIdx.x * launch.robots_per_block;
     has_robot = first_robot + number < batch.robot_count;
     thread.robot = min(first_robot + number, batch.robot_count - 1);
     thread.warp = block_warp % launch.warps_per_robot;

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/cuda/device_parts.h"
+
+#include <algorithm>
+
+#include "mercury/parallel.h"
+#include "sim/cuda/kernels.h"
+
+namespace mercury::cuda {
+namespace {
+
+std::vector<const Robot*> robots_of(std::span<const DeviceParts::Source> sources) {
+  std::vector<const Robot*> robots;
+  for (const DeviceParts::Source& source : sources) robots.push_back(source.robot);
+  return robots;
+}
+
+template <class T>
+DeviceArray<T> on_device(std::span<const T> values, cudaStream_t stream) {
+  DeviceArray<T> array(values.size());
+  array.write(0, values, stream);
+  return array;
+}
+
+}  // namespace
+
+void DeviceParts::split(std::span<const Source> robots, std::uint32_t parts, const ChunkSizes& sizes) {
+  sources_.assign(robots.begin(), robots.end());
+  record_words_ = sizes.record_words;
+  view_.per_robot = parts;
+  view_.robot_tile_stride = sizes.tiles;
+  tile_stride_ = row_stride_ = face_stride_ = view_.export_stride = 0;
+  first_of_topology_ = first_of_topology(robots_of(robots));
+  split_.assign(robots.size(), {});
+  parallel_for(0, robots.size(), [&](std::size_t i) {
+    if (first_of_topology_[i] == i) split_[i] = cuda::split(*robots[i].robot, *robots[i].order, parts);
+  });
+  for (const std::vector<Part>& of_robot : split_)
+    for (const Part& part : of_robot) {
+      const auto raise = [](std::uint32_t& stride, std::size_t to) {
+        stride = std::max(stride, static_cast<std::uint32_t>(to));
+      };
+      raise(tile_stride_, part.tiles());
+      raise(row_stride_, part.arrangement.schedule.rows());
+      raise(face_stride_, part.arrangement.faces.size());
+      raise(view_.export_stride, part.exports.size());
+    }
+}
+
+void DeviceParts::upload(std::uint32_t fields, cudaStream_t stream) {
+  fields_ = fields;
+  const std::size_t parts = sources_.size() * view_.per_robot, slots = std::size_t{tile_stride_} * lanes;
+  const std::size_t words = std::size_t{row_stride_} * lanes * record_words_;
+  std::vector<PartHeader> headers(parts);
+  std::vector<std::uint32_t> springs(parts * words + rows_at_once * lanes * 2), incoming(parts * slots);
+  std::vector<std::uint32_t> row_start(parts * (tile_stride_ + 1)), export_start(parts * (tile_stride_ + 1));
+  std::vector<std::uint32_t> face_dithers(parts * face_stride_);
+  std::vector<std::uint32_t> places(sources_.size() * view_.robot_tile_stride * lanes);
+  std::vector<FacePair> faces(parts * face_stride_);
+  std::vector<std::uint16_t> slot_map(parts * slots);
+  std::vector<Export> exports(parts * view_.export_stride);
+  parallel_for(0, parts, [&](std::size_t i) {
+    const std::size_t robot = i / view_.per_robot;
+    const Source& source = sources_[robot];
+    const Part& part = split_[first_of_topology_[robot]][i % view_.per_robot];
+    const Schedule& schedule = part.arrangement.schedule;
+    headers[i] = {part.own, part.own_tiles(), part.tiles() - part.own_tiles(),
+                  static_cast<std::uint32_t>(part.arrangement.faces.size())};
+    const RestLengths rest = record_words_ == 1 ? rest_lengths(*source.robot) : RestLengths{};
+    fill_records(std::span(springs).subspan(i * words, words), *source.robot, schedule, rest,
+                 {part.springs, source.materials, fields});
+    std::ranges::copy(schedule.incoming_counts, incoming.begin() + static_cast<std::ptrdiff_t>(i * slots));
+    const auto first_tile = static_cast<std::ptrdiff_t>(i * (tile_stride_ + 1));
+    std::ranges::copy(schedule.row_start, row_start.begin() + first_tile);
+    std::ranges::copy(part.export_start, export_start.begin() + first_tile);
+    const auto first_face = static_cast<std::ptrdiff_t>(i * face_stride_);
+    std::ranges::copy(part.face_dithers, face_dithers.begin() + first_face);
+    std::ranges::transform(part.arrangement.faces, faces.begin() + first_face, [&](const FacePair& p) {
+      const auto address = [&](std::uint16_t slot) { return static_cast<std::uint16_t>(offset_of_slot(slot, fields)); };
+      return FacePair{address(p.a), address(p.b), address(p.c), address(p.d)};
+    });
+    std::ranges::copy(part.exports, exports.begin() + static_cast<std::ptrdiff_t>(i * view_.export_stride));
+    // Empty slots read some mass at the start, and then have its position. No spring leads there.
+    const std::span slots_of_part = std::span(slot_map).subspan(i * slots, slots);
+    std::ranges::fill(slots_of_part, source.order->slots[part.masses.front()]);
+    for (std::uint32_t mass = 0; mass < part.masses.size(); ++mass) {
+      const std::uint32_t slot = part.arrangement.order->slot_of(mass),
+                          whole = source.order->slot_of(part.masses[mass]);
+      slots_of_part[slot] = static_cast<std::uint16_t>(whole);
+      if (mass < part.own)
+        places[robot * view_.robot_tile_stride * lanes + whole] =
+            static_cast<std::uint32_t>(i % view_.per_robot) << 16 | slot;
+    }
+  });
+  const auto replace = [&]<class T>(DeviceArray<T>& array, const std::vector<T>& values) {
+    array = {};
+    array = on_device(std::span<const T>(values), stream);
+  };
+  replace(headers_, headers);
+  replace(springs_, springs);
+  replace(incoming_counts_, incoming);
+  replace(row_start_, row_start);
+  replace(export_start_, export_start);
+  replace(face_dithers_, face_dithers);
+  replace(places_, places);
+  replace(face_pairs_, faces);
+  replace(slots_, slot_map);
+  replace(exports_, exports);
+  split_.clear();
+}
+
+void DeviceParts::copy_points(const BatchView& robots, cudaStream_t stream) {
+  if (!robots.points) {
+    points_ = {};
+    return;
+  }
+  const std::size_t slots = std::size_t{robots.robot_count} * view_.per_robot * tile_stride_ * lanes;
+  if (points_.size() != slots) points_ = DeviceArray<PointProperties>(slots);
+  copy_points_to_parts(view(robots), robots.points, points_.data(), stream);
+}
+
+BatchView DeviceParts::view(BatchView robots) const {
+  robots.springs = springs_.data();
+  robots.row_start = row_start_.data();
+  robots.face_pairs = face_pairs_.data();
+  robots.incoming_counts = incoming_counts_.data();
+  robots.tile_stride = tile_stride_;
+  robots.row_stride = row_stride_;
+  robots.face_stride = face_stride_;
+  robots.parts = view_;
+  robots.parts.headers = headers_.data();
+  robots.parts.slots = slots_.data();
+  robots.parts.face_dithers = face_dithers_.data();
+  robots.parts.exports = exports_.data();
+  robots.parts.export_start = export_start_.data();
+  robots.parts.places = places_.data();
+  if (points_.size() > 0) robots.points = points_.data();
+  return robots;
+}
+
+}  // namespace mercury::cuda
