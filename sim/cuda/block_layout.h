@@ -81,9 +81,14 @@ inline std::uint32_t contact_buckets(const Environment& environment, std::uint32
   return has_contacts(environment) ? std::bit_ceil(tiles * lanes) : 0;
 }
 
-// Bytes of ContactMemory (contacts.cuh).
+// Bytes of ContactMemory (contacts.cuh): the list, and the grid of a robot of this many tiles. The list of a robot in
+// parts begins with two votes.
+inline constexpr std::uint32_t contact_list_bytes = (1 + contact_list_size) * 4, contact_vote_bytes = 8;
+MERCURY_HOST_DEVICE std::uint32_t contact_grid_bytes(std::uint32_t buckets, std::uint32_t tiles) {
+  return buckets * 4 + tiles * lanes * 2;
+}
 MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint32_t tiles) {
-  return buckets == 0 ? 0 : (1 + contact_list_size + buckets) * 4 + tiles * lanes * 2;
+  return buckets == 0 ? 0 : contact_list_bytes + contact_grid_bytes(buckets, tiles);
 }
 
 // Pairs that the grid finds, joined or not, are written down until there are this many per slot.
@@ -92,6 +97,12 @@ inline constexpr std::uint32_t near_pairs_per_slot = 9;
 // Bytes in device memory that ContactPass needs beside them.
 inline std::uint32_t contact_workspace_bytes(std::uint32_t tiles) {
   return tiles * lanes * (3 * sizeof(float) + near_pairs_per_slot * sizeof(std::uint32_t));
+}
+// The same for a robot in parts of `part_tiles` each, with the grid, which all parts share.
+inline std::size_t contact_workspace_bytes_in_parts(std::uint32_t buckets, std::uint32_t tiles, std::uint32_t parts,
+                                                    std::uint32_t part_tiles) {
+  return contact_grid_bytes(buckets, tiles) +
+         lanes * (tiles * 3 * sizeof(float) + parts * part_tiles * near_pairs_per_slot * sizeof(std::uint32_t));
 }
 
 // `tiles` = of the largest robot, `fields` = of a tile in working memory.
@@ -105,7 +116,9 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
   layout.lengths = layout.failures + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
   layout.relaxation_times = layout.lengths + (launch.viscous ? tables * launch.table_chunks * lanes * 4 : 0);
   layout.contacts = layout.relaxation_times;
-  if (launch.contacts_on_chip)
+  if (launch.parts > 1 && launch.contact_buckets > 0)
+    layout.contacts += contact_vote_bytes + contact_list_bytes;
+  else if (launch.contacts_on_chip)
     layout.contacts += launch.robots_per_block * contact_bytes(launch.contact_buckets, tiles);
   layout.brains = layout.contacts + launch.robots_per_block * launch.brain.total();
   layout.total = layout.brains;

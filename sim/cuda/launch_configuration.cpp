@@ -112,6 +112,7 @@ std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& c
                                                           std::uint32_t table_chunks, std::uint32_t blocks) {
   LaunchConfiguration launch;
   launch.parts = parts.parts.per_robot;
+  launch.contact_buckets = contact_buckets(configuration.environment, parts.parts.robot_tile_stride);
   launch.shared_table = same_materials;
   launch.viscous = viscous;
   launch.table_chunks = table_chunks;

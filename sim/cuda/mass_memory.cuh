@@ -52,12 +52,29 @@ class InParts : public OnChip {
 #endif
     return at;
   }
+  __device__ static float load_there(Address at, std::uint32_t offset) {
+    float value = 0;
+#if __CUDA_ARCH__ >= 900
+    asm volatile("ld.shared::cluster.f32 %0, [%1];" : "=f"(value) : "r"(at + offset));
+#endif
+    return value;
+  }
+  __device__ static void add_there(Address at, std::uint32_t offset, int value) {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("red.relaxed.cluster.shared::cluster.add.s32 [%0], %1;" ::"r"(at + offset), "r"(value));
+#endif
+  }
   __device__ static void store_there(Address at, std::uint32_t offset, float value) {
 #if __CUDA_ARCH__ >= 900
     asm volatile("st.shared::cluster.f32 [%0], %1;" ::"r"(at + offset), "f"(value));
 #endif
   }
-  // Stores the smaller of the old and the given value.
+  // Stores the smaller or the larger of the old and the given value.
+  __device__ static void raise_there(Address at, std::uint32_t value) {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("red.relaxed.cluster.shared::cluster.max.u32 [%0], %1;" ::"r"(at), "r"(value) : "memory");
+#endif
+  }
   __device__ static void lower_there(Address at, std::uint32_t value) {
 #if __CUDA_ARCH__ >= 900
     asm volatile("red.relaxed.cluster.shared::cluster.min.u32 [%0], %1;" ::"r"(at), "r"(value) : "memory");

@@ -245,12 +245,17 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
-  reserve_workspace(workspace);
   publish_own_models(configuration);
   launch_in_parts_.reset();
-  if (!launch_.on_chip && launch_.contact_buckets == 0 && brain.scratch == 0 && device_limits().clusters)
+  if (!launch_.on_chip && brain.scratch == 0 && device_limits().clusters)
     choose_launch_in_parts(configuration, batch_size);
-  if (!launch_in_parts_) parts_ = {};
+  if (!launch_in_parts_)
+    parts_ = {};
+  else if (launch_.contact_buckets > 0)
+    workspace =
+        std::max(workspace, contact_workspace_bytes_in_parts(launch_.contact_buckets, sizes_.tiles,
+                                                             launch_in_parts_->parts, view_of_parts().tile_stride));
+  reserve_workspace(workspace);
 }
 
 // As few parts as fit, since springs between parts are computed twice; but more if multiprocessors are left idle.

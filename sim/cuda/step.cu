@@ -82,18 +82,6 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   return end;
 }
 
-// Of all threads that step one robot.
-template <class Memory>
-__device__ void robot_barrier() {
-#if __CUDA_ARCH__ >= 900
-  if constexpr (Memory::in_parts) {
-    asm volatile("barrier.cluster.arrive.release.aligned;\nbarrier.cluster.wait.acquire.aligned;" ::: "memory");
-    return;
-  }
-#endif
-  __syncthreads();
-}
-
 // Registers are limited so that a multiprocessor holds 28 warps (launch_configuration.cpp).
 template <Solver solver, class Given, class Memory, int record_words>
 __global__ void __maxnreg__(72)
@@ -118,6 +106,7 @@ __global__ void __maxnreg__(72)
       load_brain<typename Part::Memory>(arguments, part.context.brain, part.context.number, thread.robot, thread.warp);
     part.stepper.load_lengths(part.context.lengths);
     part.stepper.load_state();
+    if constexpr (EnvironmentModel::has_contacts) part.stepper.begin_contacts();
     robot_barrier<Memory>();
   }
 
@@ -133,8 +122,8 @@ __global__ void __maxnreg__(72)
     int list_contacts = 1;
     const std::uint32_t moving = materials.moving_chunks();
     for (; step < end; ++step) {
-      if constexpr (Part::Stepper::has_contacts)
-        if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts();
+      if constexpr (EnvironmentModel::has_contacts)
+        if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts(step);
       stepper.add_environment(step);
       if constexpr (solver == Solver::xpbd) {
         if (EnvironmentModel::has_faces || EnvironmentModel::has_contacts || arguments.batch.perturbation_count > 0)
@@ -155,8 +144,8 @@ __global__ void __maxnreg__(72)
       stepper.export_state();
       stepper.prefetch_environment();
       materials.update(arguments, step + 1, moving);
-      if constexpr (Part::Stepper::has_contacts)
-        list_contacts = __syncthreads_or(stepper.contacts_stale());
+      if constexpr (EnvironmentModel::has_contacts)
+        list_contacts = stepper.contacts_stale(step);
       else
         robot_barrier<Memory>();
     }

@@ -13,9 +13,6 @@ template <Solver solver, class EnvironmentModel, class Memory, int record_words>
 class RobotStepper {
  public:
   using Robot = BlockRobot<solver, Memory, record_words>;
-  // Robots in parts have none.
-  static constexpr bool has_contacts = EnvironmentModel::has_contacts && !Memory::in_parts;
-
   __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model,
                           const BlockContext<solver, Memory>& context)
       : robot_(arguments, context.thread), model_(model), contacts_(robot_), failure_(context.failure) {}
@@ -54,9 +51,10 @@ class RobotStepper {
     batch().statuses[robot_.context().robot] = {robot_.arguments().clock.step + failure_->step(), failure_->bad_mass};
   }
 
-  // All threads of the block must call this, since it has barriers.
-  __device__ void list_contacts() { contacts_.update_list(robot_); }
-  __device__ bool contacts_stale() const { return contacts_.stale(robot_); }
+  // All threads of the block must call these, since they have barriers or are followed by one.
+  __device__ void begin_contacts() { contacts_.begin(robot_); }
+  __device__ void list_contacts(std::uint32_t step) { contacts_.update_list(robot_, step); }
+  __device__ bool contacts_stale(std::uint32_t step) const { return contacts_.stale(robot_, step); }
 
   // Loads early what add_environment() needs first.
   __device__ void prefetch_environment() {
@@ -71,7 +69,7 @@ class RobotStepper {
       if (model_.acts_on_faces())
         faces_.add(robot_, model_, environment_scale(), step, dither_of_step(robot_.arguments().clock.step + step),
                    *failure_);
-    if constexpr (has_contacts) contacts_.add(robot_);
+    if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
   }
 
   // Whether the forces of the environment are to be summed apart from those of springs, by accelerate().
@@ -177,10 +175,10 @@ class RobotStepper {
         end_step(x, v, point.inverse_inertia, model_, end_constants());
       else
         end_step(x, v, model_, end_constants());
-      if constexpr (has_contacts) farthest.add(mass, x);
+      if constexpr (EnvironmentModel::has_contacts) farthest.add(mass, x);
       store(step, phase_end, tile, x, v);
     }
-    if constexpr (has_contacts) contacts_.moved(farthest.bound(constants()));
+    if constexpr (EnvironmentModel::has_contacts) contacts_.moved(farthest.bound(constants()));
   }
 
  private:

@@ -15,6 +15,18 @@ __device__ inline std::uint32_t shared_address(const void* pointer) {
   return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
 }
 
+// Of all threads of the block, or of those of all parts of a robot.
+template <class Memory>
+__device__ void robot_barrier() {
+#if __CUDA_ARCH__ >= 900
+  if constexpr (Memory::in_parts) {
+    asm volatile("barrier.cluster.arrive.release.aligned;\nbarrier.cluster.wait.acquire.aligned;" ::: "memory");
+    return;
+  }
+#endif
+  __syncthreads();
+}
+
 // The phases of a step. A phase is skipped if the robot failed in an earlier one, or in an earlier step.
 enum Phase : std::uint32_t { phase_environment = 0, phase_prediction = 1, phase_springs = 2, phase_end = 3 };
 
