@@ -117,9 +117,11 @@ void describe_fit(const Robot& robot) {
                                                         : "more than the 48 kB of the smallest CUDA devices"));
   for (int device = 0; device < cuda_device_count(); ++device) {
     const ChipFit fit = chip_fit(robot, configuration, device);
-    const char* where = !fit.on_chip ? "does not fit, stepped in device memory, more slowly"
-                        : !fit.contacts_on_chip && has_contacts(configuration.environment) ? "fits but for its contacts"
-                                                                                           : "fits";
+    const std::string where = !fit.on_chip     ? "does not fit, stepped in device memory, more slowly"
+                              : fit.blocks > 1 ? fmt::format("fits in {} parts", fit.blocks)
+                              : !fit.contacts_on_chip && has_contacts(configuration.environment)
+                                  ? "fits but for its contacts"
+                                  : "fits";
     print_line("", fmt::format("{} ({} a block): {}, {} such robots at once", cuda_device_name(device),
                                kilobytes(fit.most_bytes), where, fit.robots_at_once));
   }

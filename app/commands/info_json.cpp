@@ -53,6 +53,7 @@ Json chip_of(const Robot& robot) {
     devices.push_back({{"name", cuda_device_name(device)},
                        {"block_bytes", fit.most_bytes},
                        {"on_chip", fit.on_chip},
+                       {"blocks", fit.blocks},
                        {"contacts_on_chip", fit.contacts_on_chip},
                        {"robots_at_once", fit.robots_at_once}});
   }

@@ -45,9 +45,10 @@ std::size_t CudaBackend::robots_at_once() const {
   double rounds = 0;
   for (const auto& robots : classes())
     if (robots->size() > 0)
-      rounds +=
-          static_cast<double>(robots->size()) / robots_in_flight(configuration_.solver, model_for(*robots),
-                                                                 robots->launch_in_parts().value_or(robots->launch()));
+      rounds += static_cast<double>(robots->size()) /
+                (robots->launch_in_parts()
+                     ? robots_in_flight(configuration_.solver, model_in_parts(*robots), *robots->launch_in_parts())
+                     : robots_in_flight(configuration_.solver, model_for(*robots), robots->launch()));
   return rounds > 0 ? static_cast<std::size_t>(std::llround(static_cast<double>(places_.size()) / rounds)) : 0;
 }
 
@@ -252,7 +253,8 @@ void CudaBackend::choose_launches() {
     if (robots.size() == 0) continue;
     robots.choose_launch(configuration_, places_.size(), owned_->brains.bytes(c));
     prepare_steps(configuration_.solver, model_for(robots), robots.launch());
-    if (robots.launch_in_parts()) prepare_steps(configuration_.solver, model_for(robots), *robots.launch_in_parts());
+    if (robots.launch_in_parts())
+      prepare_steps(configuration_.solver, model_in_parts(robots), *robots.launch_in_parts());
     brains_elsewhere = brains_elsewhere || !robots.launch().on_chip;
   }
   if (brains_elsewhere) owned_->brains.reserve_workspace();

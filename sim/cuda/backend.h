@@ -120,6 +120,10 @@ class CudaBackend final : public Backend {
   StepModel model_for(const SizeClass& robots) const {
     return step_model_of(configuration_, real_bodies_, robots.launch(), robots.own_models());
   }
+  StepModel model_in_parts(const SizeClass& robots) const {
+    return step_model_in_parts(configuration_, real_bodies_, *robots.launch_in_parts(), robots.own_models(),
+                               robots.environments_differ());
+  }
   void number_masses(std::span<const Robot* const> robots);
   const RobotView* views() const;
   const float* rest_positions(std::span<const Robot* const> robots, std::span<const float> lifts);

@@ -167,7 +167,7 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
         in_parts.batch = robots.view_of_parts();
         in_parts.launch = *robots.launch_in_parts();
         in_parts.report = nullptr;
-        launch_steps(configuration_.solver, model, in_parts, of_class);
+        launch_steps(configuration_.solver, model_in_parts(robots), in_parts, of_class);
         if (!arguments.report) continue;
         arguments.clock.step += std::exchange(arguments.steps, 0);
       }

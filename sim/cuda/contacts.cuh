@@ -96,10 +96,6 @@ class ContactPass {
   __device__ void moved(float farthest) { traveled_ += farthest; }
   // Whether the list of some thread may miss a pair in the next step.
   __device__ bool stale(const Robot& robot, std::uint32_t step) const {
-    if (in_parts && buckets(robot) == 0) {
-      robot_barrier<typename Robot::Memory>();
-      return false;
-    }
     return any(robot, collides(robot) && (traveled_ > reach(robot) || contact_memory(robot).overflows()), 0, step);
   }
 
@@ -120,12 +116,13 @@ class ContactPass {
   // Before everything else; a barrier follows.
   __device__ static void begin(const Robot& robot) {
     if constexpr (in_parts)
-      if (robot.thread() < 2 && buckets(robot) > 0) votes(robot)[robot.thread()] = 0;
+      if (robot.thread() < 2) votes(robot)[robot.thread()] = 0;
   }
 
  private:
   static constexpr bool in_parts = Robot::Memory::in_parts;
-  static_assert(verifies || !in_parts, "robots in parts need the positions at which masses were listed");
+  static_assert(verifies || !in_parts || !Robot::Memory::finds_contacts,
+                "robots in parts need the positions at which masses were listed");
   using Context = ThreadContext<typename Robot::Memory>;
 
   __device__ static float list_radius(const Robot& robot) {

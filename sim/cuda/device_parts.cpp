@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "mercury/parallel.h"
+#include "sim/cuda/device_limits.h"
 #include "sim/cuda/kernels.h"
 
 namespace mercury::cuda {
@@ -23,6 +24,37 @@ DeviceArray<T> on_device(std::span<const T> values, cudaStream_t stream) {
 }
 
 }  // namespace
+
+std::optional<LaunchConfiguration> DeviceParts::choose(std::span<const Source> robots, bool same_robots,
+                                                       const ChunkSizes& sizes, const Wanted& wanted) {
+  const DeviceLimits limits = device_limits();
+  if (!limits.clusters) return std::nullopt;
+  const std::uint32_t fields = working_fields(wanted.configuration.solver, true);
+  for (std::uint32_t parts = 2; parts <= most_parts; parts *= 2) {
+    const bool leaves_idle = parts < most_parts && wanted.batch_size * 2 * parts <= limits.multiprocessors;
+    if (leaves_idle || sizes.tiles / parts * fields * field_bytes > limits.shared_per_block) continue;
+    if (!same_robots || view_.per_robot != parts || fields_ != fields) {
+      split(robots, parts, sizes);
+      fields_ = fields;
+    }
+    BatchView batch{};
+    batch.robot_count = static_cast<std::uint32_t>(robots.size());
+    batch.record_words = sizes.record_words;
+    // Two blocks per multiprocessor, so that one computes while the other waits; or one, if its part is large.
+    for (const std::uint32_t blocks : {2u, 1u})
+      if (const auto launch = choose_launch_in_parts(wanted.configuration, view(batch), wanted.same_materials,
+                                                     wanted.viscous, wanted.batch_size, wanted.table_chunks, blocks))
+        return launch;
+    same_robots = false;
+  }
+  return std::nullopt;
+}
+
+void DeviceParts::upload(const BatchView& robots, cudaStream_t stream) {
+  if (!split_.empty()) upload_parts(stream);
+  copy_points(robots, stream);
+  check(cudaStreamSynchronize(stream), "uploading parts of robots");
+}
 
 void DeviceParts::split(std::span<const Source> robots, std::uint32_t parts, const ChunkSizes& sizes) {
   sources_.assign(robots.begin(), robots.end());
@@ -47,8 +79,7 @@ void DeviceParts::split(std::span<const Source> robots, std::uint32_t parts, con
     }
 }
 
-void DeviceParts::upload(std::uint32_t fields, cudaStream_t stream) {
-  fields_ = fields;
+void DeviceParts::upload_parts(cudaStream_t stream) {
   const std::size_t parts = sources_.size() * view_.per_robot, slots = std::size_t{tile_stride_} * lanes;
   const std::size_t words = std::size_t{row_stride_} * lanes * record_words_;
   std::vector<PartHeader> headers(parts);
@@ -68,7 +99,7 @@ void DeviceParts::upload(std::uint32_t fields, cudaStream_t stream) {
                   static_cast<std::uint32_t>(part.arrangement.faces.size())};
     const RestLengths rest = record_words_ == 1 ? rest_lengths(*source.robot) : RestLengths{};
     fill_records(std::span(springs).subspan(i * words, words), *source.robot, schedule, rest,
-                 {part.springs, source.materials, fields});
+                 {part.springs, source.materials, fields_});
     std::ranges::copy(schedule.incoming_counts, incoming.begin() + static_cast<std::ptrdiff_t>(i * slots));
     const auto first_tile = static_cast<std::ptrdiff_t>(i * (tile_stride_ + 1));
     std::ranges::copy(schedule.row_start, row_start.begin() + first_tile);
@@ -76,7 +107,9 @@ void DeviceParts::upload(std::uint32_t fields, cudaStream_t stream) {
     const auto first_face = static_cast<std::ptrdiff_t>(i * face_stride_);
     std::ranges::copy(part.face_dithers, face_dithers.begin() + first_face);
     std::ranges::transform(part.arrangement.faces, faces.begin() + first_face, [&](const FacePair& p) {
-      const auto address = [&](std::uint16_t slot) { return static_cast<std::uint16_t>(offset_of_slot(slot, fields)); };
+      const auto address = [&](std::uint16_t slot) {
+        return static_cast<std::uint16_t>(offset_of_slot(slot, fields_));
+      };
       return FacePair{address(p.a), address(p.b), address(p.c), address(p.d)};
     });
     std::ranges::copy(part.exports, exports.begin() + static_cast<std::ptrdiff_t>(i * view_.export_stride));

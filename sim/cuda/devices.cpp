@@ -3,6 +3,7 @@
 #include "mercury/cuda_devices.h"
 
 #include "sim/cuda/device_limits.h"
+#include "sim/cuda/device_parts.h"
 #include "sim/cuda/memory.h"
 #include "sim/cuda/rest_lengths.h"
 #include "sim/cuda/step.h"
@@ -23,9 +24,31 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   batch.record_words = record_words_for(robot);
   const bool viscous = has_viscous_springs(measure(robot), materials_of(robot));
   const LaunchConfiguration launch = choose_launch_configuration(configuration, batch, true, viscous, many_robots);
-  const StepModel model = step_model_of(configuration, viscous || has_own_points(robot), launch);
-  return {device_limits().shared_per_block, launch.on_chip, launch.on_chip && launch.contacts_on_chip,
-          robots_in_flight(configuration.solver, model, launch)};
+  const bool real_bodies = viscous || has_own_points(robot);
+  ChipFit fit{.most_bytes = device_limits().shared_per_block,
+              .on_chip = launch.on_chip,
+              .contacts_on_chip = launch.on_chip && launch.contacts_on_chip};
+  StepModel model = step_model_of(configuration, real_bodies, launch);
+  LaunchConfiguration chosen = launch;
+  if (!launch.on_chip) {
+    const SlotOrder order = choose_slots(robot, pair_faces(robot));
+    const DeviceParts::Source source{&robot, &order, {}};
+    DeviceParts parts;
+    if (const auto in_parts =
+            parts.choose({&source, 1}, false, {.tiles = batch.tile_stride, .record_words = batch.record_words},
+                         {.configuration = configuration,
+                          .same_materials = true,
+                          .viscous = viscous,
+                          .table_chunks = launch.table_chunks,
+                          .batch_size = many_robots})) {
+      chosen = *in_parts;
+      fit.on_chip = true;
+      fit.blocks = chosen.parts;
+      model = step_model_in_parts(configuration, real_bodies, chosen, nullptr, false);
+    }
+  }
+  fit.robots_at_once = robots_in_flight(configuration.solver, model, chosen);
+  return fit;
 }
 
 int cuda_device_count() {

@@ -107,6 +107,11 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   return launch;
 }
 
+bool is_faster_in_parts(std::uint32_t tiles, std::size_t batch_size) {
+  constexpr std::uint32_t large = 96;
+  return tiles >= large && 4 * batch_size <= device_limits().multiprocessors;
+}
+
 std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,
                                                           bool same_materials, bool viscous, std::size_t batch_size,
                                                           std::uint32_t table_chunks, std::uint32_t blocks) {

@@ -71,6 +71,10 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
                                                 std::uint32_t table_chunks = max_materials / lanes,
                                                 const BrainBytes& brain = {});
 
+// Whether robots that fit on one multiprocessor are stepped faster in parts (docs/experiments.md): large ones, if the
+// batch leaves most multiprocessors idle.
+bool is_faster_in_parts(std::uint32_t tiles, std::size_t batch_size);
+
 // The same for robots in parts: one part per block. `parts` = DeviceParts::view(). Returns nothing if a part does not
 // fit. `blocks` = that a multiprocessor should have at the same time.
 std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,

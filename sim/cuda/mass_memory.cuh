@@ -16,6 +16,7 @@ class OnChip {
   static constexpr bool on_chip = true;
   static constexpr bool keeps_valence = true;  // in field_valence, for XPBD
   static constexpr bool in_parts = false;      // a block has the whole robot
+  static constexpr bool finds_contacts = true;
 
   __device__ static float load(Address at, std::uint32_t offset) {
     float value;
@@ -82,6 +83,12 @@ class InParts : public OnChip {
   }
 };
 
+// The same without the code for contacts, which takes registers.
+class InPartsWithoutContacts : public InParts {
+ public:
+  static constexpr bool finds_contacts = false;
+};
+
 // Device memory.
 class OffChip {
  public:
@@ -89,6 +96,7 @@ class OffChip {
   static constexpr bool on_chip = false;
   static constexpr bool keeps_valence = true;
   static constexpr bool in_parts = false;
+  static constexpr bool finds_contacts = true;
 
   __device__ static float load(Address at, std::uint32_t offset) {
     return *reinterpret_cast<volatile float*>(at + offset);

@@ -108,22 +108,24 @@ class Splitter {
     const std::vector<std::uint16_t>& slots = part.arrangement.order->slots;
     struct Numbered {
       std::uint32_t number;
-      std::uint16_t first_outer;  // slot of b
+      FacePair pair;
     };
     std::multimap<decltype(key_of({})), Numbered> by_key;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const FacePair in_slots{slots[pairs[i].a], slots[pairs[i].b], slots[pairs[i].c], slots[pairs[i].d]};
-      by_key.insert({key_of(in_slots), {numbers[i], in_slots.b}});
+      by_key.insert({key_of(in_slots), {numbers[i], in_slots}});
     }
-    for (const FacePair& p : part.arrangement.faces) {
+    for (FacePair& p : part.arrangement.faces) {
       const auto found = p == padding_faces ? by_key.end() : by_key.find(key_of(p));
       if (found == by_key.end()) {
         part.face_dithers.push_back(0);
         continue;
       }
-      const auto [number, first_outer] = found->second;
+      const auto [number, pair] = found->second;
       by_key.erase(found);
-      part.face_dithers.push_back(dither_of_pair(number) + (p.b == first_outer ? 0 : second_face_dither));
+      // All parts must see a face from the same side: flow exactly along it lifts it to that side.
+      p.a = pair.a, p.c = pair.c;
+      part.face_dithers.push_back(dither_of_pair(number) + (p.b == pair.b ? 0 : second_face_dither));
     }
   }
 

@@ -37,8 +37,8 @@ struct Part {
   std::vector<std::uint16_t> masses;   // [mass of the part], its number in the robot
   std::vector<std::uint32_t> springs;  // [spring of the part], its number in the robot
   Arrangement arrangement;             // slots of own masses, then a tile where those of ghosts begin
-  // [face pair of the arrangement], dither_of_pair() of the pair in the whole robot's arrangement; that of the second
-  // face, if the two have changed places.
+  // [face pair of the arrangement], dither_of_pair() of the pair in the whole robot's arrangement, from which a and c
+  // are; that of the second face, if the two have changed places.
   std::vector<std::uint32_t> face_dithers;
   std::vector<Export> exports;              // by the tile that they come from
   std::vector<std::uint32_t> export_start;  // [own tile + 1]

@@ -2,10 +2,10 @@
 #include "sim/cuda/size_class.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "mercury/parallel.h"
 #include "sim/cuda/block_layout.h"
-#include "sim/cuda/device_limits.h"
 #include "sim/cuda/kernels.h"
 
 namespace mercury::cuda {
@@ -194,12 +194,13 @@ void SizeClass::publish_headers() { device_headers_.write(0, headers_, urgent_->
 
 bool SizeClass::set_environments(std::span<const std::uint32_t> places, std::span<const Environment> environments,
                                  const Configuration& configuration) {
+  const bool kernel_changes = launch_in_parts_ && !environments_differ();
   parallel_for(0, places.size(), [&](std::size_t i) {
     environments_[places[i]] = environments[i];
     describe(places[i], configuration);
   });
   for (const std::uint32_t place : places) points_stale_ = points_stale_ || !point_properties_[place].empty();
-  const bool launches_change = own_models_.size() == 0 || points_stale_;
+  const bool launches_change = own_models_.size() == 0 || points_stale_ || kernel_changes;
   constexpr std::size_t few = 16;
   if (places.size() > few || launches_change) {
     publish_headers();
@@ -220,9 +221,7 @@ Configuration SizeClass::configuration_of(std::uint32_t place, Configuration con
 }
 
 void SizeClass::publish_own_models(const Configuration& configuration) {
-  const bool needed = needs_own_models(launch_) || std::ranges::any_of(environments_, [](const auto& environment) {
-                        return environment.has_value();
-                      });
+  const bool needed = launch_in_parts_ || needs_own_models(launch_) || environments_differ();
   const std::size_t count = needed ? size() : 0;
   if (own_models_.size() != count) own_models_ = DeviceArray<OwnModel>(count);
   std::vector<OwnModel> models(count, OwnModel(configuration));
@@ -245,51 +244,38 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
-  publish_own_models(configuration);
-  launch_in_parts_.reset();
-  if (!launch_.on_chip && brain.scratch == 0 && device_limits().clusters)
-    choose_launch_in_parts(configuration, batch_size);
-  if (!launch_in_parts_)
-    parts_ = {};
-  else if (launch_.contact_buckets > 0)
+  choose_launch_in_parts(configuration, batch_size, brain);
+  if (launch_in_parts_ && launch_.contact_buckets > 0)
     workspace =
         std::max(workspace, contact_workspace_bytes_in_parts(launch_.contact_buckets, sizes_.tiles,
                                                              launch_in_parts_->parts, view_of_parts().tile_stride));
   reserve_workspace(workspace);
+  publish_own_models(configuration);
 }
 
-// As few parts as fit, since springs between parts are computed twice; but more if multiprocessors are left idle.
-void SizeClass::choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size) {
-  const DeviceLimits limits = device_limits();
-  const std::uint32_t fields = working_fields(configuration.solver, true);
-  std::vector<DeviceParts::Source> sources;
-  for (std::uint32_t place = 0; place < size(); ++place)
-    sources.push_back(
-        {robots_[place], slot_tables_[place].get(),
-         driven_ids_.empty()
-             ? std::span<const MaterialId>()
-             : std::span<const MaterialId>(driven_ids_).subspan(std::size_t{place} * max_materials, max_materials)});
-  const bool same_materials = same_materials_ && driven_materials_.size() == 0;
-  for (std::uint32_t parts = 2; parts <= most_parts; parts *= 2) {
-    const bool idle = parts < most_parts && batch_size * 2 * parts <= limits.multiprocessors;
-    if (idle || sizes_.tiles / parts * fields * field_bytes > limits.shared_per_block) continue;
-    const bool is_new = parts_stale_ || parts_.per_robot() != parts || parts_.fields() != fields;
-    if (is_new) {
-      parts_ = {};
-      parts_.split(sources, parts, sizes_);
+void SizeClass::choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size,
+                                       const BrainBytes& brain) {
+  launch_in_parts_.reset();
+  // A brain reads all masses of its robot.
+  if (brain.scratch == 0 && (!launch_.on_chip || is_faster_in_parts(sizes_.tiles, batch_size))) {
+    std::vector<DeviceParts::Source> sources;
+    for (std::uint32_t place = 0; place < size(); ++place) {
+      const std::size_t first = driven_ids_.empty() ? 0 : std::size_t{place} * max_materials;
+      sources.push_back({robots_[place], slot_tables_[place].get(),
+                         std::span(driven_ids_).subspan(first, driven_ids_.empty() ? 0 : max_materials)});
     }
-    for (const std::uint32_t blocks : {2u, 1u}) {
-      launch_in_parts_ = cuda::choose_launch_in_parts(configuration, view_of_parts(), same_materials, launch_.viscous,
-                                                      batch_size, table_chunks_, blocks);
-      if (launch_in_parts_) break;
-    }
-    if (!launch_in_parts_) continue;
-    if (is_new) parts_.upload(fields, urgent_->get());
-    parts_.copy_points(view(), urgent_->get());
-    urgent_->synchronize();
-    parts_stale_ = false;
-    return;
+    launch_in_parts_ = parts_.choose(sources, !parts_stale_, sizes_,
+                                     {.configuration = configuration,
+                                      .same_materials = launch_.shared_table,
+                                      .viscous = launch_.viscous,
+                                      .table_chunks = table_chunks_,
+                                      .batch_size = batch_size});
   }
+  parts_stale_ = !launch_in_parts_;
+  if (launch_in_parts_)
+    parts_.upload(view(), urgent_->get());
+  else
+    parts_ = {};
 }
 
 void SizeClass::address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {

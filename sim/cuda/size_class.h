@@ -70,6 +70,9 @@ class SizeClass {
                         const Configuration& configuration);
   void share_environment() { environments_.assign(size(), std::nullopt); }
   void publish_headers();
+  bool environments_differ() const {
+    return std::ranges::any_of(environments_, [](const auto& environment) { return environment.has_value(); });
+  }
   // One per place; null if the kernel of this class needs none.
   const OwnModel* own_models() const { return own_models_.data(); }
   // Chooses how to launch it beside the other classes; `batch_size` = robots of all classes.
@@ -134,7 +137,7 @@ class SizeClass {
   // this many fields per tile, or by slots (0).
   void address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);
   void reserve_workspace(std::size_t bytes_per_robot);
-  void choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size);
+  void choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain);
   // Replaces the material that each spring record names; `ids` = [place][max_materials], the new id by the old one.
   void rename_materials(std::span<const MaterialId> ids);
   // Those of a place that springs have, after air; max_materials elements.

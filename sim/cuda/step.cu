@@ -88,6 +88,7 @@ __global__ void __maxnreg__(72)
     step_kernel(const __grid_constant__ StepArguments arguments, const __grid_constant__ Given model) {
   using Part = BlockPart<solver, Given, Memory, record_words>;
   using EnvironmentModel = typename Part::EnvironmentModel;
+  constexpr bool has_contacts = Part::Stepper::has_contacts;
   const LaunchConfiguration& launch = arguments.launch;
   {
     Part part(arguments, model);
@@ -106,7 +107,7 @@ __global__ void __maxnreg__(72)
       load_brain<typename Part::Memory>(arguments, part.context.brain, part.context.number, thread.robot, thread.warp);
     part.stepper.load_lengths(part.context.lengths);
     part.stepper.load_state();
-    if constexpr (EnvironmentModel::has_contacts) part.stepper.begin_contacts();
+    if constexpr (has_contacts) part.stepper.begin_contacts();
     robot_barrier<Memory>();
   }
 
@@ -122,11 +123,11 @@ __global__ void __maxnreg__(72)
     int list_contacts = 1;
     const std::uint32_t moving = materials.moving_chunks();
     for (; step < end; ++step) {
-      if constexpr (EnvironmentModel::has_contacts)
+      if constexpr (has_contacts)
         if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts(step);
       stepper.add_environment(step);
       if constexpr (solver == Solver::xpbd) {
-        if (EnvironmentModel::has_faces || EnvironmentModel::has_contacts || arguments.batch.perturbation_count > 0)
+        if (EnvironmentModel::has_faces || has_contacts || arguments.batch.perturbation_count > 0)
           robot_barrier<Memory>();
         stepper.predict(step);
         stepper.export_state();
@@ -139,12 +140,12 @@ __global__ void __maxnreg__(72)
       }
       stepper.add_springs(step);
       stepper.prefetch_end();
-      robot_barrier<Memory>();
+      robot_rendezvous<Memory>();
       stepper.end(step);
       stepper.export_state();
       stepper.prefetch_environment();
       materials.update(arguments, step + 1, moving);
-      if constexpr (EnvironmentModel::has_contacts)
+      if constexpr (has_contacts)
         list_contacts = stepper.contacts_stale(step);
       else
         robot_barrier<Memory>();
@@ -168,11 +169,15 @@ __global__ void __maxnreg__(72)
 template <Solver solver, class EnvironmentModel, int record_words>
 auto kernel_for(const LaunchConfiguration& launch) {
   if constexpr (std::is_same_v<EnvironmentModel, OwnModels>) {
-    if (launch.parts > 1) return step_kernel<solver, EnvironmentModel, InParts, record_words>;
+    if (launch.parts > 1)
+      return launch.contact_buckets > 0 ? step_kernel<solver, EnvironmentModel, InParts, record_words>
+                                        : step_kernel<solver, EnvironmentModel, InPartsWithoutContacts, record_words>;
     if (!launch.on_chip) return step_kernel<solver, EnvironmentModel, OffChip, record_words>;
     if constexpr (solver == Solver::xpbd)
       if (!launch.valence_on_chip) return step_kernel<solver, EnvironmentModel, OnChipWithoutValence, record_words>;
   }
+  if constexpr (has_kernel_in_parts<EnvironmentModel>)
+    if (launch.parts > 1) return step_kernel<solver, EnvironmentModel, InPartsWithoutContacts, record_words>;
   return step_kernel<solver, EnvironmentModel, OnChip, record_words>;
 }
 

@@ -13,6 +13,7 @@ template <Solver solver, class EnvironmentModel, class Memory, int record_words>
 class RobotStepper {
  public:
   using Robot = BlockRobot<solver, Memory, record_words>;
+  static constexpr bool has_contacts = EnvironmentModel::has_contacts && Memory::finds_contacts;
   __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model,
                           const BlockContext<solver, Memory>& context)
       : robot_(arguments, context.thread), model_(model), contacts_(robot_), failure_(context.failure) {}
@@ -66,10 +67,10 @@ class RobotStepper {
     if (failure_->before(step, phase_environment)) return;
     if (batch().perturbation_count > 0 && robot_.thread() == 0) add_perturbations();
     if constexpr (EnvironmentModel::has_faces)
-      if (model_.acts_on_faces())
+      if (faces_act())
         faces_.add(robot_, model_, environment_scale(), step, dither_of_step(robot_.arguments().clock.step + step),
                    *failure_);
-    if constexpr (EnvironmentModel::has_contacts) contacts_.add(robot_);
+    if constexpr (has_contacts) contacts_.add(robot_);
   }
 
   // Whether the forces of the environment are to be summed apart from those of springs, by accelerate().
@@ -130,7 +131,7 @@ class RobotStepper {
       const PartsView& parts = batch().parts;
       const std::uint32_t* const start = parts.export_start + robot_.chunk() * (batch().tile_stride + 1);
       const Export* const exports = parts.exports + robot_.chunk() * parts.export_stride;
-      const bool moving = model_.acts_on_faces() || robot_.arguments().launch.viscous;
+      const bool moving = faces_act() || robot_.arguments().launch.viscous;
       const std::uint32_t end = __ldg(start + robot_.last_tile());
       for (std::uint32_t i = __ldg(start + robot_.first_tile()) + robot_.context().lane; i < end; i += lanes) {
         const uint2 packed = __ldg(reinterpret_cast<const uint2*>(exports + i));
@@ -151,7 +152,7 @@ class RobotStepper {
     Distance farthest;
     // XPBD in water has the registers for two tiles at a time. Left alone, the choice of the compiler changes with
     // unrelated code.
-#pragma unroll(solver == Solver::xpbd && Memory::on_chip && !EnvironmentModel::has_contacts ? 2 : 1)
+#pragma unroll(solver == Solver::xpbd && Memory::on_chip && !has_contacts ? 2 : 1)
     for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
       if (!robot_.has_mass(tile)) break;  // this lane has none in the last tile
       const Mass<Memory> mass = robot_.own_mass(tile);
@@ -175,10 +176,10 @@ class RobotStepper {
         end_step(x, v, point.inverse_inertia, model_, end_constants());
       else
         end_step(x, v, model_, end_constants());
-      if constexpr (EnvironmentModel::has_contacts) farthest.add(mass, x);
+      if constexpr (has_contacts) farthest.add(mass, x);
       store(step, phase_end, tile, x, v);
     }
-    if constexpr (EnvironmentModel::has_contacts) contacts_.moved(farthest.bound(constants()));
+    if constexpr (has_contacts) contacts_.moved(farthest.bound(constants()));
   }
 
  private:
@@ -206,6 +207,13 @@ class RobotStepper {
       mass.set_sum(sums[i]);
       if constexpr (solver == Solver::xpbd && Memory::keeps_valence) mass.set_value(field_valence, valences[i]);
     }
+  }
+
+  __device__ bool faces_act() const {
+    if constexpr (EnvironmentModel::has_faces)
+      return model_.acts_on_faces();
+    else
+      return false;
   }
 
   // The longest |d|^2 of this thread's springs, padding included [m2].

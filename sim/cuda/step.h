@@ -4,6 +4,7 @@
 
 #include <cuda_runtime_api.h>
 
+#include <type_traits>
 #include <variant>
 
 #include "sim/cuda/brain_tables.h"
@@ -45,6 +46,12 @@ constexpr bool needs_own_models(const LaunchConfiguration& launch) {
 using StepModel = std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel, ResistiveModel,
                                GeneralModel, OwnModels>;
 
+// Those without contacts that have a kernel of their own for robots in parts. The others use that of OwnModels.
+template <class Model>
+inline constexpr bool has_kernel_in_parts =
+    std::is_same_v<Model, FrictionlessOceanModel> || std::is_same_v<Model, OceanSimpleModel> ||
+    std::is_same_v<Model, ResistiveModel>;
+
 // The model whose kernel a launch uses. `own` = one per robot, or null where all live in the configuration's
 // environment.
 inline StepModel step_model_of(const Configuration& configuration, bool real_bodies, const LaunchConfiguration& launch,
@@ -52,6 +59,20 @@ inline StepModel step_model_of(const Configuration& configuration, bool real_bod
   if (needs_own_models(launch) || own) return OwnModels{own};
   return std::visit([](const auto& model) -> StepModel { return model; },
                     solver_model_of(configuration.environment, real_bodies));
+}
+
+// The same for robots in parts. `own` is one per robot; `differ` = whether their environments differ.
+inline StepModel step_model_in_parts(const Configuration& configuration, bool real_bodies,
+                                     const LaunchConfiguration& launch, const OwnModel* own, bool differ) {
+  if (differ || launch.contact_buckets > 0) return OwnModels{own};
+  return std::visit(
+      [&]<class Model>(const Model& model) -> StepModel {
+        if constexpr (has_kernel_in_parts<Model>)
+          return model;
+        else
+          return OwnModels{own};
+      },
+      solver_model_of(configuration.environment, real_bodies));
 }
 
 // Robots that the current device steps at the same time.

@@ -27,6 +27,16 @@ __device__ void robot_barrier() {
   __syncthreads();
 }
 
+// The same where what a part wrote to another one's memory, or to device memory, need not be seen yet.
+template <class Memory>
+__device__ void robot_rendezvous() {
+  __syncthreads();
+#if __CUDA_ARCH__ >= 900
+  if constexpr (Memory::in_parts)
+    asm volatile("barrier.cluster.arrive.relaxed.aligned;\nbarrier.cluster.wait.acquire.aligned;" ::: "memory");
+#endif
+}
+
 // The phases of a step. A phase is skipped if the robot failed in an earlier one, or in an earlier step.
 enum Phase : std::uint32_t { phase_environment = 0, phase_prediction = 1, phase_springs = 2, phase_end = 3 };
 
@@ -48,6 +58,7 @@ struct Failure {
         Memory::lower_there(Memory::of_part(shared_address(&when), part), 1 + 4 * step + phase);
         Memory::lower_there(Memory::of_part(shared_address(&bad_mass), part), mass);
       }
+      __threadfence();
     } else {
       atomicMin(&when, 1 + 4 * step + phase);
       atomicMin(&bad_mass, mass);

@@ -235,29 +235,5 @@ TEST_P(Reproducibility, WhateverChangesWhileRunningARobotAloneMovesAsInTheBatch)
     EXPECT_EQ(EventfulRun(setting, robots, {robot}).results().at(robot), expected.at(robot)) << robot;
 }
 
-// 6,156 masses fit on the largest chips if XPBD keeps the valences in device memory; 8,000 fit on none. All paths must
-// be reproducible.
-class LargeRobots : public Reproducibility {
- protected:
-  void expect_reproducible(int layers) const;
-};
-
-INSTANTIATE_TEST_SUITE_P(All, LargeRobots, every_pair, EveryPair::name);
-
-void LargeRobots::expect_reproducible(int layers) const {
-  const std::vector<Robot> robots = {bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 1),
-                                     bodies::random_voxels({.x = 17, .y = 17, .z = layers}, 2)};
-  Simulation together(configuration(), robots), alone(configuration(), std::span(robots).last(1));
-  together.step(60);
-  for (int call = 0; call < 60; ++call) alone.step();
-  EXPECT_EQ(together.hash(1), alone.hash(0));
-  Simulation small(configuration(), std::span(robots).first(1));
-  small.step(60);
-  EXPECT_EQ(together.hash(0), small.hash(0));
-}
-
-TEST_P(LargeRobots, AreReproducibleOnTheLargestChips) { expect_reproducible(18); }
-TEST_P(LargeRobots, AreReproducibleBeyondAnyChip) { expect_reproducible(24); }
-
 }  // namespace
 }  // namespace mercury
