@@ -108,8 +108,8 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
 }
 
 bool is_faster_in_parts(std::uint32_t tiles, std::size_t batch_size) {
-  constexpr std::uint32_t large = 96;
-  return tiles >= large && 4 * batch_size <= device_limits().multiprocessors;
+  constexpr std::uint32_t large = 64;
+  return tiles >= large && 2 * batch_size <= device_limits().multiprocessors;
 }
 
 std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,

@@ -82,8 +82,14 @@ class InParts {
     EXPECT_EQ(one.kinetic_energy, other.kinetic_energy);
     EXPECT_EQ(one.center_of_mass, other.center_of_mass);
   }
-  // Whether the one without a brain is in parts, as on all devices that have clusters.
-  bool differ_in_notes() const { return parts_.notes().empty() && !whole_.notes().empty(); }
+  // Whether only the one with a brain is in device memory, as on all devices that have clusters.
+  bool differ_in_notes() const {
+    const auto in_device_memory = [](const Simulation& simulation) {
+      return std::ranges::any_of(
+          simulation.notes(), [](const std::string& note) { return note.find("device memory") != std::string::npos; });
+    };
+    return !in_device_memory(parts_) && in_device_memory(whole_);
+  }
 
  private:
   Simulation parts_, whole_;
