@@ -24,7 +24,9 @@
 //    up to 16 copies of the material table, interleaved, and each lane reads a copy of its own: copy (lane mod
 //    copies). With 16 copies there are no conflicts, since a read of 8 bytes serves half a warp per pass.
 //    launch_configuration.cpp weighs them against memory to cache with.
-// 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory.
+// 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory,
+// unless
+//    the blocks of a cluster can step the robot in parts (parts.h). A block then has one part.
 // 4. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
 //    result.
 #pragma once
@@ -67,9 +69,6 @@ struct BlockLayout {
   std::uint32_t tables, failures, lengths, relaxation_times, contacts, brains, total;
 };
 
-// Pairs of near masses that are listed. If there are more, every step searches the cell grid.
-inline constexpr std::uint32_t contact_list_size = 1023;
-
 // Pairs within this distance are listed [m]: half as far again as they touch, but short of the diagonals of a lattice's
 // faces, which springs join.
 inline float list_radius(float contact_distance, float shortest_rest_length) {
@@ -83,12 +82,16 @@ inline std::uint32_t contact_buckets(const Environment& environment, std::uint32
 
 // Bytes of ContactMemory (contacts.cuh): the list, and the grid of a robot of this many tiles. The list of a robot in
 // parts begins with two votes.
-inline constexpr std::uint32_t contact_list_bytes = (1 + contact_list_size) * 4, contact_vote_bytes = 8;
+inline constexpr std::uint32_t contact_vote_bytes = 8;
+MERCURY_HOST_DEVICE std::uint32_t contact_list_bytes(const LaunchConfiguration& launch) {
+  return (1 + launch.listed_pairs) * 4;
+}
 MERCURY_HOST_DEVICE std::uint32_t contact_grid_bytes(std::uint32_t buckets, std::uint32_t tiles) {
   return buckets * 4 + tiles * lanes * 2;
 }
-MERCURY_HOST_DEVICE std::uint32_t contact_bytes(std::uint32_t buckets, std::uint32_t tiles) {
-  return buckets == 0 ? 0 : contact_list_bytes + contact_grid_bytes(buckets, tiles);
+MERCURY_HOST_DEVICE std::uint32_t contact_bytes(const LaunchConfiguration& launch, std::uint32_t tiles) {
+  if (launch.contact_buckets == 0) return 0;
+  return contact_list_bytes(launch) + contact_grid_bytes(launch.contact_buckets, tiles);
 }
 
 // Pairs that the grid finds, joined or not, are written down until there are this many per slot.
@@ -117,9 +120,9 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
   layout.relaxation_times = layout.lengths + (launch.viscous ? tables * launch.table_chunks * lanes * 4 : 0);
   layout.contacts = layout.relaxation_times;
   if (launch.parts > 1 && launch.contact_buckets > 0)
-    layout.contacts += contact_vote_bytes + contact_list_bytes;
+    layout.contacts += contact_vote_bytes + contact_list_bytes(launch);
   else if (launch.contacts_on_chip)
-    layout.contacts += launch.robots_per_block * contact_bytes(launch.contact_buckets, tiles);
+    layout.contacts += launch.robots_per_block * contact_bytes(launch, tiles);
   layout.brains = layout.contacts + launch.robots_per_block * launch.brain.total();
   layout.total = layout.brains;
   if (launch.on_chip) layout.total += launch.robots_per_block * tiles * fields * field_bytes;

@@ -29,7 +29,7 @@
 namespace mercury::cuda {
 
 struct ContactMemory {
-  std::uint32_t* count;  // pairs found, of which contact_list_size fit
+  std::uint32_t* count;  // pairs found, of which launch.listed_pairs fit
   std::uint32_t* pairs;  // ContactPass::packed()
   std::uint32_t* heads;  // [bucket], its first slot
   std::uint16_t* links;  // [slot], the next one in its bucket
@@ -37,7 +37,9 @@ struct ContactMemory {
   __device__ ContactMemory(char* list, char* grid, std::uint32_t buckets)
       : count(reinterpret_cast<std::uint32_t*>(list)), pairs(count + 1), heads(reinterpret_cast<std::uint32_t*>(grid)),
         links(reinterpret_cast<std::uint16_t*>(heads + buckets)) {}
-  __device__ bool overflows() const { return *static_cast<volatile std::uint32_t*>(count) > contact_list_size; }
+  __device__ bool overflows(const LaunchConfiguration& launch) const {
+    return *static_cast<volatile std::uint32_t*>(count) > launch.listed_pairs;
+  }
 };
 
 // Calls visit(j) for every slot j within `radius` of slot i at x that comes after i, so each pair is visited once.
@@ -78,7 +80,8 @@ class ContactPass {
       const float farthest =
           has_list_ && collides(robot) ? farthest_since_listed(robot.arguments(), robot.context()) : 0;
       const bool complete =
-          has_list_ && (!collides(robot) || (farthest < reach(robot) / 2 && !contact_memory(robot).overflows()));
+          has_list_ && (!collides(robot) ||
+                        (farthest < reach(robot) / 2 && !contact_memory(robot).overflows(robot.arguments().launch)));
       if (!any(robot, !complete, 1, step)) {
         traveled_ = farthest;
         return;
@@ -96,14 +99,17 @@ class ContactPass {
   __device__ void moved(float farthest) { traveled_ += farthest; }
   // Whether the list of some thread may miss a pair in the next step.
   __device__ bool stale(const Robot& robot, std::uint32_t step) const {
-    return any(robot, collides(robot) && (traveled_ > reach(robot) || contact_memory(robot).overflows()), 0, step);
+    return any(
+        robot,
+        collides(robot) && (traveled_ > reach(robot) || contact_memory(robot).overflows(robot.arguments().launch)), 0,
+        step);
   }
 
   // Adds the forces of all pairs that touch.
   __device__ void add(const Robot& robot) const {
     if (!collides(robot)) return;
     const ContactMemory memory = contact_memory(robot);
-    if (memory.overflows()) {
+    if (memory.overflows(robot.arguments().launch)) {
       if constexpr (verifies)
         add_by_search_apart(robot.arguments(), robot.context());
       else
@@ -176,7 +182,7 @@ class ContactPass {
     const auto list = [&](std::uint32_t i, std::uint32_t j) {
       if (joined(robot, i, j)) return;
       const std::uint32_t index = atomicAdd(memory.count, 1u);
-      if (index < contact_list_size) memory.pairs[index] = packed(robot, i, j);
+      if (index < robot.arguments().launch.listed_pairs) memory.pairs[index] = packed(robot, i, j);
     };
     const auto list_near = [&] {
       if (collides(robot))
@@ -310,19 +316,19 @@ class ContactPass {
     const LaunchConfiguration& launch = robot.arguments().launch;
     if constexpr (in_parts)
       return shared_memory + block_layout(launch, robot.arguments().batch.tile_stride, Robot::fields).contacts -
-             contact_list_bytes;
+             contact_list_bytes(launch);
     if (!launch.contacts_on_chip) return workspace(robot);
     const std::uint32_t tiles = robot.arguments().batch.tile_stride;
     const std::uint32_t number = threadIdx.x / lanes / launch.warps_per_robot;
     return shared_memory + block_layout(launch, tiles, Robot::fields).relaxation_times +
-           number * contact_bytes(buckets(robot), tiles);
+           number * contact_bytes(launch, tiles);
   }
   // Found again where registers are scarce.
   __device__ ContactMemory contact_memory(const Robot& robot) const {
     return memory_of(robot, verifies ? address(robot) : memory_);
   }
   __device__ static ContactMemory memory_of(const Robot& robot, char* list) {
-    return {list, in_parts ? workspace(robot) : list + contact_list_bytes, buckets(robot)};
+    return {list, in_parts ? workspace(robot) : list + contact_list_bytes(robot.arguments().launch), buckets(robot)};
   }
   // [slot of the grid][3], when the list was made [m].
   __device__ static float* listed_positions(const Robot& robot) {
@@ -331,7 +337,7 @@ class ContactPass {
     if constexpr (in_parts)
       before = contact_grid_bytes(buckets(robot), batch.parts.robot_tile_stride);
     else if (!robot.arguments().launch.contacts_on_chip)
-      before = contact_bytes(buckets(robot), batch.tile_stride);
+      before = contact_bytes(robot.arguments().launch, batch.tile_stride);
     return reinterpret_cast<float*>(workspace(robot) + before);
   }
   __device__ static std::uint32_t* near_pairs(const Robot& robot) {
@@ -380,18 +386,27 @@ class ContactPass {
 
   __device__ static bool joined(const Robot& robot, std::uint32_t i, std::uint32_t j) {
     if constexpr (in_parts) {
-      // A spring to another part has its owner here.
       const std::uint32_t other = other_of(robot, j);
-      return owns(robot, i, j) || (other >> 16 == blockIdx.x % robot.arguments().launch.parts &&
-                                   owns(robot, other & 0xffff, robot.slot_in_robot(i)));
+      if (other >> 16 != blockIdx.x % robot.arguments().launch.parts) return owns_to_ghost(robot, i, j);
+      j = other & 0xffff;
     }
     return owns(robot, i, j) || owns(robot, j, i);
   }
 
-  // Whether slot i owns a spring to slot j of the grid.
+  // Whether slot i owns a spring to a ghost of slot j of the grid. A spring to another part has its owner here.
+  __device__ static bool owns_to_ghost(const Robot& robot, std::uint32_t i, std::uint32_t j) {
+    const auto* spring = robot.springs() + i % lanes;
+    const std::uint32_t last = robot.row_start()[i / lanes + 1];
+    for (std::uint32_t row = robot.row_start()[i / lanes]; row < last; ++row) {
+      const std::uint32_t key = spring[std::size_t{row} * lanes].x;
+      if ((key & 0xff) != air && robot.slot_in_robot(slot_at_offset(key >> 16, Robot::fields)) == j) return true;
+    }
+    return false;
+  }
+
+  // Whether slot i owns a spring to slot j.
   __device__ static bool owns(const Robot& robot, std::uint32_t i, std::uint32_t j) {
-    const std::uint32_t wanted = Robot::Memory::on_chip && !in_parts ? Robot::byte_offset(j) / 4 : j;
-    const std::uint32_t tile = i / lanes;
+    const std::uint32_t wanted = Robot::Memory::on_chip ? Robot::byte_offset(j) / 4 : j, tile = i / lanes;
     const auto* spring = robot.springs() + i % lanes;
     if constexpr (verifies) {
       const std::uint32_t last = robot.row_start()[tile + 1];
@@ -400,9 +415,7 @@ class ContactPass {
 #pragma unroll 8
       for (std::uint32_t row = robot.row_start()[tile]; row < last; ++row) {
         const std::uint32_t key = spring[std::size_t{row} * lanes].x;
-        std::uint32_t partner = key >> 16;
-        if constexpr (in_parts) partner = robot.slot_in_robot(slot_at_offset(partner, Robot::fields));
-        found |= partner == wanted && (key & 0xff) != air;
+        found |= key >> 16 == wanted && (key & 0xff) != air;
       }
       return found;
     } else {

@@ -16,6 +16,9 @@ bool writes_more_than_it_reads(const LaunchConfiguration& launch, std::uint32_t 
   return !launch.shared_table && rows < 16 * launch.table_chunks;
 }
 
+// Of near masses that large robots list where there is room: if there are more, each step searches for them.
+constexpr std::uint32_t pairs_per_mass = 2;
+
 // Takes as many copies of the material table as leave room for `blocks` blocks on a multiprocessor. Returns false if
 // not even one copy does.
 bool fit_tables(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
@@ -98,6 +101,7 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   for (const bool contacts_on_chip : {true, false})
     for (const bool valence_on_chip : {true, false}) {
       launch.contacts_on_chip = contacts_on_chip;
+      if (!contacts_on_chip) launch.listed_pairs = std::max(launch.listed_pairs, pairs_per_mass * tiles * lanes);
       launch.valence_on_chip = valence_on_chip;
       if (fit_one(launch, robots, fields(), limits, brain)) return launch;
     }
@@ -107,9 +111,10 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   return launch;
 }
 
-bool is_faster_in_parts(std::uint32_t tiles, std::size_t batch_size) {
-  constexpr std::uint32_t large = 64;
-  return tiles >= large && 2 * batch_size <= device_limits().multiprocessors;
+bool is_faster_in_parts(const LaunchConfiguration& whole, std::uint32_t tiles, std::size_t batch_size) {
+  const std::uint32_t multiprocessors = device_limits().multiprocessors;
+  return (tiles >= (whole.contact_buckets > 0 ? 64 : 40) && 8 * batch_size <= multiprocessors) ||
+         (tiles >= 128 && 2 * batch_size <= multiprocessors);
 }
 
 std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,
@@ -125,8 +130,12 @@ std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& c
   launch.fits_cache = parts.robot_count == batch_size;
   launch.warps_per_robot = divide_up(parts.tile_stride, divide_up(parts.tile_stride, resident_warps / blocks));
   const std::uint32_t fields = working_fields(configuration.solver, true);
-  if (!fit(launch, parts, fields, device_limits(), blocks, {})) return std::nullopt;
-  return launch;
+  const std::uint32_t least = launch.listed_pairs, slots = parts.tile_stride * lanes;
+  for (const std::uint32_t pairs : {pairs_per_mass * slots, slots, least}) {
+    launch.listed_pairs = std::max(least, pairs);
+    if (fit(launch, parts, fields, device_limits(), blocks, {})) return launch;
+  }
+  return std::nullopt;
 }
 
 }  // namespace mercury::cuda

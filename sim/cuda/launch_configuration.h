@@ -37,6 +37,7 @@ struct LaunchConfiguration {
   std::uint32_t record_words = 2;                      // of the batch
   bool viscous = false;                                // springs have relaxation times
   bool contacts_on_chip = true;                        // else after the working memory in the workspace
+  std::uint32_t listed_pairs = 1023;                   // of near masses, of a robot or a part of one
   BrainBytes brain;                                    // of each robot on the chip; 0 = in device memory
   std::size_t shared_bytes = 0;
   // Of a multiprocessor's memory, what its blocks need; the rest caches what they read in every step. But kernels that
@@ -71,9 +72,9 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
                                                 std::uint32_t table_chunks = max_materials / lanes,
                                                 const BrainBytes& brain = {});
 
-// Whether robots that fit on one multiprocessor are stepped faster in parts (docs/experiments.md): large ones, if the
-// batch leaves most multiprocessors idle.
-bool is_faster_in_parts(std::uint32_t tiles, std::size_t batch_size);
+// Whether robots that fit on one multiprocessor, as `whole` steps them, are faster in parts (docs/experiments.md):
+// large ones, if the batch leaves multiprocessors idle.
+bool is_faster_in_parts(const LaunchConfiguration& whole, std::uint32_t tiles, std::size_t batch_size);
 
 // The same for robots in parts: one part per block. `parts` = DeviceParts::view(). Returns nothing if a part does not
 // fit. `blocks` = that a multiprocessor should have at the same time.

@@ -242,7 +242,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   address_masses(0, old_fields, address_fields_);
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
-  if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_.contact_buckets, sizes_.tiles);
+  if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_, sizes_.tiles);
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
   choose_launch_in_parts(configuration, batch_size, brain);
   if (launch_in_parts_ && launch_.contact_buckets > 0)
@@ -257,7 +257,7 @@ void SizeClass::choose_launch_in_parts(const Configuration& configuration, std::
                                        const BrainBytes& brain) {
   launch_in_parts_.reset();
   // A brain reads all masses of its robot.
-  if (brain.scratch == 0 && (!launch_.on_chip || is_faster_in_parts(sizes_.tiles, batch_size))) {
+  if (brain.scratch == 0 && (!launch_.on_chip || is_faster_in_parts(launch_, sizes_.tiles, batch_size))) {
     std::vector<DeviceParts::Source> sources;
     for (std::uint32_t place = 0; place < size(); ++place) {
       const std::size_t first = driven_ids_.empty() ? 0 : std::size_t{place} * max_materials;
