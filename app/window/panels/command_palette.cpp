@@ -8,9 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <utility>
 
+#include "app/options/trial_start.h"
 #include "app/scene/color_quantity.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
@@ -144,21 +146,45 @@ void add_camera(PanelContext& context, std::vector<PaletteEntry>& entries) {
   entries.push_back({"zoom out", "Camera", "", [&camera] { camera.zoom(1 / 0.7f); }, "farther smaller"});
 }
 
-// Asks for a number and sets it. Every configuration that validate() refuses is reported.
+// The finite numbers of a text, with blanks or commas between them; none if it holds anything else.
+std::optional<std::vector<double>> numbers_of(std::string text) {
+  std::ranges::replace(text, ',', ' ');
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  for (char* end = nullptr;; at = end) {
+    const double number = std::strtod(at, &end);
+    if (end == at) break;
+    if (!std::isfinite(number)) return std::nullopt;
+    numbers.push_back(number);
+  }
+  const bool rest = std::string_view(at).find_first_not_of(' ') != std::string_view::npos;
+  return rest ? std::nullopt : std::optional(numbers);
+}
+
+// Asks for as many numbers as there are `now` and sets them. Every configuration that validate() refuses is reported.
+void ask_numbers(PanelContext& context, const std::string& name, const std::vector<double>& now,
+                 const std::string& unit, const std::function<void(const std::vector<double>&)>& set) {
+  std::string text;
+  for (const double value : now) text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", value);
+  const std::string what = now.size() == 3 ? "x, y and z" : "Value";
+  context.dialogs.ask_text(
+      name, unit.empty() ? what + ":" : fmt::format("{} in {}:", what, unit), text, "Set",
+      [&context, set, count = now.size()](const std::string& answer) {
+        const std::optional<std::vector<double>> numbers = numbers_of(answer);
+        if (!numbers || numbers->size() != count) {
+          context.toasts.show(Tone::warning, count == 3 ? fmt::format("\"{}\": give three numbers, as 0, 0, -2", answer)
+                                                        : fmt::format("\"{}\" is no number", answer));
+          return;
+        }
+        context.scene.end_edit();
+        set(*numbers);
+        context.scene.end_edit();
+      });
+}
+
 void ask_number(PanelContext& context, const std::string& name, double now, const std::string& unit,
                 const std::function<void(double)>& set) {
-  context.dialogs.ask_text(name, unit.empty() ? "Value:" : fmt::format("Value in {}:", unit),
-                           fmt::format("{:.6g}", now), "Set", [&context, set](const std::string& text) {
-                             char* end = nullptr;
-                             const double value = std::strtod(text.c_str(), &end);
-                             if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-                               context.toasts.show(Tone::warning, fmt::format("\"{}\" is no number", text));
-                               return;
-                             }
-                             context.scene.end_edit();
-                             set(value);
-                             context.scene.end_edit();
-                           });
+  ask_numbers(context, name, {now}, unit, [set](const std::vector<double>& values) { set(values.front()); });
 }
 
 void add_number(PanelContext& context, std::vector<PaletteEntry>& entries, const std::string& name, double now,
@@ -210,6 +236,72 @@ void add_view_numbers(PanelContext& context, std::vector<PaletteEntry>& entries)
                   [&context](double value) { context.scene.set_speed(value); });
 }
 
+// Where robots made for water are torn apart, the safe variants come first.
+void add_environments(PanelContext& context, std::vector<PaletteEntry>& entries) {
+  const Configuration& configuration = context.scene.configuration();
+  const std::vector<EnvironmentOffer> offers = environment_offers(configuration, has_water_robots(context.scene));
+  for (const EnvironmentOffer& offer : offers) {
+    const bool is_now = !offer.adjust && name_of(configuration.environment) == offer.environment;
+    const bool has_safe = !offer.adjust && std::ranges::any_of(offers, [&](const EnvironmentOffer& other) {
+      return other.adjust && other.environment == offer.environment;
+    });
+    entries.push_back(
+        {fmt::format("environment {}{}", offer.name,
+                     has_safe ? " with solver and time step as they are, which tear robots made for water apart" : ""),
+         "Tune", is_now ? "on" : "",
+         [&context, offer] {
+           change_configuration(context, [&](Configuration& changed) {
+             changed.environment = environment_named(offer.environment);
+             if (offer.adjust) offer.adjust(changed);
+           });
+         },
+         has_water(environment_named(offer.environment)) ? "world sea water swim underwater"
+                                                         : "world ground floor walk crawl"});
+  }
+}
+
+// Where robots begin.
+void add_start(PanelContext& context, std::vector<PaletteEntry>& entries) {
+  const TrialStart start = context.scene.start();
+  const auto change = [&context](const std::function<void(TrialStart&)>& set) {
+    TrialStart changed = context.scene.start();
+    set(changed);
+    context.scene.set_start(changed);
+  };
+  constexpr std::string_view words = "start brain trial";
+  for_each_parameter(start.trials, [&]<class Value>(const auto& parameter, const Value& value) {
+    if (!is_of_start(parameter.name)) return;
+    const std::string name = "robots begin: " + label_of(parameter.name);
+    const auto member = parameter.member;
+    if constexpr (std::is_same_v<Value, bool>) {
+      entries.push_back(
+          {name, "Tune", value ? "on" : "off",
+           [change, member] { change([&](TrialStart& now) { now.trials.*member = !(now.trials.*member); }); },
+           std::string(words)});
+    } else if constexpr (std::is_same_v<Value, double>) {
+      const std::string unit = unit_text(parameter.unit);
+      entries.push_back({name, "Tune", fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit),
+                         [&context, change, member, name, value, unit] {
+                           ask_number(context, name, value, unit, [change, member](double number) {
+                             change([&](TrialStart& now) { now.trials.*member = number; });
+                           });
+                         },
+                         std::string(words)});
+    }
+  });
+  const auto seed = static_cast<double>(start.seed);
+  entries.push_back({"robots begin: seed", "Tune", fmt::format("{:.0f}", seed),
+                     [&context, change, seed] {
+                       ask_number(context, "robots begin: seed", seed, "", [&context, change](double number) {
+                         if (number < 0 || number > 1e9 || number != std::floor(number))
+                           return context.toasts.show(Tone::warning,
+                                                      "robots begin: seed: give a whole number, 0 to 1e9");
+                         change([&](TrialStart& now) { now.seed = static_cast<std::uint64_t>(number); });
+                       });
+                     },
+                     std::string(words)});
+}
+
 void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
   const Configuration& configuration = context.scene.configuration();
   add_number(context, entries, "time step", 1000 * configuration.dt, "ms",
@@ -221,17 +313,9 @@ void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
                        [&context, solver] {
                          change_configuration(context, [&](Configuration& changed) { changed.solver = solver; });
                        }});
-  for (const std::string_view name : environment_names())
-    entries.push_back({fmt::format("environment {}", name), "Tune",
-                       name_of(configuration.environment) == name ? "on" : "",
-                       [&context, name] {
-                         change_configuration(
-                             context, [&](Configuration& changed) { changed.environment = environment_named(name); });
-                       },
-                       "world"});
+  add_environments(context, entries);
   for_each_parameter(configuration.environment, [&]<class Value>(const auto& parameter, const Value& value) {
-    std::string label(parameter.name);
-    std::ranges::replace(label, '_', ' ');
+    const std::string label = label_of(parameter.name), unit = unit_text(parameter.unit);
     if constexpr (std::is_same_v<Value, bool>) {
       entries.push_back({label, "Tune", value ? "on" : "off", [&context, name = std::string(parameter.name)] {
                            change_configuration(context, [&](Configuration& changed) {
@@ -244,13 +328,31 @@ void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
                          }});
     }
     if constexpr (std::is_same_v<Value, float>) {
-      add_number(context, entries, label, static_cast<double>(value), std::string(parameter.unit),
+      add_number(context, entries, label, static_cast<double>(value), unit,
                  [name = std::string(parameter.name)](Configuration& changed, double number) {
                    for_each_parameter(changed.environment, [&]<class Other>(const auto& other, Other& target) {
                      if constexpr (std::is_same_v<Other, float>)
                        if (other.name == name) target = static_cast<float>(number);
                    });
                  });
+    }
+    if constexpr (std::is_same_v<Value, Vec3>) {
+      const std::vector<double> now{value.x, value.y, value.z};
+      entries.push_back(
+          {label, "Tune",
+           fmt::format("{:.4g}, {:.4g}, {:.4g}{}{}", now[0], now[1], now[2], unit.empty() ? "" : " ", unit),
+           [&context, label, now, unit, name = std::string(parameter.name)] {
+             ask_numbers(context, label, now, unit, [&context, name](const std::vector<double>& numbers) {
+               Configuration changed = context.scene.configuration();
+               for_each_parameter(changed.environment, [&]<class Other>(const auto& other, Other& target) {
+                 if constexpr (std::is_same_v<Other, Vec3>)
+                   if (other.name == name)
+                     target = {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]),
+                               static_cast<float>(numbers[2])};
+               });
+               context.scene.set_configuration(changed);
+             });
+           }});
     }
   });
 }
@@ -266,19 +368,20 @@ void CommandPalette::open(std::function<std::vector<PaletteEntry>()> list) {
   search();
 }
 
-// First what has the words of the query in its name, then what has them at all, then what has their letters.
+// First what has the words of the query in its name, then what has them at all. If nothing has them, what has their
+// letters: beside words, letters find little but noise.
 void CommandPalette::search() {
   constexpr int word = 100'000;  // more than letters can score
   std::vector<std::pair<int, std::size_t>> scores;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const PaletteEntry& entry = entries_[i];
     const std::string whole = fmt::format("{} {} {}", entry.group, entry.name, entry.words);
-    const auto score = fuzzy_match(query_, entry.name), in_whole = fuzzy_match(query_, whole);
-    if (!in_whole) continue;
     const int words = words_match(query_, entry.name) ? 2 : words_match(query_, whole) ? 1 : 0;
-    // A letter found in the name counts more than one elsewhere.
-    scores.emplace_back(-(words * word + std::max(score.value_or(-word), *in_whole - 8)), i);
+    const auto score = fuzzy_match(query_, words == 1 ? whole : entry.name);
+    if (score) scores.emplace_back(-(words * word + *score), i);
   }
+  if (std::ranges::any_of(scores, [](const auto& score) { return score.first < -word / 2; }))
+    std::erase_if(scores, [](const auto& score) { return score.first >= -word / 2; });
   std::ranges::stable_sort(scores, {}, &std::pair<int, std::size_t>::first);
   found_.clear();
   for (const auto& [score, index] : scores) found_.push_back(index);
@@ -335,7 +438,7 @@ void CommandPalette::draw(PanelContext& context) {
 std::optional<std::size_t> CommandPalette::draw_entries(PanelContext& context) {
   std::optional<std::size_t> clicked;
   if (ImGui::BeginChild("found", {0, 0})) {
-    if (found_.empty()) note("nothing has these letters");
+    if (found_.empty()) note("nothing has this name");
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(found_.size()), ImGui::GetTextLineHeightWithSpacing());
     if (moved_ != 0) {
@@ -350,7 +453,8 @@ std::optional<std::size_t> CommandPalette::draw_entries(PanelContext& context) {
         const PaletteEntry& entry = entries_[index];
         const std::string right =
             entry.detail.empty() ? entry.group : fmt::format("{}   {}", entry.detail, entry.group);
-        const float width = ImGui::GetContentRegionAvail().x, place = width - ImGui::CalcTextSize(right.c_str()).x;
+        const float width = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x,
+                    place = width - ImGui::CalcTextSize(right.c_str()).x;
         ImGui::PushID(i);
         if (ImGui::Selectable("##entry", i == mark_)) clicked = index;
         ImGui::PopID();
@@ -367,15 +471,42 @@ std::optional<std::size_t> CommandPalette::draw_entries(PanelContext& context) {
   return clicked;
 }
 
+namespace {
+
+// Other words for what a panel shows.
+std::string_view words_of_panel(std::string_view title) {
+  constexpr std::pair<std::string_view, std::string_view> words[] = {
+      {"Robots", "generate random mutate list"},
+      {"Tree", "list outline hierarchy"},
+      {"Browser", "samples library open examples"},
+      {"Ranking", "best winner champion score"},
+      {"Evolution", "evolve optimize train history"},
+      {"Compare", "split side ghosts"},
+      {"View", "settings display shadows look"},
+      {"Tune", "settings parameters physics water land"},
+      {"Measure", "graph chart diagram speed distance energy"},
+      {"Probes", "graph chart"},
+      {"Actuators", "drive control"},
+      {"Brain", "neural network controller"},
+      {"Video", "film movie photo picture record"},
+      {"Messages", "errors warnings log exploded"},
+      {"Stats", "statistics performance fps frame rate"}};
+  const auto found = std::ranges::find(words, title, &std::pair<std::string_view, std::string_view>::first);
+  return found == std::end(words) ? "" : found->second;
+}
+
+}  // namespace
+
 std::vector<PaletteEntry> settings_for_palette(PanelContext& context, const std::function<void(const char*)>& show) {
   std::vector<PaletteEntry> entries;
   for (const PanelEntry& panel : panel_table())
     entries.push_back({fmt::format("panel {}", panel.title), "Panels", "", [show, title = panel.title] { show(title); },
-                       panel.tooltip});
+                       fmt::format("{} {}", panel.tooltip, words_of_panel(panel.title))});
   add_switches(context, entries);
   add_camera(context, entries);
   add_view_numbers(context, entries);
   add_parameters(context, entries);
+  add_start(context, entries);
   for (const RobotEntry& robot : context.scene.entries())
     entries.push_back({robot.name, "Robots", fmt::format("{} springs", robot.springs), [&context, id = robot.id] {
                          context.scene.select(id);

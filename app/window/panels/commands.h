@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -141,6 +142,22 @@ void end_scrub(PanelContext& context);
 
 // Executes the commands of the timeline: step back, start, present, loop, bookmarks, go on, fork. Others do nothing.
 void change_timeline(PanelContext& context, Action action);
+
+// Environments (tune_panel.cpp).
+
+// A way into an environment: its preset, and what is changed besides so that robots hold there.
+struct EnvironmentOffer {
+  std::string_view environment;    // "land"
+  std::string name;                // "land with XPBD"
+  std::string item;                // of the event log
+  std::string help;                // may be empty
+  void (*adjust)(Configuration&);  // nullptr = nothing
+};
+// All presets. Beside land stand its safe variants if robots of the scene are `made_for_water` and the configuration
+// would tear them apart there.
+std::vector<EnvironmentOffer> environment_offers(const Configuration& configuration, bool made_for_water);
+// Whether a robot of the scene is made for water.
+bool has_water_robots(const LiveScene& scene);
 
 // Edits a body in the view: clicks on its skin add, remove or paint voxels (body_editor.cpp).
 

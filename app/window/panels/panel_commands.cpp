@@ -244,7 +244,17 @@ namespace {
 std::string_view other_words(Action action) {
   switch (action) {
     case Action::play_pause:
-      return "start stop run continue";
+      return "start stop run continue freeze";
+    case Action::slower:
+      return "motion";
+    case Action::edit_body:
+      return "paint voxels draw";
+    case Action::fork:
+      return "branch copy";
+    case Action::turntable:
+      return "spin rotate orbit";
+    case Action::evolve:
+      return "optimize train";
     case Action::reset:
       return "restart again";
     case Action::frame:
@@ -285,7 +295,7 @@ std::string_view other_words(Action action) {
     case Action::messages:
       return "log";
     case Action::help:
-      return "keys shortcuts mouse";
+      return "shortcuts manual";
     case Action::quit:
       return "exit close";
     default:

@@ -111,15 +111,17 @@ bool edit_parameters(Environment& environment) {
   for_each_parameter_pair(environment, usual, [&](const auto& parameter, auto& part, const auto& usual_part) {
     auto& value = part.*parameter.member;
     using Value = std::remove_cvref_t<decltype(value)>;
-    const std::string label = label_of(parameter.name), unit = unit_text(parameter.unit);
-    std::string hint(parameter.help);
+    std::string label = label_of(parameter.name);
+    const std::string hint(parameter.help), unit = unit_text(parameter.unit);
     if constexpr (std::is_same_v<Value, bool>) {
       changed |= edit(label, hint, value);
     } else {
       const TypicalRange& range = parameter.typical;
       std::string format = range.high - range.low >= 500 && !range.logarithmic ? "%.0f" : "%.2f";
-      if constexpr (std::is_same_v<Value, Vec3>)
-        hint += unit.empty() ? "" : " [" + unit + "]";
+      // Long units, and those of three numbers, have no room on a slider.
+      constexpr std::size_t longest = 3;
+      if (parameter.unit.size() > longest || (std::is_same_v<Value, Vec3> && !unit.empty()))
+        label += " [" + unit + "]";
       else
         format += unit.empty() ? "" : " " + unit;
       const bool is_disabled = parameter.enabled_by != nullptr && !(part.*parameter.enabled_by);
@@ -303,6 +305,30 @@ void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId
   if (changed && is_valid(material)) context.scene.set_material(robots, static_cast<MaterialId>(material_), material);
 }
 
+std::vector<EnvironmentOffer> environment_offers(const Configuration& configuration, bool made_for_water) {
+  const bool unsafe = made_for_water && !is_dry(configuration.environment) && !is_safe(configuration);
+  std::vector<EnvironmentOffer> offers;
+  for (const EnvironmentPreset& preset : environment_presets) {
+    const std::string name(preset.name);
+    offers.push_back({preset.name, name, "tune.environment." + name, "", nullptr});
+    if (!unsafe || !is_dry(preset.environment)) continue;
+    offers.push_back({preset.name, name + " with XPBD", "tune.environment.xpbd",
+                      "the force solver would tear robots apart that are made for water; XPBD keeps them whole",
+                      use_xpbd});
+    offers.push_back({preset.name, name + " with a time step of 0.1 ms", "tune.environment.small",
+                      "the force solver keeps robots whole that are made for water; ten times as much work",
+                      use_small_step});
+  }
+  return offers;
+}
+
+bool has_water_robots(const LiveScene& scene) {
+  return std::ranges::any_of(scene.snapshot().robots->robots, [](const LiveRobot& robot) {
+    const std::string name = environment_of(*robot.robot);
+    return is_environment(name) && has_water(environment_named(name));
+  });
+}
+
 void EnvironmentChoice::count(const LiveScene& scene) {
   const LiveRobots& robots = *scene.snapshot().robots;
   if (robots.revision == made_.revision) return;
@@ -355,23 +381,15 @@ bool EnvironmentChoice::draw_list(PanelContext& context, Configuration& configur
   const bool open = ImGui::BeginCombo("##environment", now.c_str());
   if (!open) context.log.item("tune.environment");
   if (!open) return false;
-  const bool unsafe = made_.for_water > 0 && !is_dry(configuration.environment) && !is_safe(configuration);
-  for (const EnvironmentPreset& preset : environment_presets) {
-    const std::string name(preset.name);
-    const auto choose = [&](const std::string& label, const char* item, void (*adjust)(Configuration&)) {
-      const bool chosen = ImGui::Selectable(label.c_str(), adjust == nullptr && name == now);
-      context.log.item(item);
-      if (!chosen || (name == now && !adjust)) return;
-      configuration.environment = preset.environment;
-      if (adjust) adjust(configuration);
-      changed = true;
-    };
-    choose(name, ("tune.environment." + name).c_str(), nullptr);
-    if (!unsafe || !is_dry(preset.environment)) continue;
-    choose(fmt::format("   {} with XPBD", name), "tune.environment.xpbd", use_xpbd);
-    tooltip("the force solver would tear robots apart that are made for water; XPBD keeps them whole");
-    choose(fmt::format("   {} with a time step of 0.1 ms", name), "tune.environment.small", use_small_step);
-    tooltip("the force solver keeps robots whole that are made for water; ten times as much work");
+  for (const EnvironmentOffer& offer : environment_offers(configuration, made_.for_water > 0)) {
+    const bool is_now = !offer.adjust && offer.environment == now;
+    const bool chosen = ImGui::Selectable(((offer.adjust ? "   " : "") + offer.name).c_str(), is_now);
+    context.log.item(offer.item);
+    if (!offer.help.empty()) tooltip(offer.help.c_str());
+    if (!chosen || is_now) continue;
+    configuration.environment = environment_named(offer.environment);
+    if (offer.adjust) offer.adjust(configuration);
+    changed = true;
   }
   ImGui::EndCombo();
   return changed;

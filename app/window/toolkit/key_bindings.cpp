@@ -93,7 +93,7 @@ constexpr KeyBinding table[] = {
     {Action::record, "record", "V", "start or stop recording the window", "Window"},
     {Action::palette, "palette", "Ctrl K", "search commands, robots and settings", "Window"},
     {Action::messages, "messages", "", "all messages so far", "Window"},
-    {Action::help, "help", "F1 or ?", "this list", "Window"},
+    {Action::help, "help", "F1 or ?", "help: keys and gestures of the mouse", "Window"},
     {Action::quit, "quit", "Ctrl Q", "quit", "Window"},
 };
 

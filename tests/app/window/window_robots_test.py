@@ -58,11 +58,44 @@ class RobotsTest(WindowCase):
         for text, name in (("race", "layout race: one lane each"), ("layout cells", "layout cells: robots stay"),
                            ("turntable", "circle the group"), ("video", "panel Video"),
                            ("columns", "columns of the grid"), ("zoom out", "zoom out"), ("delete", "remove the selected robots"),
-                           ("quality medium", "quality medium"), ("magma", "color map magma"), ("land", "environment land")):
+                           ("quality medium", "quality medium"), ("magma", "color map magma"), ("sea", "environment ocean"),
+                           ("samples", "panel Browser"), ("help", "help: keys"), ("pause", "play or pause"),
+                           ("robots begin radius", "robots begin: target radius"), ("gravity", "gravity"),
+                           # The samples are made for water: the force solver would tear them apart there.
+                           ("land", "environment land with XPBD")):
             self.assertEqual(self.palette(window, text)[:len(name)], name)
-            if name.startswith("columns"):
-                window.dialog("2")
-        window.frame(lambda frame: frame["layout"] == "cells")
+            answer = {"columns of the grid": "2", "robots begin: target radius": "0.5", "gravity": "0, 0, -0.5"}.get(name)
+            if answer:
+                window.dialog(answer)
+            if name.startswith("layout cells"):
+                window.frame(lambda frame: frame["layout"] == "cells")
+            if name.startswith("help"):
+                window.key("Escape")
+        window.open("Tune")
+        since = window.mark()
+        window.click("tune.copy")
+        command = window.wait("copied", since)["text"]
+        for part in ("--target-radius=0.5", "--environment=land", "--solver=xpbd"):
+            self.assertIn(part, command)
+        self.finish(window)
+
+    def test_where_words_are_found_letters_add_no_noise(self):
+        window = self.small("--paused")
+        for text, count in (("race", 1), ("gravity", 2)):  # gravity: the number and its arrows
+            window.key("ctrl+k")
+            window.place("panel.Palette")
+            window.frame()
+            window.type(text)
+            window.until("few entries", lambda: f"palette.{count}" not in window.items and f"palette.{count - 1}" in window.items)
+            window.key("Escape")
+            window.until("palette closed", lambda: "panel.Palette" not in window.items)
+        window.key("ctrl+k")  # letters find names of which nobody wrote a word
+        window.place("panel.Palette")
+        window.frame()
+        since = window.mark()
+        window.type("dplct")
+        window.key("Return")
+        self.assertEqual(window.wait("palette", since)["name"], "duplicate the selected robots")
         self.finish(window)
 
     def test_a_right_click_opens_a_menu_and_a_robot_is_renamed(self):
