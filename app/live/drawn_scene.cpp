@@ -220,6 +220,12 @@ std::span<const Vec3> DrawnScene::positions_of(std::size_t robot) const {
 std::span<const render::Vector3> DrawnScene::offsets() const {
   return parts_->scene ? parts_->scene->offsets() : std::span<const render::Vector3>{};
 }
+render::Vector3 DrawnScene::cell_center(std::size_t robot) const { return parts_->scene->cell_center(robot); }
+bool DrawnScene::is_hidden(std::size_t robot) const {
+  if (!parts_->scene) return false;
+  const std::span<const render::Placement> placements = parts_->scene->scene().placements;
+  return robot < placements.size() && placements[robot].hidden;
+}
 std::span<const render::Bounds> DrawnScene::last_boxes() const {
   return parts_->scene ? parts_->scene->last_boxes() : std::span<const render::Bounds>{};
 }

@@ -58,6 +58,10 @@ class DrawnScene {
   std::span<const Vec3> positions_of(std::size_t robot) const;
   // What is added to each robot's own coordinates in the view [m].
   std::span<const render::Vector3> offsets() const;
+  // The middle of a robot's cell, or of where it starts in other layouts [m].
+  render::Vector3 cell_center(std::size_t robot) const;
+  // Whether a robot is left out of the view: hidden by the user, or torn apart and not selected.
+  bool is_hidden(std::size_t robot) const;
 
  private:
   struct Parts;

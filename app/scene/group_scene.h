@@ -85,6 +85,8 @@ class GroupScene {
   std::span<const render::Bounds> last_boxes() const { return last_boxes_; }
   // What is added to each robot's own coordinates in the picture at the last update() [m].
   std::span<const render::Vector3> offsets() const { return shown_offsets_; }
+  // The middle of a robot's cell, or of where it starts in other layouts [m].
+  render::Vector3 cell_center(std::size_t robot) const { return offsets_[robot] + rooms_[robot].center; }
   // What is added to the coordinates of a robot's ghost, whose center of mass is there.
   render::Vector3 ghost_offset(std::size_t robot, Vec3 center_of_mass) const {
     return motion_.ghost_offset(shown_offsets_[robot], rooms_[robot], trails_[robot], center_of_mass);

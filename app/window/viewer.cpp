@@ -73,6 +73,7 @@ class Viewer {
   void place_views();
   void update_renderer();
   void begin_close();
+  void keep_anchor();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
   bool draw_picture(double dt);
   void present(bool draws);
@@ -127,8 +128,13 @@ class Viewer {
   std::int64_t shown_steps_ = -1;
   double shown_time_ = -1;  // simulated time [s]
   render::Camera shown_camera_;
-  std::int64_t drawn_ = 0;      // of the robots, drawn so far
-  std::int64_t presented_ = 0;  // frames brought to the display so far
+  struct Anchor {
+    RobotId robot = 0;
+    render::Vector3 cell{0, 0, 0};  // its middle [m]
+  };
+  std::optional<Anchor> anchor_;  // the robot that a camera which stands looks at
+  std::int64_t drawn_ = 0;        // of the robots, drawn so far
+  std::int64_t presented_ = 0;    // frames brought to the display so far
 
   Pacing pacing_;
   FrameTimes times_;  // of this frame
@@ -271,7 +277,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   panels_.draw_over(area_, shown_camera_, dt);
   draw_text();
   draw_handles();
-  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_);
+  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_, context_.body_edit.robot == 0);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();
@@ -305,6 +311,7 @@ void Viewer::split_area(const ViewportArea& whole) {
     if (DrawnScene* second = scene_.second_drawn()) second->lay_out(area_.aspect());
   }
   if (second_.area()) log_.item("second", second_.area()->low, second_.area()->high);
+  keep_anchor();
 }
 
 // A drag belongs to the side on which it began.
@@ -322,11 +329,13 @@ void Viewer::draw_text() {
                               .legend = legend_.box()};
   titles_ = second_.area() ? draw_side_titles(scene_, halves_of(whole_area_), log_) : 0;
   options.top = titles_;
+  options.covered = context_.covered;
+  if (titles_ > 0) options.covered.push_back({area_.low, {whole_area_.high.x, area_.low.y + titles_}});
   context_.caption =
       draw_viewport_text(scene_.drawn().scene(), scene_.drawn().bounds(), area_, shown_camera_, options, log_);
   if (titles_ > 0)  // they are above the caption
     context_.caption = {area_.low, {area_.high.x, std::max(context_.caption.high.y, area_.low.y + titles_)}};
-  draw_ghost_figures(scene_, area_, shown_camera_, log_);
+  draw_ghost_figures(scene_, area_, titles_, shown_camera_, log_);
   DrawnScene* const second = scene_.second_drawn();
   if (!second || !second_.area()) return;
   options.caption = second->scene().caption != scene_.drawn().scene().caption;
@@ -401,6 +410,27 @@ void Viewer::begin_close() {
     return box.empty() ? std::numeric_limits<float>::max() : (box.center() - all.center()).norm();
   });
   camera_.begin_close(static_cast<std::size_t>(middle - boxes.begin()));
+}
+
+// Cells are packed again when robots come or go, or when the view has another shape. A camera that stands then goes
+// with the cell that it looks at: that of the selected robot, else the one nearest to its target. Call it before
+// anything frames robots where they are now.
+void Viewer::keep_anchor() {
+  const LiveRobots& robots = *scene_.snapshot().robots;
+  const DrawnScene& live = scene_.drawn();
+  const bool stands = camera_placed_ && camera_.mode() == CameraMode::still && scene_.view().layout == Layout::cells;
+  if (!stands || robots.robots.empty() || live.offsets().size() != robots.robots.size()) {
+    anchor_.reset();
+    return;
+  }
+  const auto at = anchor_ ? robots.index_of(anchor_->robot) : std::nullopt;
+  if (at) camera_.shift(live.cell_center(*at) - anchor_->cell);
+  const auto current = scene_.current() ? robots.index_of(*scene_.current()) : std::nullopt;
+  std::size_t chosen = current.value_or(0);
+  const auto distance = [&](std::size_t i) { return (live.cell_center(i) - camera_.orbit().target).norm(); };
+  for (std::size_t i = 1; i < robots.robots.size() && !current; ++i)
+    if (distance(i) < distance(chosen)) chosen = i;
+  anchor_ = Anchor{robots.robots[chosen].id, live.cell_center(chosen)};
 }
 
 bool Viewer::leaves_gpu_to_steps() const {

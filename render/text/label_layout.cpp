@@ -31,7 +31,7 @@ std::array<Rectangle, 4> candidates(const LabelRequest& r, const Rectangle& pict
 }
 
 // How much a name at `place` disturbs: the largest share that it covers of its own or of another body, and more than 1
-// if it covers another name.
+// if it covers another name or what is taken otherwise.
 float disturbance(const Rectangle& place, std::size_t own, std::span<const LabelRequest> requests,
                   std::span<const Rectangle> taken) {
   constexpr float own_weight = 0.3f;  // covering a part of its own body is no lie
@@ -62,7 +62,8 @@ std::optional<Rectangle> covered_by(const Bounds& box, const Camera& camera, int
   return Rectangle{low.x, low.y, high.x - low.x, high.y - low.y};
 }
 
-std::vector<std::optional<Rectangle>> place_labels(std::span<const LabelRequest> requests, const Rectangle& picture) {
+std::vector<std::optional<Rectangle>> place_labels(std::span<const LabelRequest> requests, const Rectangle& picture,
+                                                   std::span<const Rectangle> covered) {
   // The share of a body that a name may cover. Among many bodies there is no room beside them, but there are few names.
   const float tolerated = requests.size() > most_named_bodies ? 1 : 0.08f;
   std::vector<std::size_t> order(requests.size());
@@ -73,7 +74,7 @@ std::vector<std::optional<Rectangle>> place_labels(std::span<const LabelRequest>
     return x.priority != y.priority ? x.priority > y.priority : x.depth < y.depth;
   });
   std::vector<std::optional<Rectangle>> placed(requests.size());
-  std::vector<Rectangle> taken;
+  std::vector<Rectangle> taken(covered.begin(), covered.end());
   std::size_t count = 0;
   for (const std::size_t i : order) {
     const LabelRequest& request = requests[i];

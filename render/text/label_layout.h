@@ -26,7 +26,8 @@ constexpr std::size_t most_named_bodies = 24;
 std::optional<Rectangle> covered_by(const Bounds& box, const Camera& camera, int width, int height);
 
 // Where each name goes, in the order of the requests; nothing for those without room. Names never cover each other. A
-// name is above its body, else below it, else beside it, and inside `picture`.
-std::vector<std::optional<Rectangle>> place_labels(std::span<const LabelRequest> requests, const Rectangle& picture);
+// name is above its body, else below it, else beside it, inside `picture` and off what is `covered` by other things.
+std::vector<std::optional<Rectangle>> place_labels(std::span<const LabelRequest> requests, const Rectangle& picture,
+                                                   std::span<const Rectangle> covered = {});
 
 }  // namespace mercury::render

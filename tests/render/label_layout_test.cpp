@@ -74,6 +74,17 @@ TEST(LabelLayout, OfManyOnlyTheBestTenAndTheChosenOnesAreNamed) {
   EXPECT_GE(best, 8) << "bodies of one pixel leave room for nearly all";
 }
 
+TEST(LabelLayout, NamesLeaveWhatIsCoveredFree) {
+  const std::vector<LabelRequest> one{{.body = {600, 300, 80, 60}, .width = 100, .height = 20, .forced = true}};
+  const Rectangle above{0, 200, 1280, 100}, below{0, 360, 1280, 360}, sides{0, 300, 600, 60}, all{0, 0, 1280, 720};
+  const auto at = [&](std::vector<Rectangle> covered) { return place_labels(one, picture, covered)[0]; };
+  ASSERT_TRUE(at({above}));
+  EXPECT_EQ(at({above})->y, 360) << "below its body";
+  ASSERT_TRUE(at({above, below, sides}));
+  EXPECT_EQ(at({above, below, sides})->x, 680) << "at its right";
+  EXPECT_FALSE(at({all}));
+}
+
 TEST(LabelLayout, TheNameOfALoneRobotIsAboveIt) {
   const std::vector<LabelRequest> one{{.body = {600, 300, 80, 60}, .width = 100, .height = 20}};
   const auto placed = place_labels(one, picture);

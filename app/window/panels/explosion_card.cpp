@@ -64,8 +64,10 @@ void ExplosionCard::update(PanelContext& context, const ViewportArea& area, cons
     });
   });
   if (!chosen()) chosen_ = robots_.empty() ? std::nullopt : std::optional(robots_.front().robot);
-  draw_explosion_marks(robots_, {.chosen = chosen_, .covered_low = low_, .covered_high = high_}, context.log, area,
-                       camera);
+  const ExplodedRobot* const robot = chosen();
+  const bool is_selected = robot && context.scene.is_selected(robot->robot), is_open = high_.x > low_.x;
+  if (robot && (is_selected || is_open))
+    draw_explosion_mark(*robot, is_selected, {low_, high_}, context.log, area, camera);
 }
 
 void ExplosionCard::draw(PanelContext& context, const ViewportArea& area) {

@@ -96,10 +96,12 @@ struct PanelContext {
   TimeCursor cursor = {};
   BodyEdit body_edit = {};
   RobotMenu robot_menu = {};
-  std::optional<Hit> pinned = {};     // the mass and spring that were clicked, while their robot is selected
-  std::optional<Hit> new_probe = {};  // to be plotted over time
-  UsedGestures gestures = {};         // of this session
+  std::optional<Hit> pinned = {};      // the mass and spring that were clicked, while their robot is selected
+  std::optional<Hit> new_probe = {};   // to be plotted over time
+  std::vector<RobotId> to_frame = {};  // robots that the camera shows as soon as they are drawn
+  UsedGestures gestures = {};          // of this session
   Box legend = {}, caption = {}, first_steps = {};  // over the viewport, in the last frame
+  std::vector<Box> covered = {};                    // by what panels draw over the viewport, in this frame
   float aspect = 16.0f / 9;                         // width / height of the viewport in this frame
   bool screenshot_requested = false;                // set it to take one at the end of the frame
 };

@@ -142,9 +142,19 @@ ViewportArea Panels::draw_frame() {
     draw_play_bar(context_, {0, area.high.y}, screen);
   }
   if (context_.new_probe) show("Probes");
+  frame_new_robots();
   context_.aspect = area.aspect();
   context_.log.item("view", area.low, area.high);
   return area;
+}
+
+void Panels::frame_new_robots() {
+  const LiveRobots& robots = *context_.scene.snapshot().robots;
+  const bool drawn =
+      context_.scene.drawn().offsets().size() == robots.robots.size() &&
+      std::ranges::all_of(context_.to_frame, [&](RobotId id) { return robots.index_of(id).has_value(); });
+  if (context_.to_frame.empty() || !drawn) return;
+  frame_robots(context_, std::exchange(context_.to_frame, {}));
 }
 
 // Whether the window has no room for two columns and a view.
@@ -194,6 +204,9 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   draw_robot_menu(context_, [this](Action action) { execute(action); });
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
   context_.toasts.draw({area.low.x, below_caption(context_.caption, area)}, area.high, dt, context_.log);
+  context_.covered = {axes, context_.legend, explosions_.box(), context_.first_steps};
+  for (const auto& [low, high] : context_.toasts.places()) context_.covered.push_back({low, high});
+  std::erase_if(context_.covered, [](const Box& box) { return box.high.x <= box.low.x; });
   if (context_.dialogs.open()) palette_.close();
   palette_.draw(context_);
   if (context_.toasts.take_click()) show("Messages");

@@ -99,6 +99,7 @@ class Panels {
   void change_robots(Action action);
   void change_view(Action action);
   void change_camera(Action action);
+  void frame_new_robots();
   bool is_narrow() const;
   bool column_open(Side side) const;
   void open_column(Side side, bool open);

@@ -290,6 +290,10 @@ void fork(PanelContext& context) {
   const std::vector<RobotId> copies = scene.fork(selected);
   scene.clear_selection();
   for (const RobotId id : copies) scene.select(id, false);
+  // Those that part are seen together.
+  std::vector<RobotId> both = selected;
+  both.insert(both.end(), copies.begin(), copies.end());
+  if (context.camera.mode() == CameraMode::still) context.to_frame = both;
   context.toasts.show(Tone::info, fmt::format("{} forked at {}",
                                               copies.size() == 1 ? "1 robot" : fmt::format("{} robots", copies.size()),
                                               moment_text(scene.snapshot().time)));

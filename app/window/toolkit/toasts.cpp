@@ -84,6 +84,7 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
   const float line = ImGui::GetFontSize();
   float y = low.y + line;
   int number = 0;
+  places_.clear();
   for (Toast& toast : toasts_) {
     if (!toast.logged) log.write("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
     toast.logged = true;
@@ -111,6 +112,7 @@ void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
       toast.seconds_left = 0;
     }
     log.item(fmt::format("toast.{}", number - 1), corner, {corner.x + size.x, corner.y + size.y});
+    places_.emplace_back(corner, ImVec2{corner.x + size.x, corner.y + size.y});
     y += size.y + 0.4f * line;
     ImGui::End();
     toast.seconds_left -= dt;

@@ -6,6 +6,7 @@
 #include <deque>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/window/toolkit/event_log.h"
 
@@ -33,6 +34,8 @@ class Toasts {
   // Draws the messages at the top center of a rectangle. `dt`: time since the last frame [s].
   void draw(ImVec2 low, ImVec2 high, double dt, EventLog& log);
   bool empty() const { return toasts_.empty(); }
+  // Where the last draw() drew them: upper left and lower right corners.
+  const std::vector<std::pair<ImVec2, ImVec2>>& places() const { return places_; }
   // The last 1,000 messages, the newest last.
   const std::deque<PastMessage>& history() const { return history_; }
   // Whether a message was clicked since the last call, which asks for the history. A right click only dismisses it.
@@ -50,6 +53,7 @@ class Toasts {
 
   std::deque<Toast> toasts_;
   std::deque<PastMessage> history_;
+  std::vector<std::pair<ImVec2, ImVec2>> places_;
   bool clicked_ = false;
 };
 

@@ -101,10 +101,9 @@ std::optional<Line> line_of(const CulpritSpring& spring, const ViewportArea& are
 }
 
 // A bar and two rings with an outline, so that they stand out from any background.
-void draw_mark(const Line& line, bool chosen) {
+void draw_mark(const Line& line) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float text = ImGui::GetFontSize(), bar = (chosen ? 0.22f : 0.12f) * text, ring = 0.42f * text,
-              edge = 0.14f * text;
+  const float text = ImGui::GetFontSize(), bar = 0.22f * text, ring = 0.42f * text, edge = 0.14f * text;
   const ImU32 mark = palette().mark, outline = palette().mark_outline;
   list.AddLine(line.a, line.b, outline, bar + 2 * edge);
   for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
@@ -118,10 +117,9 @@ std::string length_text(float meters) {
   return meters < 1 ? fmt::format("{:.3g} cm", 100 * meters) : fmt::format("{:.3g} m", meters);
 }
 
-std::vector<std::string> lines_of(const ExplodedRobot& robot, bool all) {
+std::vector<std::string> lines_of(const ExplodedRobot& robot) {
   const CulpritSpring& spring = *robot.spring;
   std::vector<std::string> lines{fmt::format("{}: spring {} exploded first", robot.name, spring.index)};
-  if (!all) return lines;
   lines.push_back(fmt::format("masses {} and {}, {}", spring.a, spring.b, spring.figures.material_name));
   lines.push_back(
       fmt::format("{} long, {} at rest", length_text(spring.figures.length), length_text(spring.figures.rest_length)));
@@ -295,34 +293,24 @@ void TargetHandle::move_to_mouse(LiveScene& scene, const ViewportArea& area, con
   scene.set_configuration(configuration);
 }
 
-void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks, EventLog& log,
-                          const ViewportArea& area, const render::Camera& camera) {
-  std::vector<std::pair<const ExplodedRobot*, Line>> drawn;
-  for (const ExplodedRobot& robot : robots)
-    if (const std::optional<Line> line = robot.spring ? line_of(*robot.spring, area, camera) : std::nullopt)
-      drawn.emplace_back(&robot, *line);
-  std::stable_partition(drawn.begin(), drawn.end(), [&](const auto& one) { return one.first->robot == marks.chosen; });
+void draw_explosion_mark(const ExplodedRobot& robot, bool was_sought, const Box& covered, EventLog& log,
+                         const ViewportArea& area, const render::Camera& camera) {
+  constexpr float longest = 0.3f;  // of a spring that was not sought [heights of the view]
+  const std::optional<Line> line = robot.spring ? line_of(*robot.spring, area, camera) : std::nullopt;
+  if (!line) return;
+  const bool torn = !line->sees_a || !line->sees_b ||
+                    std::hypot(line->a.x - line->b.x, line->a.y - line->b.y) > longest * area.height();
+  if (torn && !was_sought) return;
   ImGui::GetBackgroundDrawList()->PushClipRect(area.low, area.high);
+  draw_mark(*line);
   // The upper edge has the view's caption.
-  const Box caption{area.low, {area.high.x, area.low.y + 2.2f * ImGui::GetFontSize()}};
-  std::vector<Box> taken{{marks.covered_low, marks.covered_high}, caption};
+  std::vector<Box> taken{covered, {area.low, {area.high.x, area.low.y + 2.2f * ImGui::GetFontSize()}}};
   const float end = 0.7f * ImGui::GetFontSize();
-  for (const auto& [robot, line] : drawn) {
-    draw_mark(line, robot->robot == marks.chosen);
-    for (const ImVec2 at : {line.a, line.b}) taken.push_back({{at.x - end, at.y - end}, {at.x + end, at.y + end}});
-  }
-  for (const auto& [robot, line] : drawn) {
-    const bool chosen = robot->robot == marks.chosen;
-    if (chosen) {
-      log.item("explosion.a", line.a, line.a);
-      log.item("explosion.b", line.b, line.b);
-    }
-    const std::vector<std::string> lines = lines_of(*robot, chosen);
-    const std::optional<Box> place = place_of(lines, line, area, taken);
-    if (!place) continue;
-    write(lines, *place);
-    taken.push_back(*place);
-  }
+  for (const ImVec2 at : {line->a, line->b}) taken.push_back({{at.x - end, at.y - end}, {at.x + end, at.y + end}});
+  log.item("explosion.a", line->a, line->a);
+  log.item("explosion.b", line->b, line->b);
+  const std::vector<std::string> lines = lines_of(robot);
+  if (const std::optional<Box> place = place_of(lines, *line, area, taken)) write(lines, *place);
   ImGui::GetBackgroundDrawList()->PopClipRect();
 }
 

@@ -48,14 +48,10 @@ class TargetHandle {
                             const render::Vector3& target, const render::Vector3& offset);
 };
 
-// Marks the culprit spring of each robot that exploded. Drawn over the view, so that nothing hides it.
-struct ExplosionMarks {
-  std::optional<RobotId> chosen;                 // shown with details; the others only with their names
-  ImVec2 covered_low{0, 0}, covered_high{0, 0};  // no text in this rectangle
-};
-
-// Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the view was drawn with.
-void draw_explosion_marks(std::span<const ExplodedRobot> robots, const ExplosionMarks& marks, EventLog& log,
-                          const ViewportArea& area, const render::Camera& camera);
+// Marks the culprit spring of a robot that exploded, with details in words, over the view, so that nothing hides it. A
+// spring that is torn across the view is marked only if it `was_sought`. No text covers the box `covered`. Call between
+// begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the view was drawn with.
+void draw_explosion_mark(const ExplodedRobot& robot, bool was_sought, const Box& covered, EventLog& log,
+                         const ViewportArea& area, const render::Camera& camera);
 
 }  // namespace mercury::window

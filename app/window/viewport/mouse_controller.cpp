@@ -188,7 +188,7 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
   next_pick_ = ImGui::GetTime() + std::max(pick_period, seconds / pick_share);
 }
 
-void MouseController::draw(const ViewportArea& area, const render::Camera& camera) {
+void MouseController::draw(const ViewportArea& area, const render::Camera& camera, bool figures) {
   draw_springs(area, camera);
   draw_pull(area, camera);
   draw_push(area, camera);
@@ -196,6 +196,7 @@ void MouseController::draw(const ViewportArea& area, const render::Camera& camer
   const bool stays =
       pinned_ && scene_.is_selected(pinned_->robot) && scene_.pointed_snapshot().robots->index_of(pinned_->robot);
   if (!stays) pinned_.reset();
+  if (!figures) return;
   if (pinned_) draw_hit_mark(scene_, *pinned_, area, camera);
   if (!hovered_) return;
   draw_hit_mark(scene_, *hovered_, area, camera);

@@ -35,8 +35,8 @@ class MouseController {
   // Handles the mouse where no panel uses it. Call between begin_frame() and end_frame() of ImGuiLayer. `camera`: the
   // one the last frame was drawn with.
   void update(const ViewportArea& area, const render::Camera& camera);
-  // Draws the force of a pull, the velocity of a push and the details under the pointer.
-  void draw(const ViewportArea& area, const render::Camera& camera);
+  // Draws the force of a pull, the velocity of a push and, if `figures`, the details under the pointer.
+  void draw(const ViewportArea& area, const render::Camera& camera, bool figures);
   // The robot under the pointer, by its index in the snapshot.
   std::optional<std::size_t> hovered() const;
   // What it is over there.

@@ -54,6 +54,11 @@ class OrbitController {
   render::Camera at(std::span<const render::Bounds> robots, float aspect, double dt);
   const render::Orbit& orbit() const { return orbit_; }
   void set_orbit(const render::Orbit& orbit);
+  // Moves the camera with what it looks at, also during a glide.
+  void shift(const render::Vector3& by) {
+    orbit_.target += by;
+    aim_.target += by;
+  }
 
   // The plan for a video that starts with this camera.
   CameraPlan plan() const;

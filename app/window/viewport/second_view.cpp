@@ -12,6 +12,7 @@
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 #include "app/window/viewport/viewport_text.h"
+#include "render/text/label_layout.h"
 
 namespace mercury::window {
 namespace {
@@ -110,7 +111,9 @@ std::string text_of(const GhostFigures& figures) {
   return text;
 }
 
-void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log) {
+void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, float top, const render::Camera& camera,
+                        EventLog& log) {
+  const ViewportArea free{{area.low.x, area.low.y + top}, area.high};
   const auto boxes = scene.drawn().last_boxes();
   const float font = ImGui::GetFontSize();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
@@ -119,12 +122,13 @@ void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, const render
   for (const GhostFigures& figures : scene.ghost_figures()) {
     const auto robot = scene.snapshot().robots->index_of(figures.robot);
     if (!robot || *robot >= boxes.size() || boxes[*robot].empty() || scene.is_hidden(figures.robot)) continue;
-    if ((boxes[*robot].center() - camera.eye).dot(camera.target - camera.eye) <= 0) continue;
+    if (!render::covered_by(boxes[*robot], camera, static_cast<int>(area.width()), static_cast<int>(area.height())))
+      continue;
     const Place place = place_of(boxes[*robot], area, camera);
     const std::string text = text_of(figures);
     const ImVec2 bare = ImGui::CalcTextSize(text.c_str()), size{bare.x + 0.8f * font, bare.y + 0.4f * font};
     const ViewportArea at =
-        free_place({area.low.x + place.x - size.x / 2, area.low.y + place.low + 0.2f * font}, size, area, taken);
+        free_place({area.low.x + place.x - size.x / 2, area.low.y + place.low + 0.2f * font}, size, free, taken);
     centered({(at.low.x + at.high.x) / 2, at.low.y}, text, ImGui::GetColorU32(ImGuiCol_Text), log,
              fmt::format("ghost.{}", *robot));
   }

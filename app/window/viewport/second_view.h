@@ -23,7 +23,9 @@ Halves halves_of(const ViewportArea& area);
 float draw_side_titles(const LiveScene& scene, const Halves& halves, EventLog& log);
 
 // A line of text below each robot that has a ghost: how much farther and faster it is.
-void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, const render::Camera& camera, EventLog& log);
+// `top`: of the area that is taken [pixels].
+void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, float top, const render::Camera& camera,
+                        EventLog& log);
 
 // "+12 cm (+8 %)\n+3 cm/s to its parent": two lines, or one.
 std::string text_of(const GhostFigures& figures);

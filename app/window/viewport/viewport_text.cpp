@@ -36,32 +36,52 @@ void line(ImVec2 at, const std::string& text) {
   ImGui::GetBackgroundDrawList()->AddText(at, text_color(), text.c_str());
 }
 
-// The labels that there is room for (render/text/label_layout.h). `hovered`: the body under the mouse.
+// Texts that may move are the names of robots that were torn apart; they stand last.
+std::size_t fixed_texts(const render::Scene& scene) {
+  const auto first = std::ranges::find_if(scene.texts, [](const render::Text& text) { return text.free; });
+  return static_cast<std::size_t>(first - scene.texts.begin());
+}
+
+// The labels that there is room for (render/text/label_layout.h).
 void draw_labels(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
-                 const render::Camera& camera, std::optional<std::size_t> hovered, EventLog& log) {
+                 const render::Camera& camera, const ViewportTextOptions& options, EventLog& log) {
   const float margin = 0.4f * ImGui::GetFontSize();
   const int width = static_cast<int>(area.width()), height = static_cast<int>(area.height());
-  std::vector<const render::Label*> labels;
+  std::vector<std::pair<std::string, const std::string*>> labels;  // of the log, and what is drawn
   std::vector<render::LabelRequest> requests;
   for (const render::Label& label : scene.labels) {
     if (label.body >= bounds.size() || scene.placements[label.body].hidden) continue;
     const auto body = render::covered_by(bounds[label.body], camera, width, height);
     if (!body) continue;
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-    labels.push_back(&label);
+    labels.emplace_back(fmt::format("label.{}", label.body), &label.text);
     requests.push_back({.body = *body,
                         .width = size.x + 2 * margin,
                         .height = size.y + 1.2f * margin,
                         .depth = camera.project(bounds[label.body].center(), width, height).z,
                         .priority = label.priority,
-                        .forced = label.forced || label.body == hovered});
+                        .forced = label.forced || label.body == options.hovered});
   }
-  const auto placed = render::place_labels(requests, {0, 0, area.width(), area.height()});
+  for (const render::Text& text : scene.texts.subspan(fixed_texts(scene))) {
+    const render::Vector3 at = camera.project(text.at, width, height);
+    if (!at.is_finite() || at.z < camera.near) continue;
+    const ImVec2 size = ImGui::CalcTextSize(text.text.c_str());
+    labels.emplace_back(fmt::format("wreck.{}", &text - &scene.texts[fixed_texts(scene)]), &text.text);
+    requests.push_back({.body = {at.x, at.y, 0, 0},
+                        .width = size.x + 2 * margin,
+                        .height = size.y + 1.2f * margin,
+                        .depth = at.z,
+                        .priority = -1});
+  }
+  std::vector<render::Rectangle> covered;
+  for (const Box& box : options.covered)
+    covered.push_back({box.low.x - area.low.x, box.low.y - area.low.y, box.high.x - box.low.x, box.high.y - box.low.y});
+  const auto placed = render::place_labels(requests, {0, 0, area.width(), area.height()}, covered);
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (!placed[i]) continue;
     const ImVec2 at{area.low.x + placed[i]->x + margin, area.low.y + placed[i]->y + 0.6f * margin};
-    line(at, labels[i]->text);
-    log.item(fmt::format("label.{}", labels[i]->body), {at.x - margin, at.y - 0.6f * margin},
+    line(at, *labels[i].second);
+    log.item(labels[i].first, {at.x - margin, at.y - 0.6f * margin},
              {at.x - margin + placed[i]->width, at.y - 0.6f * margin + placed[i]->height});
   }
 }
@@ -167,6 +187,7 @@ void draw_swatches(const render::Legend& legend, ImVec2 low, float width) {
 render::Scene without_text(const render::Scene& scene) {
   render::Scene bare = scene;
   bare.labels = {};
+  bare.texts = bare.texts.first(fixed_texts(bare));
   bare.legend.reset();
   bare.clock.clear();
   bare.caption.clear();
@@ -179,7 +200,7 @@ Box draw_viewport_text(const render::Scene& scene, std::span<const render::Bound
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
   const float text = ImGui::GetFontSize();
-  draw_labels(scene, bounds, area, camera, options.hovered, log);
+  draw_labels(scene, bounds, area, camera, options, log);
   const Box caption = options.caption ? draw_caption(scene.caption, area, options, log) : Box{};
   if (options.clock && !scene.clock.empty()) line({area.low.x + text, area.high.y - 2 * text}, scene.clock);
   if (scene.scale_bar) draw_scale_bar(area, camera);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "app/scene/view_settings.h"
 #include "app/window/toolkit/event_log.h"
@@ -15,7 +16,7 @@
 
 namespace mercury::window {
 
-// A copy of the scene without its text.
+// A copy of the scene without the text that draw_viewport_text() draws.
 render::Scene without_text(const render::Scene& scene);
 
 struct ViewportTextOptions {
@@ -24,9 +25,11 @@ struct ViewportTextOptions {
   bool caption = true;                 // draw the caption
   std::optional<std::size_t> hovered;  // the body under the mouse, whose name is shown in any case
   Box legend;                          // which the caption leaves free
+  std::vector<Box> covered;            // by what else is drawn over the view, which names leave free
 };
 
-// Draws the text of the scene over the view, and logs where each name is as the item "label.BODY". `bounds`: one box
+// Draws the text of the scene over the view, and logs where each name is as the item "label.BODY", and those of robots
+// that were torn apart as "wreck.0", "wreck.1", ... `bounds`: one box
 // per body, in the coordinates of the view. Returns the box of the caption; without one it is empty.
 Box draw_viewport_text(const render::Scene& scene, std::span<const render::Bounds> bounds, const ViewportArea& area,
                        const render::Camera& camera, const ViewportTextOptions& options, EventLog& log);

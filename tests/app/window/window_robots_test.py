@@ -98,6 +98,33 @@ class RobotsTest(WindowCase):
         self.assertEqual(window.wait("palette", since)["name"], "duplicate the selected robots")
         self.finish(window)
 
+    def test_the_robot_that_is_looked_at_stays_in_view(self):
+        """Cells are packed again for a fork and for two views; a camera that stands goes along."""
+        window = self.open(*(str(SAMPLES / f"{name}.json") for name in ("eel", "fish", "ray", "squid", "turtle")), "--paused")
+        self.names(window, 5)
+        window.click("robot.4")
+        window.key("f")
+        window.until("the turtle alone", lambda: self.sees(window.standing(), window.items["view"], 4))
+        window.key("i")
+        window.place("second")
+        frame = window.standing()
+        self.assertTrue(self.sees(frame, window.items["view"], 4, half=True), frame["where"])
+        window.key("i")
+        window.until("one view", lambda: window.frame() and "second" not in window.items)
+        window.key("y")
+        self.names(window, 6)
+        window.until("both", lambda: all(self.sees(window.standing(), window.items["view"], robot) for robot in (4, 5)))
+        self.finish(window)
+
+    @staticmethod
+    def sees(frame, area, robot, half=False):
+        """Whether the middle of a robot is in the view, or in its left half."""
+        if len(frame["where"]) <= robot:
+            return False
+        x, y = frame["where"][robot]
+        left = area["x"] - area["width"] / 2
+        return left < x < left + area["width"] / (2 if half else 1) and abs(y - area["y"]) < area["height"] / 2
+
     def test_a_right_click_opens_a_menu_and_a_robot_is_renamed(self):
         window = self.small("--paused")
         x, y = self.still(window)[0]
