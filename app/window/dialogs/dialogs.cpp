@@ -104,7 +104,7 @@ Dialogs::Button Dialogs::draw_buttons(EventLog& log, bool acceptable) {
     ImGui::SameLine();
   }
   ImGui::BeginDisabled(!acceptable);
-  if (ImGui::Button(question_.button.c_str(), {width, 0})) pressed = Button::accept;
+  if (primary_button(question_.button.c_str(), {width, 0})) pressed = Button::accept;
   log.item("dialog.accept");
   ImGui::EndDisabled();
   return pressed;

@@ -383,7 +383,7 @@ void FileDialog::draw_buttons(EventLog& log) {
               width = std::max(7 * text, ImGui::CalcTextSize(request_.button.c_str()).x + 2 * text);
   if (request_.kind == Kind::open) {
     ImGui::BeginDisabled(view_.file_count() == 0);
-    if (ImGui::Button(fmt::format("All {} shown", view_.file_count()).c_str())) {
+    if (ImGui::Button(fmt::format("Open all {}", view_.file_count()).c_str())) {
       std::vector<fs::path> all;
       for (const FolderItem& item : view_.items())
         if (!item.folder) all.push_back(view_.folder() / item.name);
@@ -401,7 +401,7 @@ void FileDialog::draw_buttons(EventLog& log) {
   ImGui::SameLine();
   const std::vector<FolderItem> marked = view_.marked();
   const bool into = marked.size() == 1 && marked.front().folder;
-  if (ImGui::Button(into ? "Open folder###accept" : (request_.button + "###accept").c_str(), {width, 0})) accept();
+  if (primary_button(into ? "Open folder###accept" : (request_.button + "###accept").c_str(), {width, 0})) accept();
   log.item("files.accept");
 }
 

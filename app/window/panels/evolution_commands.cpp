@@ -38,11 +38,11 @@ int index_in(const std::vector<const char*>& words, const std::string& word) {
 
 // A row for one parameter of a table.
 template <class Struct>
-void parameter_row(const char* name, Struct& values, EventLog& log) {
+void parameter_row(const char* name, const char* label, Struct& values, EventLog& log) {
   for_each_parameter(values, [&]<class Value>(const auto& parameter, Value& value) {
     if (parameter.name != name) return;
     ImGui::PushID(name);
-    row(name, std::string(parameter.help).c_str());
+    row(label, std::string(parameter.help).c_str());
     if constexpr (std::is_same_v<Value, double>) {
       ImGui::InputDouble("##value", &value, 1, 10, fmt::format("%.3g {}", parameter.unit).c_str());
     } else if constexpr (!std::is_same_v<Value, bool>) {
@@ -178,7 +178,7 @@ bool EvolveForm::draw(EventLog& log) {
   row("name", "of the new folder");
   text_field("##name", name_);
   log.item("evolve.name");
-  row("in", "the folder in which the new one is made");
+  row("folder", "in which the new one is made");
   text_field("##folder", folder_);
   log.item("evolve.folder");
   std::vector<const char*> names, all_genes;
@@ -192,17 +192,17 @@ bool EvolveForm::draw(EventLog& log) {
   combo("algorithm", help.c_str(), algorithm, names);
   log.item("evolve.algorithm");
   values_.settings.algorithm.name = names[static_cast<std::size_t>(algorithm)];
+  note(std::string(algorithms()[static_cast<std::size_t>(algorithm)].help).c_str());
   combo("what changes",
         "the bodies, how the muscles move (amplitude, frequency, phase), both of that, or the weights of brains", genes,
         all_genes);
   log.item("evolve.genes");
   values_.genes = all_genes[static_cast<std::size_t>(genes)];
-  note(std::string(algorithms()[static_cast<std::size_t>(algorithm)].help).c_str());
   draw_objective(log);
-  parameter_row("population", values_.settings.algorithm, log);
-  parameter_row("generations", values_.settings, log);
-  parameter_row("seconds", values_.settings.trials, log);
-  parameter_row("trials", values_.settings.trials, log);
+  parameter_row("population", "population [robots]", values_.settings.algorithm, log);
+  parameter_row("generations", "generations", values_.settings, log);
+  parameter_row("seconds", "length of a trial", values_.settings.trials, log);
+  parameter_row("trials", "trials per robot", values_.settings.trials, log);
   const EvolveRequest now = request();
   if (std::vector<std::string> words = evolve_arguments(now, {}); problem_ == "?" || words != checked_) {
     problem_ = problem_of(now);

@@ -65,19 +65,17 @@ void draw_commands(PanelContext& context) {
   context.log.item("evolution.open");
   tooltip("open the folder of an evolution, running or finished; or drop it on the window");
   ImGui::SameLine();
-  if (ImGui::Button("Evolve these...", {width, 0})) evolve_selected(context);
+  if (primary_button("Evolve these...", {width, 0})) evolve_selected(context);
   context.log.item("evolution.evolve");
   tooltip(with_keys(context.keys, "start an evolution from the selected robots, in the background", Action::evolve)
               .c_str());
 }
 
 void draw_empty(PanelContext& context) {
-  heading("Evolution");
   draw_problem(context.run.problem());
   note(
-      "An evolution makes children of robots, tries them, and keeps the best, generation after generation. Open the "
-      "run "
-      "of \"mercury evolve\", or select robots and evolve them.");
+      "An evolution makes children of robots, tries them, and keeps the best, generation after generation. Select "
+      "robots and evolve them, or open the folder of an earlier evolution.");
   draw_commands(context);
 }
 

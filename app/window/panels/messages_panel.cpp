@@ -59,7 +59,6 @@ void show_messages(Toasts& toasts, const std::vector<Message>& messages) {
 
 void MessagesPanel::draw(PanelContext& context) {
   const std::deque<PastMessage>& history = context.toasts.history();
-  heading("Messages");
   struct Filter {
     std::optional<Tone> tone;
     const char* name;

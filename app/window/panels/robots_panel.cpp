@@ -162,12 +162,16 @@ void RandomSection::draw(PanelContext& context) {
   auto kind = static_cast<int>(&generator_in(generation) - generators().data());
   if (combo("kind", help.c_str(), kind, kinds)) generation.kind = kinds[static_cast<std::size_t>(kind)];
   context.log.item("generate.kind");
-  auto count = static_cast<int>(generation.count), seed = static_cast<int>(generation.seed);
+  auto count = static_cast<int>(generation.count), seed = 0;
   whole_number("count", "how many robots", count, 1, 4096, context, "generate.count");
-  whole_number("seed", "the same seed gives the same robots", seed, 0, 1'000'000'000, context, "generate.seed");
   generation.count = static_cast<std::size_t>(count);
+  // Above what few change, so that a low window shows it, too.
+  if (primary_button("Generate", {-1, 0})) generate_robots(context);
+  context.log.item("generate");
+  tooltip(with_keys(context.keys, "make the robots, and increment the seed", Action::new_random).c_str());
+  seed = static_cast<int>(generation.seed);
+  whole_number("seed", "the same seed gives the same robots", seed, 0, 1'000'000'000, context, "generate.seed");
   generation.seed = static_cast<std::uint64_t>(seed);
-  // Above the parameters, so that a low window shows it, too.
   ImGui::Checkbox("Replace", &context.creation.replace);
   context.log.item("generate.replace");
   tooltip("the new robots replace those in the scene; otherwise they are added");
@@ -176,12 +180,9 @@ void RandomSection::draw(PanelContext& context) {
   context.log.item("generate.lively");
   tooltip("ten times as many robots are tried for four seconds, and those that get farthest are kept");
   ImGui::SameLine();
-  ImGui::Checkbox("More", &advanced_);
+  ImGui::Checkbox("Details", &advanced_);
   context.log.item("generate.more");
   tooltip("show all settings of these robots");
-  if (primary_button("Generate", {-1, 0})) generate_robots(context);
-  context.log.item("generate");
-  tooltip(with_keys(context.keys, "make the robots, and increment the seed", Action::new_random).c_str());
   for (const GeneratorParameter& parameter : generator_in(generation).parameters) {
     if (parameter.advanced && !advanced_) continue;
     ParameterValue value = value_of(generation.values, parameter);
@@ -197,9 +198,9 @@ float RandomSection::height(const PanelContext& context) const {
 }
 
 void RobotsPanel::draw(PanelContext& context) {
-  // What stands below the list: six rows of commands, and the random robots.
+  // What stands below the list: four rows of commands, and the random robots.
   const float below =
-      6 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y + random_.height(context);
+      4 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y + random_.height(context);
   list_.draw(context, ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - below);
   draw_work(context);
   draw_commands(context);
@@ -209,11 +210,21 @@ void RobotsPanel::draw(PanelContext& context) {
 void RobotsPanel::draw_strengths(PanelContext& context) {
   MutationRequest& mutation = context.creation.mutation;
   auto body = static_cast<float>(mutation.strength), muscles = static_cast<float>(mutation.muscles);
-  if (slider("body mutation", "how much mutants differ in their bodies; 1 = a little", body, 1, {0, 10, "%.1f"}))
-    mutation.strength = std::max(0.0, static_cast<double>(body));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("mutation");
+  tooltip("how much mutants differ; 1 = a little");
+  ImGui::SameLine();
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetNextItemWidth(0.44f * room);
+  if (number_slider("##body", body, 0, 10, "body %.1f")) mutation.strength = std::max(0.0, static_cast<double>(body));
   context.log.item("mutation.strength");
-  if (slider("muscle mutation", "how much mutants differ in their muscles", muscles, 0, {0, 10, "%.1f"}))
+  tooltip("of their bodies: drag, or Ctrl-click to type");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(0.56f * room);
+  if (number_slider("##muscles", muscles, 0, 10, "muscles %.1f"))
     mutation.muscles = std::max(0.0, static_cast<double>(muscles));
+  context.log.item("mutation.muscles");
+  tooltip("of how their muscles move: drag, or Ctrl-click to type");
 }
 
 void RobotsPanel::draw_commands(PanelContext& context) {
@@ -221,6 +232,19 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   const std::vector<RobotId> selection = scene.selection();
   const auto explain = [&](const char* text, Action action) { tooltip(with_keys(context.keys, text, action).c_str()); };
   const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
+  if (ImGui::Button("Open...", {width, 0})) open_robots(context);
+  context.log.item("open");
+  explain("open robot files, or drop files and folders on the window", Action::open);
+  ImGui::SameLine();
+  ImGui::BeginDisabled(scene.robot_count() == 0);
+  if (primary_button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
+  context.log.item("save");
+  explain("save the selected robots, or all if none is selected", Action::save);
+  ImGui::SameLine();
+  if (ImGui::Button("Clear", {width, 0})) scene.clear();
+  context.log.item("clear");
+  tooltip("remove all robots; undo brings them back");
+  ImGui::EndDisabled();
   ImGui::BeginDisabled(selection.empty());
   if (ImGui::Button("Duplicate", {width, 0})) scene.duplicate(selection);
   context.log.item("duplicate");
@@ -245,19 +269,6 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   explain("let the selected robots evolve, in the background", Action::evolve);
   ImGui::EndDisabled();
   draw_strengths(context);
-  if (ImGui::Button("Open...", {width, 0})) open_robots(context);
-  context.log.item("open");
-  explain("open robot files, or drop files and folders on the window", Action::open);
-  ImGui::SameLine();
-  ImGui::BeginDisabled(scene.robot_count() == 0);
-  if (primary_button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
-  context.log.item("save");
-  explain("save the selected robots, or all if none is selected", Action::save);
-  ImGui::SameLine();
-  if (ImGui::Button("Clear", {width, 0})) scene.clear();
-  context.log.item("clear");
-  tooltip("remove all robots; undo brings them back");
-  ImGui::EndDisabled();
 }
 
 std::unique_ptr<Panel> make_robots_panel(PanelContext&) { return std::make_unique<RobotsPanel>(); }

@@ -63,7 +63,7 @@ void draw_frame_times(PanelContext& context) {
   figure("thumbnails", milliseconds(mean.thumbnails), "pictures of robots in panels");
   figure("display", milliseconds(mean.present), "bringing the frame to the display");
   figure("view size",
-         fmt::format("{} x {} ({:.0f} %)", viewport.renderer().width(), viewport.renderer().height(),
+         fmt::format("{} \xc3\x97 {} ({:.0f} %)", viewport.renderer().width(), viewport.renderer().height(),
                      100 * viewport.share()),
          "reduced during motion if drawing is slow");
   ImGui::EndTable();

@@ -53,7 +53,8 @@ void draw_recording(PanelContext& context) {
   VideoSettings& settings = recorder.settings;
   if (const ScreenRecording* recording = recorder.recording()) {
     const PictureSize size = recording->size();
-    ImGui::TextUnformatted(fmt::format("{:.1f} s, {} x {}", recorder.seconds(), size.width, size.height).c_str());
+    ImGui::TextUnformatted(
+        fmt::format("{:.1f} s, {} \xc3\x97 {}", recorder.seconds(), size.width, size.height).c_str());
     progress(recording->status(), "recording");
     ImGui::BeginDisabled(recorder.ending());
     if (ImGui::Button("Stop", {-1, 0})) recorder.toggle(context);
@@ -67,7 +68,7 @@ void draw_recording(PanelContext& context) {
   settings.frames_per_second = std::clamp(settings.frames_per_second, 1, 120);
   ImGui::Checkbox("Without panels", &settings.hide_panels);
   tooltip("hide the panels until the recording stops");
-  if (ImGui::Button("Record", {-1, 0})) recorder.toggle(context);
+  if (primary_button("Record", {-1, 0})) recorder.toggle(context);
   context.log.item("video.record");
   tooltip(with_keys(context.keys, "record the window until you stop it", Action::record).c_str());
 }
@@ -90,7 +91,7 @@ void draw_picture(PanelContext& context) {
   slider("lens",
          "blurs what is nearer or farther than what the camera follows: diameter of the lens over its distance; "
          "0: all is sharp, or as the style has it",
-         settings.aperture, 0, {0, 0.3f, "%.3f", false});
+         settings.aperture, 0, {0, 0.3f, settings.aperture > 0 ? "%.3f" : "sharp", false});
   settings.aperture = std::clamp(settings.aperture, 0.0f, 1.0f);
   ImGui::BeginDisabled(context.scene.entries().empty());
   if (ImGui::Button("Save a picture", {-1, 0})) context.recorder.start_group_picture(context);
@@ -108,10 +109,10 @@ void draw_group(PanelContext& context) {
   }
   VideoSettings& settings = context.recorder.settings;
   combo("size", "of the video or picture", settings.group_size,
-        {"1280 x 720", "1920 x 1080", "2560 x 1440", "3840 x 2160"});
+        {"1280 \xc3\x97 720", "1920 \xc3\x97 1080", "2560 \xc3\x97 1440", "3840 \xc3\x97 2160"});
   draw_group_options(settings);
   ImGui::BeginDisabled(context.scene.entries().empty());
-  if (ImGui::Button("Make the video", {-1, 0})) context.recorder.start_group_video(context);
+  if (primary_button("Make the video", {-1, 0})) context.recorder.start_group_video(context);
   context.log.item("video.group");
   ImGui::EndDisabled();
   tooltip("all robots from the start, seen as now but without panels, made in the background");

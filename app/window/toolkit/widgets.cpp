@@ -58,7 +58,8 @@ void draw_number(std::string_view text, float place) {
   const float gap = grab / 2 + 0.3f * ImGui::GetFontSize();
   const auto width = [](std::string_view words) { return ImGui::CalcTextSize(words.begin(), words.end()).x; };
   std::optional<float> x = number_place(low.x, high.x, knob, gap, width(text));
-  if (!x && !text.starts_with("\xc3\x97")) {  // "× 1.5" has its number last
+  const bool number_last = text.starts_with("\xc3\x97") || std::isalpha(static_cast<unsigned char>(text.front()));
+  if (!x && !number_last) {
     text = text.substr(0, text.find(' '));
     x = number_place(low.x, high.x, knob, gap, width(text));
   }
