@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Soft shadows on skins.
+// Soft shadows on skins and on tiles.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -64,6 +64,30 @@ TEST_F(SoftShadow, OnASkinIsSmooth) {
     placements[1].hidden = false;
     EXPECT_GT(count_differing(with, without, 20), 3000) << "the shadow";
     EXPECT_LT(count_speckles(with, 6), 10) << name_of(quality);
+  }
+}
+
+TEST_F(SoftShadow, OnATileIsSmooth) {
+  const Plate above(0.3f, 0.05f);
+  const std::array bodies{above.body()};
+  const Tile tile{.half_width = {1, 0, 0}, .half_height = {0, 1, 0}, .fill = rgb(0xcccccc), .frame = rgb(0x808080)};
+  std::array<Placement, 1> placements;
+  placements[0].offset = {-0.35f, -0.2f, 1.2f};
+  Scene scene;
+  scene.surroundings = Surroundings::none;
+  scene.positions = above.corners;
+  scene.tiles = {&tile, 1};
+  const Camera camera = Orbit{.elevation = 1.4f, .distance = 2.2f}.camera();
+  for (const Quality quality : {Quality::medium, Quality::high}) {
+    Renderer renderer(*context_, {.width = 320, .height = 240, .quality = quality});
+    renderer.set_bodies(bodies);
+    scene.placements = placements;
+    const Image with = drawn(renderer, scene, camera);
+    placements[0].hidden = true;
+    const Image without = drawn(renderer, scene, camera);
+    placements[0].hidden = false;
+    EXPECT_GT(count_differing(with, without, 20), 3000) << "the shadow";
+    EXPECT_LT(count_speckles(with, 6), 100) << name_of(quality);  // 2,105 and 433 with a pattern per pixel
   }
 }
 

@@ -69,6 +69,7 @@ std::string factor_text(double factor) {
 void draw_achieved_speed(const LiveScene& scene, bool unlimited) {
   constexpr double near = 0.03;
   const double achieved = scene.snapshot().achieved_speed;
+  if (scene.playing() && !(achieved > 0)) return;  // not known yet
   const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
   if (scene.playing() && !unlimited && std::abs(achieved - scene.speed()) <= near * scene.speed()) return;
   const std::string shown = !scene.playing() ? "paused"
