@@ -61,7 +61,7 @@ def test_an_animal_is_one_body_with_a_closed_skin(name):
 
 @pytest.mark.parametrize("name", [name for name in FILES if name not in WITH_BRAIN])  # which go to a target
 def test_check_confirms_an_animal(name, mercury):
-    options = ("--seconds", 12, "--trials", 3, "--device", "cpu", "--json", "--quiet")
+    options = ("--seconds", 8, "--trials", 3, "--device", "cpu", "--json", "--quiet")
     report = json.loads(mercury("check", FILES[name], *options))
     assert [robot["verdict"] for robot in report["robots"]] == ["confirmed"]
 

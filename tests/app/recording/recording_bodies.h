@@ -2,6 +2,8 @@
 // Small bodies for the tests of recordings, and a file of them.
 #pragma once
 
+#include <malloc.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,6 +13,13 @@
 #include "mercury/simulation.h"
 
 namespace mercury::test {
+
+// From then on the process keeps the memory that it frees. HDF5 asks for megabytes per file that is opened, and the
+// system would clear them each time.
+inline void keep_freed_memory() {
+  mallopt(M_TRIM_THRESHOLD, 1 << 28);
+  mallopt(M_MMAP_THRESHOLD, 1 << 25);
+}
 
 // Two masses on a muscle.
 inline Robot pair(const std::string& name) {

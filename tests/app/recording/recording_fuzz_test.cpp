@@ -33,6 +33,7 @@ using hdf5::Handle;
 class RecordingFuzz : public FolderTest {
  protected:
   RecordingFuzz() {
+    keep_freed_memory();
     Robot robot = small_voxel_robot(0);
     Simulation simulation(on_cpu(),
                           std::vector{robot, own_materials("own"), own_points("points"), thinking_pair("thinker")});

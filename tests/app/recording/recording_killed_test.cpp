@@ -110,7 +110,10 @@ std::size_t expect_frames(TrajectoryReader& reader) {
 
 class KilledRecording : public FolderTest {
  protected:
-  KilledRecording() { now = 0; }
+  KilledRecording() {
+    now = 0;
+    keep_freed_memory();
+  }
 
   std::string part() const {
     for (const std::string& name : listing())

@@ -33,19 +33,19 @@ class WindowCase(unittest.TestCase):
     def tearDownClass(cls):
         cls.display.close()
 
-    def open(self, *arguments):
-        """A window in a folder of its own."""
+    def open(self, *arguments, **how):
+        """A window in a folder of its own. `how`: as of Window()."""
         self.folder = scratch()
-        return self.window_in(self.folder, *arguments)
+        return self.window_in(self.folder, *arguments, **how)
 
-    def window_in(self, folder, *arguments):
-        window = Window(PROGRAM, self.display, folder, *arguments)
+    def window_in(self, folder, *arguments, **how):
+        window = Window(PROGRAM, self.display, folder, *arguments, **how)
         self.addCleanup(window.close)
         return window
 
-    def small(self, *arguments):
+    def small(self, *arguments, **how):
         """A window with two small robots, which open and step quickly."""
-        return self.open(str(SAMPLES / "eel.json"), str(SAMPLES / "fish.json"), *arguments)
+        return self.open(str(SAMPLES / "eel.json"), str(SAMPLES / "fish.json"), *arguments, **how)
 
     def finish(self, window):
         """Closes the window; it must exit with 0 and without OpenGL messages."""

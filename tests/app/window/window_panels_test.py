@@ -383,7 +383,7 @@ class PanelsTest(WindowCase):
         self.finish(window)
 
     def test_settings_are_kept_for_the_next_start(self):
-        window = self.small("--paused")
+        window = self.small("--paused", surroundings=True)
         window.open("Tune")
         window.wait("panel", 0, lambda event: event["name"] == "Tune")
         x, y = window.place("view")
@@ -394,7 +394,7 @@ class PanelsTest(WindowCase):
         window.key("3", "b", "t")
         window.frame(lambda frame: (frame["color"], frame["theme"], frame["camera"]) == ("strain", "light", "turntable"))
         self.finish(window)
-        again = self.window_in(self.folder, "--paused")
+        again = self.window_in(self.folder, "--paused", surroundings=True)
         again.place("panel.Tune")
         again.frame(lambda frame: (frame["color"], frame["theme"], frame["camera"]) == ("strain", "light", "turntable"))
         self.assertLess(abs(again.items["panel.Tune"]["width"] - width), 2)

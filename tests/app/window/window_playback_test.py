@@ -17,7 +17,7 @@ def robot_that_explodes(name):
 
 class PlaybackTest(WindowCase):
     def test_opens_on_the_sample_robots_and_plays(self):
-        window = self.open()
+        window = self.open(surroundings=True)
         robots = window.wait("robots")
         self.assertIn("eel", robots["names"])
         self.assertGreaterEqual(robots["count"], 5)
@@ -63,7 +63,7 @@ class PlaybackTest(WindowCase):
         self.finish(window)
 
     def test_the_camera_stays_above_the_ground(self):
-        window = self.small("--paused", "--environment", "land")
+        window = self.small("--paused", "--environment", "land", surroundings=True)
         before = window.frame()
         x, y = window.place("view")
         for _ in range(3):

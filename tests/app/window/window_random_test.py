@@ -65,7 +65,8 @@ class RandomUser:
         folder = self.top.joinpath(*["down"] * 400)
         folder.mkdir(parents=True)
         robots = [str(shutil.copy(SAMPLES / name, folder)) for name in ("eel.json", "fish.json")]  # copies: saving may replace them
-        window = Window(PROGRAM, self.display, folder, *robots, "--fresh", size="x".join(map(str, self.SIZE)))
+        window = Window(PROGRAM, self.display, folder, *robots, "--fresh", size="x".join(map(str, self.SIZE)),
+                        surroundings=True)
         self.test.addCleanup(window.kill)
         self.size, self.input.pressed = self.SIZE, 0
         found = subprocess.run(["xdotool", "search", "--onlyvisible", "--class", "mercury"], env=window.environment,

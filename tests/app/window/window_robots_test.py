@@ -185,7 +185,7 @@ class RobotsTest(WindowCase):
         self.finish(window)
 
     def test_swimmers_survive_a_move_to_land_with_xpbd_and_one_undo_takes_them_back(self):
-        window = self.small("--paused")
+        window = self.small("--paused", surroundings=True)
         window.key("space")
         window.frame(lambda frame: frame["time"] > 0.5)
         window.open("Tune")
