@@ -15,9 +15,10 @@
 namespace mercury {
 namespace {
 
-std::string distance_text(float meters) {
-  if (meters < 0.01f) return fmt::format("{:.1f} mm", 1000 * meters);
-  if (meters < 1) return fmt::format("{:.1f} cm", 100 * meters);
+// In the unit of the longest distance of a picture, so that names can be compared.
+std::string distance_text(float meters, float longest) {
+  if (longest < 0.01f) return fmt::format("{:.1f} mm", 1000 * meters);
+  if (longest < 1) return fmt::format("{:.1f} cm", 100 * meters);
   return fmt::format("{:.2f} m", meters);
 }
 
@@ -307,7 +308,8 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
                                               : static_cast<float>(distance_between(
                                                     trails_[i].start(), telemetry[i].center_of_mass, environment_)));
   // No ranks before a robot has moved.
-  const bool ranked = trails_.size() > 1 && *std::max_element(distances.begin(), distances.end()) > 1e-3f;
+  const float longest = distances.empty() ? 0 : std::ranges::max(distances);
+  const bool ranked = trails_.size() > 1 && longest > 1e-3f;
   labels_.clear();
   for (std::size_t i = 0; i < trails_.size(); ++i) {
     const auto rank = 1 + std::count_if(distances.begin(), distances.end(), [&](float d) { return d > distances[i]; });
@@ -315,7 +317,7 @@ void GroupScene::write_labels(std::span<const Telemetry> telemetry) {
     if (telemetry[i].exploded)
       text += fmt::format("\nexploded at {:.1f} s", telemetry[i].exploded_at);
     else if (settings_.shown.labels)
-      text += fmt::format("\n{}{}", distance_text(distances[i]), ranked ? fmt::format("   #{}", rank) : "");
+      text += fmt::format("\n{}{}", distance_text(distances[i], longest), ranked ? fmt::format("   #{}", rank) : "");
     if (!torn_[i])
       labels_.push_back({.body = static_cast<std::uint32_t>(i),
                          .text = text,

@@ -260,6 +260,10 @@ void FileDialog::draw(EventLog& log) {
   if (std::exchange(chosen_, false)) on_accept_(choice_);
 }
 
+bool FileDialog::opens_robots() const {
+  return request_.kind == Kind::open && std::ranges::find(request_.extensions, ".json") != request_.extensions.end();
+}
+
 void FileDialog::draw_places(EventLog& log) {
   if (ImGui::Button("Up")) go_up();
   log.item("files.up");
@@ -274,6 +278,13 @@ void FileDialog::draw_places(EventLog& log) {
   log.item("files.start");
   tooltip("the folder that the program was started in");
   ImGui::SameLine();
+  const std::vector<std::string> samples = opens_robots() ? sample_names() : std::vector<std::string>();
+  if (!samples.empty()) {
+    if (ImGui::Button("Samples")) enter(sample_or_path(samples.front()).parent_path());
+    log.item("files.samples");
+    tooltip("the sample robots; the Browser panel shows pictures of them");
+    ImGui::SameLine();
+  }
   ImGui::SetNextItemWidth(-1);
   ImGui::PushID(view_.folder().string().c_str());
   text_field("##place", folder_text_);

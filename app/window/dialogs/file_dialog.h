@@ -43,6 +43,7 @@ class FileDialog {
   void draw(EventLog& log);
 
  private:
+  bool opens_robots() const;
   void draw_places(EventLog& log);
   void draw_items(EventLog& log);
   void draw_row(std::size_t index, EventLog& log);

@@ -38,6 +38,15 @@ class FilesTest(WindowCase):
         again.wait("robots", since, lambda event: event["names"][-1:] == [saved["name"]])
         self.finish(again)
 
+    def test_samples_are_a_place_of_the_dialog(self):
+        window = self.small("--paused")
+        window.key("ctrl+o")
+        window.click("files.samples")
+        since = window.mark()
+        window.dialog("inchworm.json")
+        window.wait("robots", since, lambda event: event["names"] == ["eel", "fish", "inchworm"])
+        self.finish(window)
+
     def test_a_scene_that_cannot_be_opened_is_not_offered_for_saving(self):
         window = self.small("--paused")
         bad = self.folder / "bad.toml"
