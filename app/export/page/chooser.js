@@ -68,7 +68,7 @@ class Chooser {
 
   // Generations from left to right, scores upwards. Dots are individuals; those with a ring play.
   tree(family) {
-    const width = 320, height = 300, left = 40, right = 12, top = 12, bottom = 30;
+    const width = 320, height = 300, right = 12, top = 12, bottom = 30;
     const members = new Map(family.map(([id, generation, score, robot, parents]) => [id, { id, generation, score, robot, parents }]));
     const scored = [...members.values()].filter(({ score }) => score !== null);
     const range = (values) => [Math.min(...values), Math.max(...values)];
@@ -77,6 +77,8 @@ class Chooser {
     const sorted = scored.map(({ score }) => score).sort((a, b) => a - b);
     const low = Math.min(sorted[Math.floor(0.03 * sorted.length)], ...scored.filter(({ robot }) => robot !== null).map(({ score }) => score));
     const high = sorted[sorted.length - 1];
+    // Room for the longest number, of letters 6.5 wide.
+    const left = 8 + 6.5 * Math.max(5, shortNumber(low).length, shortNumber(high).length);
     const x = ({ generation }) => left + ((width - left - right) * (generation - firstGeneration)) / (lastGeneration - firstGeneration || 1);
     const y = ({ score }) => height - bottom - (height - top - bottom) * clamp(((score ?? low) - low) / (high - low || 1), -0.03, 1);
     const svg = draw("svg", { viewBox: `0 0 ${width} ${height}`, "aria-label": "Family tree" });

@@ -202,6 +202,8 @@ class Run(Case):
         robots = page.value("player.page.robots.length")
         self.assertEqual(page.value("player.shown.length"), robots)
         self.assertEqual(page.value("document.querySelectorAll('#chooser .plays').length"), robots)
+        # No number of the axes is cut off.
+        self.assertGreaterEqual(page.value("Math.min(...[...document.querySelectorAll('#chooser text')].map((t) => t.getBBox().x))"), 0)
         page.value("document.querySelector('#chooser .plays').dispatchEvent(new Event('click'))")
         page.wait_for("player.shown.length === 1")
         self.assertEqual(page.problems, [])
