@@ -35,11 +35,11 @@ def mercury(*arguments: Any) -> str:
     kind="real",
     remark="The files of `tests/data/evosoro`, imported with their worlds. Expected is the median of three runs of its simulator, with "
     "elastic moduli of 99 to 101 % of the file's; the second number of a robot's name is how far these are apart. Voxels add their springs "
-    "and masses, so that bodies stretch, shear and weigh as beams of evosoro do, and in water limbs bend as they do. Damping "
-    "(BondDampingZ) is the relaxation time of all springs. quadruped_land weighs more than its legs of one voxel carry: within half a "
+    "and masses, so that bodies stretch, shear, bend and weigh as beams of evosoro do, and on the floor they stand on the middles of voxels. "
+    "Damping (BondDampingZ) is the relaxation time of springs. quadruped_land weighs more than its legs of one voxel carry: within half a "
     "second they fold, here as there. What it walks on then are contacts: voxels push each other away as spheres of 1.5 voxels. "
-    "Without SelfColEnabled its own program takes it 0.25 m the other way. In Mercury masses push each other away, within half a "
-    "voxel. What the floor does there that it does not do here is in [import.md](import.md#how-far-robots-get-here-and-there).",
+    "Without SelfColEnabled its own program takes it 0.25 m the other way. In Mercury masses push each other away, within one distance. "
+    "What its program does and Mercury does not is in [import.md](import.md#how-far-robots-get-here-and-there).",
 )
 def evosoro(short: bool) -> Result:
     rows = []

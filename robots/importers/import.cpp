@@ -154,10 +154,10 @@ std::string to_toml(const ImportedSettings& settings, const ImportReport& report
   if (settings.environment == "land") {
     text += fmt::format("friction = {:.9g}\n", settings.friction);
     if (settings.static_friction > 0) text += fmt::format("static-friction = {:.9g}\n", settings.static_friction);
-    if (settings.self_collision)
-      text += fmt::format("contact-stiffness = {:.9g}\n", settings.contact_stiffness);
-    else
-      text += "no-self-collision = true\n";
+    if (settings.self_collision) text += fmt::format("contact-stiffness = {:.9g}\n", settings.contact_stiffness);
+    if (settings.self_collision && settings.contact_distance != ImportedSettings{}.contact_distance)
+      text += fmt::format("contact-distance = {:.6g}\n", settings.contact_distance);
+    if (!settings.self_collision) text += "no-self-collision = true\n";
   } else if (settings.environment == "resistive") {
     text += fmt::format("normal-coefficient = {:.9g}\ntangential-coefficient = 0\nadded-mass-coefficient = 0\n",
                         settings.drag_coefficient);
@@ -185,13 +185,13 @@ std::string_view name_of(ImportOutcome outcome) {
 }
 
 void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
-                const ImportOptions& options, Import& import, SpringRule rule) {
+                const ImportOptions& options, Import& import, SpringRule rule, double relaxation_time) {
   const std::vector<VoxelBody> bodies = separate_bodies(grid);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const std::string own = i == 0 ? name : fmt::format("{}-{}", name, i + 1);
     Rounding rounding;
-    import.robots.push_back(
-        voxel_body_robot(bodies[i], own, provenance, static_cast<std::size_t>(options.most_materials), rounding, rule));
+    import.robots.push_back(voxel_body_robot(
+        bodies[i], own, provenance, static_cast<std::size_t>(options.most_materials), rounding, rule, relaxation_time));
     fix_masses(import.robots.back(), bodies[i]);
     import.report.robots.push_back(own);
     if (!rounding.is_exact()) import.report.notes.push_back(fmt::format("{}: {}", own, text_of(rounding)));

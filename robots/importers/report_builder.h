@@ -15,9 +15,10 @@ namespace mercury {
 class XmlDocument;
 
 // Robots of all bodies of a grid, the largest first: NAME, NAME-2, NAME-3, ... Rounding and several bodies become
-// notes.
+// notes. `relaxation_time` [s] is for bodies that stand.
 void add_bodies(const VoxelBody& grid, const std::string& name, const Provenance& provenance,
-                const ImportOptions& options, Import& import, SpringRule rule = SpringRule::equal);
+                const ImportOptions& options, Import& import, SpringRule rule = SpringRule::equal,
+                double relaxation_time = 0);
 
 // The values of a list, separated by commas, or else by white space. A value may be empty between two commas.
 std::vector<std::string_view> list_values(std::string_view text);

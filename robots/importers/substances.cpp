@@ -28,7 +28,7 @@ std::complex<double> movement_of(const Substance& substance) {
 
 double wrapped(double phase) { return phase - turn * std::floor(phase / turn); }
 
-using Key = std::array<std::int64_t, 6>;
+using Key = std::array<std::int64_t, 7>;
 
 struct KeyHash {
   std::size_t operator()(const Key& key) const {
@@ -54,6 +54,10 @@ class Steps {
   double lowest_ = std::numeric_limits<double>::infinity(), highest_ = -lowest_;
 };
 
+std::int64_t bits(double value) {
+  return static_cast<std::int64_t>(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+}
+
 double log_of(double value) { return std::log(std::max(value, 1e-30)); }
 
 class Grouping {
@@ -71,9 +75,9 @@ class Grouping {
   SubstanceGroups exact() const {
     return *groups(substances_.size() + 1, [](const Substance& substance) {
       const Material material = material_of(substance);
-      const auto bits = [](float value) { return static_cast<std::int64_t>(std::bit_cast<std::uint32_t>(value)); };
-      return Key{bits(material.stiffness), bits(material.amplitude), bits(material.frequency),
-                 bits(material.phase),     substance.half_wave,      bits(static_cast<float>(substance.size))};
+      return Key{bits(material.stiffness),      bits(material.amplitude), bits(material.frequency),
+                 bits(material.phase),          substance.half_wave,      bits(substance.size),
+                 bits(material.relaxation_time)};
     });
   }
 
@@ -92,7 +96,8 @@ class Grouping {
                  is_muscle ? frequency_.step(log_of(substance.frequency), steps) : 0,
                  is_muscle ? phase : 0,
                  substance.half_wave ? (substance.amplitude < 0 ? 2 : 1) : 0,
-                 size_.step(substance.size, steps)};
+                 size_.step(substance.size, steps),
+                 bits(substance.relaxation_time)};
     });
     if (!found) return found;
     found->rounding.steps = std::max(1, steps);
@@ -148,6 +153,7 @@ Substance substance_of(const Material& material) {
 
 Material material_of(const Substance& substance) {
   Material material{.stiffness = static_cast<float>(substance.stiffness)};
+  material.relaxation_time = static_cast<float>(substance.relaxation_time);
   if (!moves(substance)) return material;
   material.amplitude = static_cast<float>(substance.amplitude);
   material.frequency = static_cast<float>(substance.frequency);
@@ -170,6 +176,7 @@ Substance mean_substance(std::span<const Substance> substances, std::span<const 
     const double weight = weights.empty() ? 1 : weights[i];
     mean.stiffness += weight * substance.stiffness / total;
     mean.size += weight * substance.size / total;
+    mean.relaxation_time += weight * substance.relaxation_time / total;
     if (!moves(substance)) continue;
     ++moving;
     movement += weight * movement_of(substance) / total;
@@ -178,7 +185,8 @@ Substance mean_substance(std::span<const Substance> substances, std::span<const 
     mean.half_wave = mean.half_wave || substance.half_wave;
   }
   constexpr double none = 1e-9;  // opposite movements cancel but for rounding
-  if (std::abs(movement) < none) return {.stiffness = mean.stiffness, .size = mean.size};
+  if (std::abs(movement) < none)
+    return {.stiffness = mean.stiffness, .size = mean.size, .relaxation_time = mean.relaxation_time};
   // With the sign whose phase is closer to those of the parts: half waves act in one half only.
   const bool is_negative = std::real(movement * std::conj(phases)) < 0;
   mean.amplitude = is_negative ? -std::abs(movement) : std::abs(movement);

@@ -21,7 +21,8 @@ struct Substance {
   double frequency = 0;  // [rad/s]; 0 if it does not move
   double phase = 0;      // [rad]
   bool half_wave = false;
-  double size = 1;  // factor of the rest length [1]
+  double size = 1;             // factor of the rest length [1]
+  double relaxation_time = 0;  // [s]
   friend bool operator==(const Substance&, const Substance&) = default;
 };
 

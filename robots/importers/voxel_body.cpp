@@ -19,6 +19,7 @@
 #include "mercury/voxel.h"
 #include "robots/file/document.h"
 #include "robots/importers/calibration.h"
+#include "robots/importers/standing_body.h"
 
 namespace mercury {
 namespace {
@@ -260,15 +261,21 @@ std::vector<VoxelBody> separate_bodies(const VoxelBody& all) {
 
 void fix_masses(Robot& robot, const VoxelBody& body) {
   if (std::ranges::find(body.held, true) == body.held.end()) return;
-  const SpringVoxels lattice(robot, body);
+  const std::array size{body.nx, body.ny, body.nz};
   for (std::size_t mass = 0; mass < robot.masses.size(); ++mass) {
-    const auto [x, y, z] = lattice.corner(static_cast<std::uint16_t>(mass));
-    bool is_held = false;
-    for (int i = 0; i < 8; ++i) {
-      const int cx = x - (i & 1), cy = y - (i >> 1 & 1), cz = z - (i >> 2);
-      if (cx < 0 || cy < 0 || cz < 0 || cx >= body.nx || cy >= body.ny || cz >= body.nz) continue;
-      is_held = is_held || body.held[body.index(cx, cy, cz)];
+    // The voxels that have it at a corner or in the middle: along each axis, two that meet there or the one around it.
+    std::array<int, 3> first{}, last{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vec3& at = robot.masses[mass];
+      const double halves =
+          std::round(2.0 * static_cast<double>(std::array{at.x, at.y, at.z}[axis]) / imported_edge) + size[axis];
+      first[axis] = std::max(0, static_cast<int>(std::ceil(halves / 2)) - 1);
+      last[axis] = std::min(size[axis] - 1, static_cast<int>(std::floor(halves / 2)));
     }
+    bool is_held = false;
+    for (int z = first[2]; z <= last[2]; ++z)
+      for (int y = first[1]; y <= last[1]; ++y)
+        for (int x = first[0]; x <= last[0]; ++x) is_held = is_held || body.held[body.index(x, y, z)];
     if (is_held) robot.fixed.push_back(static_cast<std::uint16_t>(mass));
   }
 }
@@ -399,7 +406,7 @@ std::vector<float> shares_of_voxels(const Robot& robot, const VoxelBody& body) {
 }  // namespace
 
 Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Provenance& provenance,
-                       std::size_t most_materials, Rounding& rounding, SpringRule rule) {
+                       std::size_t most_materials, Rounding& rounding, SpringRule rule, double relaxation_time) {
   const VoxelBody used = with_fewer_substances(body, body.substances.size(), rounding);
   const bool has_sizes =
       std::ranges::any_of(used.substances, [](const Substance& substance) { return substance.size != 1; });
@@ -409,6 +416,11 @@ Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Pro
   // The palette of the file keeps its numbers, also those that no voxel has.
   if (!has_sizes && body.substances.size() <= most_substances) return voxel_robot(body, name, provenance);
   if (!has_sizes && used.substances.size() <= most_substances) return voxel_robot(used, name, provenance);
+  if (rule == SpringRule::standing) {
+    Robot robot = standing_body(body, name, relaxation_time, most_materials, rounding);
+    robot.origin = import_origin(used, provenance);
+    return robot;
+  }
   Robot robot = bare_robot(body, name);
   const SpringVoxels voxels(robot, body);
   const std::vector<double> softness = rule == SpringRule::bending ? bending_factors(body) : std::vector<double>();

@@ -15,6 +15,7 @@
 namespace mercury {
 
 inline constexpr double imported_edge = 0.1;                              // of a voxel [m]
+inline constexpr double largest_amplitude = 0.9;                          // a rest length must stay above 0
 inline constexpr std::size_t most_bodies = 10'000;                        // of one file
 inline constexpr std::size_t most_imported_cells = std::size_t{1} << 22;  // a robot has at most 65,535 masses
 
@@ -48,7 +49,8 @@ enum class SpringRule {
   equal,       // a spring has the mean stiffness of the voxels that share it; masses of 1 kg
   stretching,  // each voxel adds springs and 1 kg, so that a body of any thickness stretches, shears and weighs as
                // beams
-  bending      // the same, but limbs are softer, so that they bend as beams do
+  bending,     // the same, but limbs are softer, so that they bend as beams do
+  standing     // with masses in the middles of voxels, on which the body stands (standing_body.h)
 };
 
 // The one body of a grid as a robot.
@@ -56,9 +58,11 @@ enum class SpringRule {
 // and evolves: substance i is base material i + 1, the materials of pairs are the mean substances of two. Otherwise it
 // has a table of its own, by `rule`: each spring has the mean movement of all voxels that share it, and its origin, of
 // kind "import", keeps grid and substances. `most_materials` limits the table; what does not fit is rounded, see
-// `rounding`. Throws InputError for a body that needs more masses than a robot can have.
+// `rounding`. `relaxation_time` [s] is that of a beam, for bodies that stand. Throws InputError for a body that needs
+// more masses than a robot can have.
 Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Provenance& provenance,
-                       std::size_t most_materials, Rounding& rounding, SpringRule rule = SpringRule::equal);
+                       std::size_t most_materials, Rounding& rounding, SpringRule rule = SpringRule::equal,
+                       double relaxation_time = 0);
 
 // Grid and substances of an origin: of a robot that was imported, was painted, or is any other voxel robot. Nothing for
 // robots of other kinds. Throws InputError("/origin: ...") for an origin that breaks a rule.
@@ -74,7 +78,7 @@ class SpringVoxels : public SpringCells {
   const VoxelBody& body_;
 };
 
-// The corners of held voxels become fixed masses of the body's robot.
+// The corners and middles of held voxels become fixed masses of the body's robot.
 void fix_masses(Robot& robot, const VoxelBody& body);
 
 // Masses, springs and faces of the body, all springs of tissue. The origin has no grid.

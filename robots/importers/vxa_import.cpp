@@ -17,7 +17,9 @@
 namespace mercury {
 namespace {
 
-constexpr double largest_amplitude = 0.9;  // a rest length must stay above 0
+// Spheres of 1.5 voxels around the middles of voxels touch where sides are 0.44 of an edge apart, in the mean over all
+// ways in which two walls can face each other. Walls of corners and middles touch so at this distance.
+constexpr double contact_distance = 0.615;  // [edges]
 
 class VxaImport {
  public:
@@ -55,13 +57,12 @@ class VxaImport {
                                 .time_scale = scaling_->calibration.time_scale,
                                 .environment = import.settings.environment};
     try {
-      // Swimmers bend and weigh nothing; on land legs carry a weight.
-      add_bodies(body(import.report), name_, provenance, options_, import,
-                 model_.in_fluid ? SpringRule::bending : SpringRule::stretching);
+      add_bodies(body(import.report), name_, provenance, options_, import, rule(), relaxation_time());
     } catch (const InputError& error) {
       throw InputError("/VXA/VXC/Structure", error.what());
     }
     set_relaxation_time(import.robots);
+    if (import.settings.environment == "land") set_contact_distance(import);
     import.settings.dt = stable_time_step(import.robots, import.settings.stiffness_scale);
     if (import.settings.environment == "resistive") set_drag(import);
     import.report.elements = document_.elements(known_vxa_element);
@@ -104,15 +105,34 @@ class VxaImport {
     return settings;
   }
 
+  // Swimmers bend and weigh nothing; on the floor legs carry a weight.
+  SpringRule rule() const {
+    if (model_.in_fluid) return SpringRule::bending;
+    return model_.floor_enabled ? SpringRule::standing : SpringRule::stretching;
+  }
+
   // A bond of modulus E between voxels of mass m resists its rate of length by zeta sqrt(k m), k = E edge:
-  // CVXS_BondInternal of evosoro takes half of 2 zeta sqrt(k m). Over k, that is zeta edge sqrt(rho / E).
-  void set_relaxation_time(std::vector<Robot>& robots) const {
-    if (!(model_.bond_damping > 0)) return;
+  // CVXS_BondInternal of evosoro takes half of 2 zeta sqrt(k m). Over k, that is zeta edge sqrt(rho / E) [s].
+  double relaxation_time() const {
+    if (!(model_.bond_damping > 0)) return 0;
     const double share = mean([&](std::size_t cell) { return std::sqrt(1 / modulus_of_cell(cell)); });
-    const auto relaxation_time = static_cast<float>(model_.bond_damping * model_.edge * std::sqrt(density_) * share *
-                                                    scaling_->calibration.time_scale);
+    return model_.bond_damping * model_.edge * std::sqrt(density_) * share * scaling_->calibration.time_scale;
+  }
+
+  // Of the robots whose springs have none of their own.
+  void set_relaxation_time(std::vector<Robot>& robots) const {
     for (Robot& robot : robots)
-      for (std::size_t id = 1; id < robot.materials.size(); ++id) robot.materials[id].relaxation_time = relaxation_time;
+      for (std::size_t id = 1; id < robot.materials.size(); ++id)
+        if (float& time = robot.materials[id].relaxation_time; time == 0) time = static_cast<float>(relaxation_time());
+  }
+
+  // Where bodies have masses in the middles of voxels.
+  static void set_contact_distance(Import& import) {
+    double shortest = imported_edge;
+    for (const Robot& robot : import.robots)
+      for (const Spring& spring : robot.springs) shortest = std::min(shortest, static_cast<double>(spring.rest_length));
+    if (shortest < 0.9 * imported_edge)
+      import.settings.contact_distance = std::clamp(contact_distance * imported_edge / shortest, 0.1, 1.5);
   }
 
   // The drag of the calibration, for the mass that the robots have per voxel.

@@ -284,9 +284,14 @@ std::string vxa_document(const Robot& robot, const std::optional<ImportedSetting
   if (!body)
     throw InputError(robot.name,
                      "has no grid of voxels in its origin, which VXA needs; voxel, painted and imported robots have");
-  double relaxation_time = 0;  // of all springs, as the importer sets it
-  for (const Material& material : materials_of(robot))
+  // Of a beam, as the importer sets it: of all springs, or, in bodies that stand, half, all and 3/2 of it.
+  double relaxation_time = 0, shortest = std::numeric_limits<double>::infinity();
+  for (const Material& material : materials_of(robot)) {
+    if (!(material.relaxation_time > 0)) continue;
     relaxation_time = std::max(relaxation_time, static_cast<double>(material.relaxation_time));
+    shortest = std::min(shortest, static_cast<double>(material.relaxation_time));
+  }
+  if (relaxation_time > 2 * shortest) relaxation_time = 2 * shortest;
   double mass = 0;
   for (std::size_t i = 0; i < robot.masses.size(); ++i) mass += static_cast<double>(mass_of(robot, i));
   return VxaWriter(*body, world ? world_of(*world) : usual_world(robot), relaxation_time, mass).document();

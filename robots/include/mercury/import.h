@@ -32,6 +32,7 @@ struct ImportedSettings {
   double static_friction = 0;             // of masses at rest on it, if above `friction`, else 0; land only
   bool self_collision = true;             // land only
   double contact_stiffness = 100;         // land only, times the stiffness scale [N/m]
+  double contact_distance = 0.5;          // land only, in shortest rest lengths of the robot
   double drag_coefficient = 0;            // C_N of resistive water; resistive only
   double dt = 1e-3;                       // time step that is stable for the stiffest robot [s]
   double damping = 0;                     // [1/s]

@@ -74,8 +74,15 @@ TEST(VxaRoundTrip, KeepsImportedRobots) {
   parts.layers = "<PhaseOffset><Layer>" + phases + "</Layer></PhaseOffset>";
   const Robot robot = import_of(parts).robots.front();
   const Robot back = import_text(vxa_document(robot), "vxa", "test").robots.front();
-  EXPECT_EQ(back.materials, robot.materials);
   EXPECT_EQ(back.springs, robot.springs);
+  // The phase depends on the damping, which the file has in other units.
+  ASSERT_EQ(back.materials.size(), robot.materials.size());
+  for (std::size_t id = 0; id < robot.materials.size(); ++id) {
+    Material material = back.materials[id];
+    EXPECT_NEAR(material.phase, robot.materials[id].phase, 1e-6);
+    material.phase = robot.materials[id].phase;
+    EXPECT_EQ(material, robot.materials[id]) << id;
+  }
 }
 
 // A bond of evosoro resists by zeta sqrt(k m), k = E edge and m = density edge^3. Over k, and in scaled time, that is
