@@ -56,7 +56,8 @@ std::optional<Hit> LiveScene::pick(const render::Ray& ray) const {
   const Shown& shown = parts_->view.shown;
   const Snapshot& snapshot = parts_->pointed_snapshot();
   const auto hidden = std::make_unique<bool[]>(snapshot.robots->size());
-  for (std::size_t i = 0; i < snapshot.robots->size(); ++i) hidden[i] = parts_->pointed_drawn().is_hidden(i);
+  for (std::size_t i = 0; i < snapshot.robots->size(); ++i)  // also what is hidden in the next frame
+    hidden[i] = parts_->pointed_drawn().is_hidden(i) || parts_->hidden.contains(snapshot.robots->robots[i].id);
   return mercury::pick(snapshot, parts_->pointed_drawn().offsets(), ray,
                        {.skin = shown.skin,
                         .springs = shown.springs,

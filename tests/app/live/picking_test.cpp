@@ -88,6 +88,28 @@ TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
   EXPECT_GT(met, 150);
 }
 
+// A robot that is torn apart is not drawn before it is selected.
+TEST(LivePicking, HitsAWreckOnceItIsSelected) {
+  LiveScene scene(test::on_cpu(OceanSimple{}));
+  Robot bomb{.name = "bomb", .masses = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}};
+  bomb.materials = {{}, {.stiffness = 50}, {.stiffness = 1e8f}};
+  bomb.springs = {{0, 1, 1, 0.98f}, {1, 2, 2, 0.98f}};
+  scene.add({bomb});
+  ViewSettings view = scene.view();
+  view.shown.springs = view.shown.masses = true;
+  scene.set_view(view);
+  scene.step(400);
+  scene.wait_until_done();
+  ASSERT_TRUE(scene.snapshot().telemetry[0].exploded);
+  const Vector3 mass = Vector3(scene.snapshot().positions_of(0)[0]) + scene.drawn().offsets()[0];
+  ASSERT_TRUE(mass.is_finite());
+  const render::Ray ray{mass + Vector3(0, 0, 5), Vector3(0, 0, -1)};
+  EXPECT_FALSE(scene.pick(ray));
+  scene.select(scene.entries().front().id);
+  scene.frame(1.5f);
+  EXPECT_TRUE(scene.pick(ray));
+}
+
 Robot two_springs() {
   Robot robot{.name = "pair", .masses = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
   robot.springs = {{0, 1, 21, 0.8f}, {0, 2, 1, 1}};
