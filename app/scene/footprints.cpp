@@ -27,6 +27,18 @@ float short_spring(const Robot& robot) {
 
 Vector2 level(Vec3 p) { return {p.x, p.y}; }
 
+// How far a part slides before it makes another print [m].
+float step_of(const GroundContact& contact) { return std::max(step / radius * contact.radius, 1e-6f); }
+
+// The cell of the ground in which the middle of a contact is; cells have the side of a step.
+std::uint64_t cell_of(const GroundContact& contact) {
+  const Vector2 middle = (1.0f / 3) * (contact.corners[0] + contact.corners[1] + contact.corners[2]);
+  const auto place = [&](float x) {
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor(x / step_of(contact))));
+  };
+  return std::uint64_t{place(middle.x)} << 32 | place(middle.y);
+}
+
 }  // namespace
 
 FootprintObserver::FootprintObserver(const Simulation& simulation)
@@ -95,28 +107,43 @@ void Footprints::cut(double time) {
 
 void Footprints::count_latest() {
   latest_.clear();
-  for (std::size_t i = 0; i < prints_.size(); ++i) latest_[prints_[i].contact.part] = i;
+  in_cell_.clear();
+  for (std::size_t i = 0; i < prints_.size(); ++i) count(i);
+}
+
+void Footprints::count(std::size_t print) {
+  latest_[prints_[print].contact.part] = print;
+  in_cell_[cell_of(prints_[print].contact)] = print;
+}
+
+// A foot that comes back to its print within `whole_for` does not leave another one. A part that slid presses no sand
+// that another part has pressed as deep.
+Footprints::Print* Footprints::covering(double time, const GroundContact& contact) {
+  const auto found = latest_.find(contact.part);
+  if (found == latest_.end()) return nullptr;
+  Print& last = prints_[found->second];
+  float moved = 0;
+  for (std::size_t k = 0; k < 3; ++k) moved = std::max(moved, (contact.corners[k] - last.contact.corners[k]).norm());
+  if (moved <= step_of(contact) && time - last.until < whole_for) return &last;
+  const auto there = in_cell_.find(cell_of(contact));
+  if (there == in_cell_.end()) return nullptr;
+  Print& pressed = prints_[there->second];
+  return pressed.contact.depth >= contact.depth && time - pressed.until < whole_for ? &pressed : nullptr;
 }
 
 void Footprints::touch(double time, const GroundContact& contact) {
   if (time <= known_) return;
-  if (const auto found = latest_.find(contact.part); found != latest_.end()) {
-    Print& last = prints_[found->second];
-    float moved = 0;
-    for (std::size_t k = 0; k < 3; ++k) moved = std::max(moved, (contact.corners[k] - last.contact.corners[k]).norm());
-    // A foot that comes back to its print within this time does not leave another one.
-    if (moved <= step / radius * contact.radius && time - last.until < whole_for) {
-      last.until = time;
-      return;
-    }
+  if (Print* const print = covering(time, contact)) {
+    print->until = time;
+    return;
   }
-  if (prints_.size() >= most) forget_oldest();
-  latest_[contact.part] = prints_.size();
+  if (prints_.size() >= most_) forget_oldest();
   prints_.push_back({contact, time, time});
+  count(prints_.size() - 1);
 }
 
 void Footprints::forget_oldest() {
-  prints_.erase(prints_.begin(), prints_.begin() + most / 8);
+  prints_.erase(prints_.begin(), prints_.begin() + static_cast<std::ptrdiff_t>(most_ / 8));
   count_latest();
 }
 

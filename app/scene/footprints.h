@@ -9,6 +9,7 @@
 // A picture of any moment shows the same, whether time went there in steps or jumped back.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -54,11 +55,16 @@ class FootprintObserver {
   std::int64_t interval_ = 1;
 };
 
-// The prints of one robot. They stay for a while after the robot has lifted its foot, and then fade. Of too many, the
-// oldest are forgotten.
+// The prints of one robot. They stay for a while after the robot has lifted its foot, and then fade. Where a foot
+// slides over its own prints, it leaves no others. Of too many, the oldest are forgotten.
 class Footprints {
  public:
-  static constexpr std::size_t most = 4000;
+  static constexpr std::size_t most = 4000;                          // of a robot
+  static constexpr std::size_t most_of_group = 40'000, least = 400;  // that all may have together, and each of them
+
+  explicit Footprints(std::size_t robots = 1)
+      : most_(std::clamp(most_of_group / std::max<std::size_t>(robots, 1), least, most)) {}
+
   static constexpr double whole_for = 8, gone_after = 24;  // since the foot was lifted [s]
 
   // Time is now `time` [s]. What came later is forgotten or kept, as that of a Trail.
@@ -78,9 +84,14 @@ class Footprints {
   void cut(double time);
   void forget_oldest();
   void count_latest();
+  void count(std::size_t print);
+  // A print that covers the contact, and has not been alone for long. Nothing if there is none.
+  Print* covering(double time, const GroundContact& contact);
 
+  std::size_t most_;
   std::vector<Print> prints_;                                // by `from`
   std::unordered_map<std::uint32_t, std::size_t> latest_;    // the last print of each part
+  std::unordered_map<std::uint64_t, std::size_t> in_cell_;   // the last print of each cell of the ground
   double now_ = 0;                                           // [s]
   double known_ = -std::numeric_limits<double>::infinity();  // contacts are known up to this time [s]
 };

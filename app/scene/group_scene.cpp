@@ -192,7 +192,7 @@ void GroupScene::mark(std::size_t robot, bool selected, bool hidden) {
 
 void GroupScene::restart(std::span<const Telemetry> telemetry) {
   trails_.clear();
-  footprints_.assign(telemetry.size(), {});
+  footprints_.assign(telemetry.size(), Footprints(telemetry.size()));
   for (std::size_t i = 0; i < telemetry.size(); ++i) {
     const bool known = !telemetry[i].exploded && render::Vector3(telemetry[i].center_of_mass).is_finite();
     const render::Vector3& rest = rooms_[i].center;

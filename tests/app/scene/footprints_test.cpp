@@ -165,6 +165,48 @@ TEST(Footprints, WhatCameLaterIsForgottenWhenTheRobotGoesOnFromThere) {
   EXPECT_EQ(walk.shown().size(), 5u) << "the steps to 5 to 9 have not happened";
 }
 
+// Two feet slide 1 m to the front and back. On the way back the sand is pressed already.
+TEST(Footprints, AFootThatSlidesOverItsPrintsLeavesNoOthers) {
+  Footprints prints;
+  double time = 0;
+  const auto slide_to = [&](int step) {
+    for (std::uint32_t foot = 0; foot < 2; ++foot) {
+      const render::Vector2 place(0.0251f * static_cast<float>(step) + static_cast<float>(foot), 0.01f);
+      prints.touch(time, {.part = foot, .corners = {place, place, place}, .radius = 0.03f});
+    }
+    prints.know_until(time);
+    time += 0.05;
+  };
+  const auto count = [&] {
+    prints.go_to(time, Later::keep);
+    std::vector<render::Print> shown;
+    prints.show({}, shown);
+    return shown.size();
+  };
+  for (int step = 0; step < 30; ++step) slide_to(step);
+  EXPECT_EQ(count(), 60u);
+  for (int step = 30; step-- > 0;) slide_to(step);
+  EXPECT_EQ(count(), 60u);
+  time += Footprints::whole_for + 1;  // the wind has blown
+  slide_to(15);
+  EXPECT_EQ(count(), 62u);
+}
+
+TEST(Footprints, OfLargeGroupsEachRobotHasFewer) {
+  for (const std::size_t robots : {1u, 100u, 1000u}) {
+    Footprints prints(robots);
+    for (int i = 0; i < 10'000; ++i) {
+      const render::Vector2 place(static_cast<float>(i), 0);
+      prints.touch(1e-3 * i, {.part = 7, .corners = {place, place, place}, .radius = 0.03f});
+    }
+    prints.go_to(10, Later::keep);
+    std::vector<render::Print> shown;
+    prints.show({}, shown);
+    EXPECT_LE(shown.size(), std::max(Footprints::most_of_group / robots, Footprints::least));
+    EXPECT_GT(shown.size(), 300u);
+  }
+}
+
 TEST(Footprints, OfTooManyTheOldestAreForgotten) {
   Footprints prints;
   const int count = 3 * static_cast<int>(Footprints::most);
