@@ -333,7 +333,8 @@ int evolve_as_rank_0(const EvolveOptions& options, const Command& command, Ranks
 
 int evolve_as_other_rank(const EvolveOptions& options, const Command& command, Ranks& ranks) {
   const std::optional<RunSettings> run = ranks.receive_settings();
-  if (!run) return 2;
+  // Rank 0 says why. Who ended before it did would make the launcher kill it.
+  if (!run) throw InputError(options.folder, "rank 0 cannot use it");
   EvolutionSettings settings = settings_here(options, command, *run);
   choose_gpu_of_rank(ranks, settings.configuration.device);
   const std::unique_ptr<GenomeSpace> space = make_genome_space(run->space);

@@ -59,9 +59,10 @@ constexpr const char* footer =
 // As shells number the end of a program by a signal: 130 for Ctrl-C.
 int stopped_status() { return 128 + stop_signal(); }
 
-// Whether the launcher ends this process because another one has failed, which takes a moment.
+// Whether the launcher ends this process because another one has failed, which takes a moment, and on a busy machine
+// seconds until the other has come as far.
 bool launcher_ends_all() {
-  for (int wait = 0; wait < 500 && !interrupted(); ++wait) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (int wait = 0; wait < 3000 && !interrupted(); ++wait) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   return interrupted();
 }
 

@@ -225,6 +225,16 @@ TEST_F(EvolveByMpi, MistakesAreReportedOnce) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
+// On a busy machine, rank 0 may come upon the mistake seconds after the others.
+TEST_F(EvolveByMpi, MistakesAreReportedByRankZeroHoweverLate) {
+  const std::string late = "if [ $OMPI_COMM_WORLD_RANK = 0 ]; then sleep 6; fi; exec \"$@\"";
+  const Outcome outcome = run_program("mpirun", {"-n", "3", "--oversubscribe", "sh", "-c", late, "sh", MERCURY_PROGRAM,
+                                                 "evolve", path("run"), "--charm", "3"});
+  EXPECT_EQ(outcome.status, 2) << outcome.messages;
+  EXPECT_EQ(lines_of_mercury(outcome), 1u) << outcome.messages;
+  EXPECT_THAT(outcome.messages, testing::HasSubstr("mercury: --charm: not an option"));
+}
+
 TEST_F(EvolveByMpi, ALostRankEndsTheRunWithALine) {
   const std::string generations = "40", wanted = expected_lineage(generations);
   for (const int lost : {1, 0}) {
