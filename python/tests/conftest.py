@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 import os
+import signal
 import subprocess
 
 import pytest
 
 import mercurysim
+
+# Tests interrupt themselves and programs that they start, also where this process was started with Ctrl-C ignored, as in
+# the background of a script.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

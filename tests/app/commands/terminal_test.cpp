@@ -191,5 +191,17 @@ INSTANTIATE_TEST_SUITE_P(Terminal, Signals, testing::Values(SIGINT, SIGTERM, SIG
   return tested.param == SIGINT ? "Interrupt" : tested.param == SIGTERM ? "Terminate" : "HangUp";
 });
 
+// As nohup starts it.
+TEST_F(FolderTest, ASignalThatWasIgnoredAtTheStartStaysIgnored) {
+  ChildProcess child("sh", {"-c", "trap '' HUP; exec \"$@\"", "sh", MERCURY_PROGRAM, "run", "--random", "voxel:1", "-v",
+                            "--seconds", "1e6", "--device", "cpu"});
+  while (child.running() && child.messages().empty()) nap();
+  child.signal(SIGHUP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(800));  // others end it within half a second
+  EXPECT_TRUE(child.running());
+  child.signal(SIGTERM);
+  EXPECT_EQ(outcome_of(child).status, 128 + SIGTERM);
+}
+
 }  // namespace
 }  // namespace mercury::test
