@@ -36,31 +36,50 @@ class OnGpu : public testing::Test {
   static Robot body() { return bodies::voxels({10, 10, 10}, {.stiffness = 50}); }
 };
 
+// Takes memory until little more than `left` bytes are free. Other programs may take and free some meanwhile.
+void take_all_but(std::size_t left, std::vector<std::shared_ptr<void>>& taken) {
+  for (std::size_t piece = std::size_t{8} << 30; piece >= left / 4; piece /= 2)
+    while (free_cuda_memory(0) > left + piece) {
+      try {
+        taken.push_back(cuda::allocate_to_share(piece));
+      } catch (const DeviceError&) {
+        break;  // another program was faster
+      }
+    }
+}
+
 // As if another program held the rest.
 TEST_F(OnGpu, WithoutRoomSaysWhatIsNeededAndWhatIsFreeAndGoesOnAfterwards) {
   constexpr std::size_t left = std::size_t{256} << 20;
   const std::vector<Robot> few(2, body()), many(20000, body());
   Simulation before(configuration(), few);  // takes what a first use takes
   std::vector<std::shared_ptr<void>> taken;
-  for (std::size_t piece = std::size_t{8} << 30; piece >= left / 4; piece /= 2)
-    while (free_cuda_memory(0) > left + piece) taken.push_back(cuda::allocate_to_share(piece));
-
-  try {
-    const Simulation batch(configuration(), many);
-    ADD_FAILURE() << "20,000 robots of 1,331 masses fit into " << free_cuda_memory(0) << " bytes";
-  } catch (const DeviceError& error) {
-    EXPECT_THAT(error.what(), MatchesRegex("the GPU has no room for [0-9.]+ [MG]iB more; [0-9.]+ [MG]iB of its "
-                                           "[0-9.]+ GiB are free: give it fewer or smaller robots, or end other "
-                                           "programs that use it"));
+  std::string refusal;
+  constexpr int attempts = 10;  // other programs may have freed so much that the batch fits
+  for (int attempt = 0; attempt < attempts && refusal.empty(); ++attempt) {
+    take_all_but(left, taken);
+    try {
+      const Simulation batch(configuration(), many);
+    } catch (const DeviceError& error) {
+      refusal = error.what();
+    }
   }
+  EXPECT_THAT(refusal, MatchesRegex("the GPU has no room for [0-9.]+ [MG]iB more; [0-9.]+ [MG]iB of its "
+                                    "[0-9.]+ GiB are free: give it fewer or smaller robots, or end other "
+                                    "programs that use it"));
   // What was there goes on, and once there is room, the batch is accepted.
   before.step(10);
   taken.clear();
-  Simulation after(configuration(), few), batch(configuration(), many);
-  after.step(10);
-  batch.step(10);
-  EXPECT_EQ(before.hash(0), after.hash(0));
-  EXPECT_EQ(batch.hash(0), after.hash(0));
+  // Of what was refused at most `left` could have stayed, which is no obstacle: what is missing now, others have.
+  try {
+    Simulation after(configuration(), few), batch(configuration(), many);
+    after.step(10);
+    batch.step(10);
+    EXPECT_EQ(before.hash(0), after.hash(0));
+    EXPECT_EQ(batch.hash(0), after.hash(0));
+  } catch (const DeviceError& error) {
+    GTEST_SKIP() << "other programs have taken the memory meanwhile: " << error.what();
+  }
 }
 
 // Reads a mask from where no memory is: all that the process still wants from the GPU fails.
