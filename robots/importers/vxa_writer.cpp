@@ -14,6 +14,7 @@
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/origin.h"
+#include "mercury/real_body.h"
 #include "robots/file/whole_file.h"
 #include "robots/importers/calibration.h"
 #include "robots/importers/encodings.h"
@@ -280,7 +281,9 @@ World world_of(const ImportedSettings& settings) {
 }  // namespace
 
 std::string vxa_document(const Robot& robot, const std::optional<ImportedSettings>& world) {
-  const std::optional<VoxelBody> body = voxel_body_of(robot);
+  // The grid of a real body is of the materials that it was made of.
+  const Robot paper = real_material_of(robot) ? without_real_body(robot) : robot;
+  const std::optional<VoxelBody> body = voxel_body_of(paper);
   if (!body)
     throw InputError(robot.name,
                      "has no grid of voxels in its origin, which VXA needs; voxel, painted and imported robots have");
@@ -293,7 +296,7 @@ std::string vxa_document(const Robot& robot, const std::optional<ImportedSetting
   }
   if (relaxation_time > 2 * shortest) relaxation_time = 2 * shortest;
   double mass = 0;
-  for (std::size_t i = 0; i < robot.masses.size(); ++i) mass += static_cast<double>(mass_of(robot, i));
+  for (std::size_t i = 0; i < paper.masses.size(); ++i) mass += static_cast<double>(mass_of(paper, i));
   return VxaWriter(*body, world ? world_of(*world) : usual_world(robot), relaxation_time, mass).document();
 }
 

@@ -9,6 +9,7 @@
 #include "mercury/muscle_laws.h"
 #include "mercury/origin.h"
 #include "mercury/random_voxel.h"
+#include "mercury/real_body.h"
 #include "mercury/robot_file.h"
 #include "mercury/shell.h"
 #include "mercury/voxel.h"
@@ -188,6 +189,16 @@ TEST(VxaRoundTrip, AStiffnessScaleIsPartOfTheSprings) {
   };
   EXPECT_NEAR(back.settings.stiffness_scale * stiffness(back.robots.front()), 100 * stiffness(robot),
               1e-4 * stiffness(robot));
+}
+
+// A real body has a table of its own, in which the materials of the grid are not.
+TEST(VxaRoundTrip, RealBodiesHaveTheMaterialsOfTheirGrid) {
+  const Robot paper = random_voxel_robot({.smallest = {4, 3, 3}, .largest = {4, 3, 3}}, 3),
+              undamped = with_real_body(paper, {.relaxation_time = 0}), real = with_real_body(paper, {});
+  EXPECT_EQ(vxa_document(undamped), vxa_document(paper));
+  const Robot back = import_text(vxa_document(real), "vxa", "test").robots.front();
+  EXPECT_EQ(voxel_grid_of(back)->cells.size(), voxel_grid_of(paper)->cells.size());
+  EXPECT_NEAR(back.materials.at(1).relaxation_time, 0.01f, 1e-5f);
 }
 
 TEST(VxaRoundTrip, RobotsWithoutAGridAreRefused) { EXPECT_THROW(vxa_document(random_shell_robot({}, 1)), InputError); }
