@@ -11,7 +11,7 @@
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
-#include "robots/nn/alpha_body.h"
+#include "robots/nn/tetrahedra.h"
 #include "sim/cpu/kernels/kernel.h"
 #include "sim/physics/face_pairs.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of robots as names of files.
+// Names of robots as names of files, and words of command lines.
 #pragma once
 
 #include <cstddef>
@@ -24,5 +24,8 @@ class FileNames {
   std::unordered_set<std::string> taken_;
   std::unordered_map<std::string, std::size_t> last_;  // number given out for a name
 };
+
+// A word for the shell, in quotes if it needs them.
+std::string shell_quoted(const std::string& word);
 
 }  // namespace mercury

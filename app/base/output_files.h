@@ -14,6 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "mercury/csv.h"
+
 namespace mercury {
 
 // "-" and "/dev/stdout" stand for standard output.
@@ -68,5 +70,10 @@ class OutputFiles {
 // Calls write(), which writes the file. Returns the name that it has: where another program has taken it in the
 // meantime, another one, which a warning says (NameTaken).
 std::filesystem::path name_given(const std::filesystem::path& file, const std::function<void()>& write);
+
+// Numbers in tables of CSV, whose texts are mercury/csv.h's.
+
+// The shortest text that reads back as this number; empty if it is not finite, which programs read as missing.
+std::string csv_number(double value);
 
 }  // namespace mercury

@@ -9,17 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "app/base/csv.h"
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
+#include "app/base/output_files.h"
 #include "app/base/progress.h"
 #include "app/base/standard_streams.h"
 #include "app/base/version.h"
-#include "app/commands/commands.h"
 #include "app/commands/description.h"
-#include "app/commands/dry_run.h"
-#include "app/commands/results_file.h"
 #include "app/commands/run_evaluation.h"
+#include "app/options/command.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "app/options/parameter_options.h"

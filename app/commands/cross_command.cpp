@@ -4,9 +4,9 @@
 
 #include <memory>
 
-#include "app/commands/commands.h"
-#include "app/commands/dry_run.h"
+#include "app/commands/description.h"
 #include "app/commands/offspring.h"
+#include "app/options/command.h"
 #include "app/options/option_values.h"
 #include "app/options/robot_inputs.h"
 #include "app/options/robot_output.h"

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "app/commands/command_list.h"
-#include "app/commands/commands.h"
+#include "app/options/command.h"
 #include "app/options/option_values.h"
 #include "robots/file/whole_file.h"
 

@@ -4,9 +4,9 @@
 #include <set>
 
 #include "app/base/file_name.h"
-#include "app/commands/commands.h"
-#include "app/commands/dry_run.h"
+#include "app/commands/description.h"
 #include "app/commands/offspring.h"
+#include "app/options/command.h"
 #include "app/options/robot_inputs.h"
 #include "app/options/robot_output.h"
 #include "mercury/error.h"

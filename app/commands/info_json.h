@@ -5,8 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string>
+#include <vector>
 
-#include "app/commands/machine.h"
 #include "app/options/scene_file.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_reader.h"
@@ -15,6 +16,16 @@
 #include "mercury/run_folder.h"
 
 namespace mercury {
+
+// One resource of the program: what was found, and advice if it is missing or could be better.
+struct Finding {
+  std::string what;    // "encoder"
+  std::string found;   // "ffmpeg 5.1.9 (H.264, VP9, GIF)", or "none"
+  std::string advice;  // empty = all is well
+};
+
+// Processor, memory, GPUs, ways to draw, encoder. `ffmpeg` as in encoder_program().
+std::vector<Finding> inspect_machine(const std::string& ffmpeg);
 
 // The environment that the robot says it was made for, else the default.
 Environment environment_made_for(const Robot& robot);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/commands/machine.h"
+#include "app/commands/info_json.h"
 
 #include <fmt/format.h>
 #include <sched.h>

@@ -9,9 +9,8 @@
 
 #include "app/base/messages.h"
 #include "app/commands/best_of.h"
-#include "app/commands/commands.h"
-#include "app/commands/dry_run.h"
-#include "app/commands/results_file.h"
+#include "app/commands/description.h"
+#include "app/options/command.h"
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"

@@ -19,7 +19,7 @@
 #include "app/base/standard_streams.h"
 #include "app/base/version.h"
 #include "app/commands/command_list.h"
-#include "app/commands/commands.h"
+#include "app/options/command.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
 #include "app/options/scene_file.h"

@@ -10,10 +10,9 @@
 
 #include "app/base/file_name.h"
 #include "app/base/messages.h"
-#include "app/commands/commands.h"
 #include "app/commands/description.h"
-#include "app/commands/dry_run.h"
 #include "app/commands/render_subject.h"
+#include "app/options/command.h"
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"
 #include "app/video/figure.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "app/base/csv.h"
+#include "app/base/output_files.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/distance.h"
 #include "mercury/fnv.h"

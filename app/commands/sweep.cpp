@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-#include "app/base/csv.h"
+#include "app/base/output_files.h"
 #include "evolution/run_folder/plot.h"
 #include "mercury/run_folder.h"
 #include "mercury/spread.h"

@@ -17,7 +17,7 @@
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
-#include "app/commands/commands.h"
+#include "app/options/command.h"
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"
 #include "app/recording/trajectory_reader.h"

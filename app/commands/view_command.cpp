@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "app/base/progress.h"
-#include "app/commands/commands.h"
 #include "app/options/attachment_options.h"
+#include "app/options/command.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
 #include "app/options/robot_options.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "app/base/csv.h"
+#include "app/base/output_files.h"
 #include "app/export/writers.h"
 #include "mercury/brain.h"
 #include "mercury/robot.h"

@@ -4,11 +4,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/base/output_files.h"
 #include "app/export/export_format.h"
+#include "mercury/configuration.h"
+#include "mercury/import.h"
 
 namespace mercury {
 
@@ -34,5 +37,15 @@ void add_outputs(const ExportFormat& format, const std::filesystem::path& file, 
 
 // All that is written: "eel.obj and eel.mtl".
 std::string outputs_text(const ExportFormat& format, const std::filesystem::path& file);
+
+// Where a robot is simulated, in the terms of VXA.
+
+struct VxaWorld {
+  ImportedSettings settings;
+  std::vector<std::string> lost;  // what VXA cannot say, a sentence each
+};
+
+// `seconds`: how long to simulate; none = the file does not say.
+VxaWorld vxa_world(const Environment& environment, double damping, std::optional<double> seconds = {});
 
 }  // namespace mercury

@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "app/base/version.h"
-#include "app/export/page_files.h"
 #include "app/export/page_numbers.h"
 #include "app/export/writers.h"
 #include "app/recording/configuration_json.h"

@@ -17,6 +17,8 @@
 #include <string>
 #include <string_view>
 
+#include "app/base/embedded_file.h"
+
 namespace mercury {
 
 // Tables one after another.
@@ -33,5 +35,10 @@ class PageNumbers {
   std::string descriptions_;  // JSON, without the brackets
   std::string bytes_;
 };
+
+// The files of app/export/page, from which web pages are put together.
+
+// cmake/EmbedFiles.cmake writes this function at build time.
+std::span<const EmbeddedFile> page_files();
 
 }  // namespace mercury

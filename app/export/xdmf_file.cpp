@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // XDMF: a description of a recording, whose numbers stay in its HDF5 file. Two series, the springs and the skin, of the
-// same masses. Its frames have names in a small file beside (frame_links.h): meshio knows no parts of a dataset. It
-// takes the last series, and from each frame attributes alone, so that positions are one, too.
+// same masses. Its frames have names in a small file beside (write_frame_links()): meshio knows no parts of a dataset.
+// It takes the last series, and from each frame attributes alone, so that positions are one, too.
 #include <fmt/format.h>
 
 #include <string>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/export/writers.h"
-#include "app/recording/frame_links.h"
+#include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
 
 namespace mercury {

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <type_traits>
 
-#include "app/base/shell_word.h"
+#include "app/base/file_name.h"
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 

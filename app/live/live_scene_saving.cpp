@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "app/base/child_process.h"
-#include "app/base/csv.h"
+#include "app/base/output_files.h"
 #include "app/export/export.h"
 #include "app/export/simulated_motion.h"
 #include "app/live/live_scene_parts.h"

@@ -2,6 +2,7 @@
 // The robots that a command works on: files, folders, and random robots.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,9 +14,10 @@
 #include "app/options/command.h"
 #include "app/options/generator_options.h"
 #include "app/options/robot_inputs.h"
-#include "app/options/robot_memory.h"
 #include "mercury/configuration.h"
 #include "mercury/evaluator.h"
+#include "mercury/generator.h"
+#include "mercury/host_memory.h"
 #include "mercury/robot.h"
 #include "mercury/run_folder.h"
 
@@ -112,5 +114,15 @@ class RobotOptions {
   bool lively_ = false;
   GeneratorOptions generators_;
 };
+
+// Whether the robots that a command asks for fit into memory, before they are made.
+
+// Measured on the CPU (docs/experiments.md): recorded; drawn.
+inline constexpr MemoryUse recorded_memory{.per_robot = 20 << 10, .per_content = 3.5},
+    drawn_memory{.per_robot = 36 << 10, .per_content = 7};
+
+// Makes a few of the robots to see how large they are. Throws InputError("--random", memory_line()) if all of them
+// would not fit into `usable` bytes, and Interrupted after Ctrl-C. A few robots are always accepted.
+void require_memory_for(std::span<const RandomRobots> requests, const MemoryUse& use, std::size_t usable);
 
 }  // namespace mercury

@@ -14,7 +14,7 @@
 
 #include "evolution/run_folder/champion_checks.h"
 #include "evolution/run_folder/journal.h"
-#include "evolution/run_folder/progress_plot.h"
+#include "evolution/run_folder/plot.h"
 #include "mercury/csv.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"

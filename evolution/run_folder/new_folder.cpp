@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/run_folder/new_folder.h"
 
 #include <algorithm>
 #include <system_error>

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "mercury/run_folder.h"
+
 namespace mercury {
 
 struct PlotPoint {
@@ -82,5 +84,15 @@ void draw_bottom_axis(Svg& svg, const Box& box, const Scale& scale, std::string_
 
 // "distance [m]" of a quantity; a formula as it is.
 std::string axis_title(const std::string& formula);
+
+// The picture progress.svg: scores over generations, one panel per objective; the living in the plane of two
+// objectives; for map-elites the map.
+std::string progress_plot(const RunHistory& run);
+
+// Its panels. Each draws into a box; axes and their titles stand outside, 80 px to the left, 50 px below and 130 px to
+// the right.
+void draw_scores(Svg& svg, const Box& box, const RunHistory& run, std::size_t objective);
+void draw_front(Svg& svg, const Box& box, const RunHistory& run);
+void draw_map(Svg& svg, const Box& box, const RunHistory& run);
 
 }  // namespace mercury

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scores over generations: the best, the median and the middle half of the living.
-#include "evolution/run_folder/progress_plot.h"
+#include "evolution/run_folder/plot.h"
 
 #include <algorithm>
 #include <array>

@@ -9,7 +9,7 @@
 
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/generation_record.h"
-#include "evolution/run_folder/new_folder.h"
+#include "evolution/run_folder/journal.h"
 #include "evolution/run_folder/run_history.h"
 #include "mercury/error.h"
 #include "mercury/file_links.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mercury/algorithm.h"
+#include "mercury/robot.h"
 
 namespace mercury {
 
@@ -45,5 +46,18 @@ class CellMap {
   mutable std::once_flag centers_made_;
   mutable std::vector<Behavior> centers_;
 };
+
+// Measures of a body at rest.
+
+// Sides of the axis-parallel box around the masses [m]; 0 without masses.
+Vec3 box_of(const Robot& robot);
+
+// Volume that the skin encloses [m3], by the divergence theorem; 0 without faces.
+double volume_of(const Robot& robot);
+
+// How well the body equals its mirror image in y, 0..1. The mirror is the middle of the body's box. Each mass counts
+// 1 - d/r, at least 0, where d is the distance from its mirror image to the nearest mass and r is half the mean rest
+// length of the springs: 1 for a symmetric body, and for a lattice the share of its masses that have a partner.
+double mirror_symmetry(const Robot& robot);
 
 }  // namespace mercury

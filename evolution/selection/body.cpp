@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/selection/body.h"
+#include "evolution/selection/behavior.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evolution/selection/body.h"
+#include "evolution/selection/behavior.h"
 #include "mercury/distance.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/quantity.h"

@@ -7,10 +7,14 @@
 
 #include <atomic>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "mercury/shared_array.h"
+#include "mercury/telemetry.h"
 
 namespace mercury::python {
 
@@ -46,5 +50,21 @@ Array array_of(const SharedArray<T>& shared, LastStream last_stream, bool writab
 // The stream that a caller names: None = the legacy default stream, a handle, or an object with __cuda_stream__(),
 // cuda_stream (PyTorch) or ptr (CuPy). Throws TypeError.
 void* stream_from(nanobind::handle stream);
+
+// NumPy arrays that own what C++ computed.
+
+// Takes the values over without a copy. `shape` has as many elements.
+template <class T>
+nanobind::object owned_array(std::vector<T> values, std::initializer_list<std::size_t> shape) {
+  auto* kept = new std::vector<T>(std::move(values));
+  const nanobind::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<T>*>(memory); });
+  static T none{};  // an empty array points somewhere, too
+  return nanobind::cast(nanobind::ndarray<nanobind::numpy, T>(kept->empty() ? &none : kept->data(), shape, owner));
+}
+
+namespace nb = nanobind;
+
+// One element per robot, a structured NumPy array; the fields are those of Telemetry.
+nb::object telemetry_array(std::span<const Telemetry> telemetry);
 
 }  // namespace mercury::python

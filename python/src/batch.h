@@ -14,7 +14,6 @@
 #include "mercury/simulation.h"
 #include "python/src/array.h"
 #include "python/src/bindings.h"
-#include "python/src/gil.h"
 
 namespace mercury::python {
 

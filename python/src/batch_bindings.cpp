@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "python/src/arguments.h"
+#include "python/src/array.h"
 #include "python/src/batch.h"
-#include "python/src/telemetry.h"
 
 namespace mercury::python {
 namespace {

@@ -58,6 +58,22 @@ inline auto refused_pickle(const char* reason) {
   return [reason](nb::handle, nb::handle) -> nb::object { throw nb::type_error(reason); };
 }
 
+// Lets other threads of Python run until its end. A daemon thread that comes back while the interpreter exits sleeps
+// instead: Python would end the thread in the middle of C++ functions, and with it the process.
+class ReleasedGil {
+ public:
+  ReleasedGil();
+  ~ReleasedGil();
+  ReleasedGil(const ReleasedGil&) = delete;
+  ReleasedGil& operator=(const ReleasedGil&) = delete;
+
+ private:
+  PyThreadState* state_;
+};
+
+// Notices when the interpreter exits.
+void watch_exit();
+
 void bind_errors(nb::module_& module);
 void bind_robot(nb::module_& module);
 void bind_generators(nb::module_& module);

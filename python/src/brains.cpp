@@ -11,10 +11,9 @@
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
 #include "python/src/arguments.h"
+#include "python/src/array.h"
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
-#include "python/src/gil.h"
-#include "python/src/owned_array.h"
 #include "python/src/robot_arrays.h"
 #include "python/src/values.h"
 

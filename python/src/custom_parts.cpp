@@ -16,9 +16,9 @@
 
 #include "mercury/quantity.h"
 #include "mercury/random.h"
+#include "python/src/array.h"
 #include "python/src/called_object.h"
 #include "python/src/genomes.h"
-#include "python/src/owned_array.h"
 
 namespace mercury::python {
 namespace {

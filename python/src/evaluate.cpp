@@ -26,7 +26,6 @@
 #include "python/src/bindings.h"
 #include "python/src/called_object.h"
 #include "python/src/drives.h"
-#include "python/src/gil.h"
 #include "python/src/result.h"
 #include "python/src/robot_source.h"
 

@@ -26,7 +26,6 @@
 #include "python/src/bindings.h"
 #include "python/src/custom_parts.h"
 #include "python/src/genomes.h"
-#include "python/src/gil.h"
 #include "python/src/values.h"
 
 namespace mercury::python {

@@ -11,11 +11,9 @@
 #include <vector>
 
 #include "app/export/simulated_motion.h"
-#include "app/export/vxa_world.h"
 #include "mercury/error.h"
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
-#include "python/src/gil.h"
 #include "python/src/result.h"
 #include "python/src/values.h"
 

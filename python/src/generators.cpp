@@ -12,7 +12,6 @@
 #include "mercury/host_memory.h"
 #include "mercury/lively.h"
 #include "python/src/bindings.h"
-#include "python/src/gil.h"
 #include "python/src/values.h"
 
 namespace mercury::python {

@@ -13,7 +13,6 @@
 #include "mercury/generator.h"
 #include "python/src/bindings.h"
 #include "python/src/called_object.h"
-#include "python/src/gil.h"
 #include "python/src/values.h"
 
 namespace mercury::python {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "python/src/gil.h"
+#include "python/src/bindings.h"
 
 #include <cxxabi.h>
 

@@ -15,9 +15,9 @@
 #include "app/base/output_files.h"
 #include "app/recording/recorder.h"
 #include "mercury/error.h"
+#include "python/src/array.h"
 #include "python/src/batch.h"
 #include "python/src/bindings.h"
-#include "python/src/owned_array.h"
 #include "python/src/values.h"
 
 namespace mercury::python {

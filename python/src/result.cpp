@@ -13,8 +13,8 @@
 #include "mercury/quantity.h"
 #include "mercury/spread.h"
 #include "python/src/arguments.h"
+#include "python/src/array.h"
 #include "python/src/bindings.h"
-#include "python/src/telemetry.h"
 
 namespace mercury::python {
 namespace {

@@ -18,7 +18,6 @@
 #include "mercury/robot_file.h"
 #include "mercury/run_robots.h"
 #include "python/src/bindings.h"
-#include "python/src/gil.h"
 #include "python/src/robot_arrays.h"
 #include "python/src/values.h"
 

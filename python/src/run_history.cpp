@@ -12,9 +12,9 @@
 
 #include "mercury/quantity.h"
 #include "mercury/run_folder.h"
+#include "python/src/array.h"
 #include "python/src/bindings.h"
 #include "python/src/genomes.h"
-#include "python/src/owned_array.h"
 #include "python/src/values.h"
 
 namespace mercury::python {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Telemetry as a structured NumPy array.
-#include "python/src/telemetry.h"
+#include "python/src/array.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -9,7 +9,6 @@
 
 #include "mercury/error.h"
 #include "python/src/bindings.h"
-#include "python/src/gil.h"
 #include "python/src/robot_arrays.h"
 #include "python/src/values.h"
 

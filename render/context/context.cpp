@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "render/context/context_headless.h"
-#include "render/context/process_limits.h"
 
 namespace mercury::render {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/context/process_limits.h"
+#include "render/context/context_headless.h"
 
 #include <pthread.h>
 #include <sys/resource.h>

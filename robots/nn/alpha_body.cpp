@@ -7,16 +7,15 @@
 // All radii of a class are smaller than those of the next one, so a class is either inside or outside of an alpha shape
 // as long as alpha does not fall into it. Only the class that decides is split exactly. In a mirrored body it holds a
 // tetrahedron and its mirror image, whose radii are equal.
-#include "robots/nn/alpha_body.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "mercury/error.h"
-#include "robots/nn/delaunay.h"
 #include "robots/nn/exact_geometry.h"
 #include "robots/nn/radix_sort.h"
+#include "robots/nn/tetrahedra.h"
 
 namespace mercury {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Replaces alpha_body.cpp in a build without CGAL (-DMERCURY_NN=OFF).
-#include "robots/nn/alpha_body.h"
+#include "robots/nn/tetrahedra.h"
 
 #include "mercury/error.h"
 

@@ -10,7 +10,7 @@
 // space beyond its side.
 //
 // Each thread keeps its arrays for the next cloud: a triangulation of 500 points makes 13,000 cells.
-#include "robots/nn/delaunay.h"
+#include "robots/nn/tetrahedra.h"
 
 #include <algorithm>
 #include <array>

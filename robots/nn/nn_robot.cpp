@@ -12,8 +12,8 @@
 #include "mercury/muscle_laws.h"
 #include "mercury/random.h"
 #include "robots/muscle_fields.h"
-#include "robots/nn/alpha_body.h"
 #include "robots/nn/cloud_spacing.h"
+#include "robots/nn/tetrahedra.h"
 
 namespace mercury {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "mercury/error.h"
 #include "mercury/random.h"
-#include "robots/nn/alpha_body.h"
 #include "robots/nn/exact_geometry.h"
+#include "robots/nn/tetrahedra.h"
 
 namespace mercury {
 namespace {

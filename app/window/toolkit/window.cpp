@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "render/context/process_limits.h"
+#include "render/context/context_headless.h"
 
 namespace mercury::window {
 namespace {

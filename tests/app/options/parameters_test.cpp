@@ -3,7 +3,7 @@
 // refused in one line that names the option.
 #include <gmock/gmock.h>
 
-#include "app/commands/commands.h"
+#include "app/options/command.h"
 #include "app/options/config_file.h"
 #include "mercury/error.h"
 #include "mercury/random.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "evolution/run_folder/progress_plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

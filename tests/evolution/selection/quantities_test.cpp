@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "evolution/selection/body.h"
+#include "evolution/selection/behavior.h"
 #include "mercury/generator.h"
 #include "mercury/random.h"
 #include "mercury/voxel.h"
