@@ -122,6 +122,7 @@ std::vector<std::string> recording_seeds() {
   points.mass = {0.5f, 1, 3};
   points.velocity = {{}, {0, 0, 0.25f}, {0.1f, 0, 0}};
   points.fixed = {2, 0};
+  own.origin = R"({"kind":"voxel","size":[1,1,1],"edge":0.1,"cells":[1],"ancestry":{"parents":["a","b"]}})";
   Robot thinker = own;
   thinker.sensors = {{.kind = SensorKind::up}};
   thinker.brain.emplace().layers = {

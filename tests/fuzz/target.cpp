@@ -66,6 +66,7 @@ std::string unquoted(const std::string& message) {
 std::span<const Target> targets() {
   static constexpr std::array all{Target{"robot_json", "robot", robot_json_seeds, check_robot_json},
                                   Target{"robot_cbor", "robot", robot_cbor_seeds, check_robot_cbor},
+                                  Target{"origin", "robot", origin_seeds, check_origin},
                                   Target{"repro", "repro", repro_seeds, check_repro},
                                   Target{"recording", "recording", recording_seeds, check_recording},
                                   Target{"checkpoint", "recording", checkpoint_seeds, check_checkpoint},

@@ -41,6 +41,7 @@ std::string content_of(const std::string& path);
 
 void check_robot_json(std::string_view input);
 void check_robot_cbor(std::string_view input);
+void check_origin(std::string_view input);
 void check_repro(std::string_view input);
 void check_recording(std::string_view input);
 void check_checkpoint(std::string_view input);
@@ -61,6 +62,7 @@ void check_keys(std::string_view input);
 
 std::vector<std::string> robot_json_seeds();
 std::vector<std::string> robot_cbor_seeds();
+std::vector<std::string> origin_seeds();
 std::vector<std::string> repro_seeds();
 std::vector<std::string> recording_seeds();
 std::vector<std::string> checkpoint_seeds();
