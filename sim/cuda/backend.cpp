@@ -253,8 +253,13 @@ void CudaBackend::choose_launches() {
     if (robots.size() == 0) continue;
     robots.choose_launch(configuration_, places_.size(), owned_->brains.bytes(c));
     prepare_steps(configuration_.solver, model_for(robots), robots.launch());
-    if (robots.launch_in_parts())
-      prepare_steps(configuration_.solver, model_in_parts(robots), *robots.launch_in_parts());
+    if (const auto& in_parts = robots.launch_in_parts()) {
+      const StepModel model = model_in_parts(robots);
+      if (robots_in_flight(configuration_.solver, model, *in_parts) > 0)
+        prepare_steps(configuration_.solver, model, *in_parts);
+      else
+        robots.step_whole();
+    }
     brains_elsewhere = brains_elsewhere || !robots.launch().on_chip;
   }
   if (brains_elsewhere) owned_->brains.reserve_workspace();

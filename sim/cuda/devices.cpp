@@ -28,8 +28,6 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   ChipFit fit{.most_bytes = device_limits().shared_per_block,
               .on_chip = launch.on_chip,
               .contacts_on_chip = launch.on_chip && launch.contacts_on_chip};
-  StepModel model = step_model_of(configuration, real_bodies, launch);
-  LaunchConfiguration chosen = launch;
   if (!launch.on_chip) {
     const SlotOrder order = choose_slots(robot, pair_faces(robot));
     const DeviceParts::Source source{&robot, &order, {}};
@@ -41,13 +39,17 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
                           .viscous = viscous,
                           .table_chunks = launch.table_chunks,
                           .batch_size = many_robots})) {
-      chosen = *in_parts;
-      fit.on_chip = true;
-      fit.blocks = chosen.parts;
-      model = step_model_in_parts(configuration, real_bodies, chosen, nullptr, false);
+      const StepModel model = step_model_in_parts(configuration, real_bodies, *in_parts, nullptr, false);
+      fit.robots_at_once = robots_in_flight(configuration.solver, model, *in_parts);
+      if (fit.robots_at_once > 0) {
+        fit.on_chip = true;
+        fit.blocks = in_parts->parts;
+        return fit;
+      }
     }
   }
-  fit.robots_at_once = robots_in_flight(configuration.solver, model, chosen);
+  const StepModel model = step_model_of(configuration, real_bodies, launch);
+  fit.robots_at_once = robots_in_flight(configuration.solver, model, launch);
   return fit;
 }
 

@@ -82,6 +82,7 @@ class SizeClass {
   // If clusters step the robots in parts: those, and their launch. Reports are made of whole robots, without a step.
   const std::optional<LaunchConfiguration>& launch_in_parts() const { return launch_in_parts_; }
   BatchView view_of_parts() const { return parts_.view(view()); }
+  void step_whole() { launch_in_parts_.reset(); }
 
   // The table of a place; publish_materials() or publish_all_materials() uploads it.
   std::span<Material> table(std::uint32_t place) {

@@ -249,8 +249,10 @@ std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const Laun
     int blocks = 0;
     if (launch.parts > 1) {
       const Start how(launch, 1, nullptr);
-      check(cudaOccupancyMaxActiveClusters(&blocks, kernel, &how.configuration()), "querying the occupancy");
-      return static_cast<std::uint32_t>(blocks);
+      if (cudaOccupancyMaxActiveClusters(&blocks, kernel, &how.configuration()) == cudaSuccess)
+        return static_cast<std::uint32_t>(blocks);
+      (void)cudaGetLastError();  // the device has no clusters of this size
+      return 0u;
     }
     const auto threads = static_cast<int>(launch.robots_per_block * launch.warps_per_robot * lanes);
     check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, launch.shared_bytes),

@@ -75,7 +75,7 @@ inline StepModel step_model_in_parts(const Configuration& configuration, bool re
       solver_model_of(configuration.environment, real_bodies));
 }
 
-// Robots that the current device steps at the same time.
+// Robots that the current device steps at the same time; 0 if it cannot have blocks in such clusters.
 std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const LaunchConfiguration& launch);
 
 // Makes the kernel for this launch ready, once per device.
