@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots that do not fit on one multiprocessor, in parts: each block of a cluster steps one.
+// Robots in parts: large ones, which do not fit on one multiprocessor or would have few of them. Each block of a
+// cluster steps a part.
 //
 //        part 0 of 2                   part 1 of 2
 //   +-----------------------+     +-----------------------+
@@ -29,7 +30,7 @@
 
 namespace mercury::cuda {
 
-// The blocks that a cluster of any device of compute capability 9 may have are 8; most devices allow 16.
+// A cluster may have 8 blocks on all devices that have clusters, and 16 on many (robots_in_flight() says so).
 inline constexpr std::uint32_t most_parts = 16;
 
 struct Part {
