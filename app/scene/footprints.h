@@ -85,7 +85,7 @@ class Footprints {
   void forget_oldest();
   void count_latest();
   void count(std::size_t print);
-  // A print that covers the contact, and has not been alone for long. Nothing if there is none.
+  // The print to which a contact belongs. Null if it makes another one.
   Print* covering(double time, const GroundContact& contact);
 
   std::size_t most_;

@@ -102,6 +102,16 @@ def test_an_lstm_between_layers_does_what_onnx_says(tmp_path):
     expect_the_same(batch, ReferenceEvaluator(str(path)), "x", "hc")
 
 
+def fifty_thoughts(batch):
+    """Its senses (50, 1, senses) and drives (50, actuators)."""
+    senses, drives = [], []
+    for _ in range(50):
+        batch.step(20)
+        senses.append(batch.brain.senses)
+        drives.append(np.array(batch.actuation.drive)[0])
+    return np.stack(senses), np.stack(drives)
+
+
 def test_an_lstm_reads_a_sequence_of_senses(tmp_path):
     robot = body()
     count = len(robot.actuators)
@@ -109,13 +119,9 @@ def test_an_lstm_reads_a_sequence_of_senses(tmp_path):
     path = model(tmp_path / "lstm.onnx", [helper.make_node("LSTM", ["x", "w", "r"], ["y"], hidden_size=count)],
                  constants, shape=["steps", 1, 6])  # fmt: skip
     batch = mercurysim.Batch(robot.with_brain(brains.from_onnx(path), SENSORS), device="cpu")
-    senses, drives = [], []
-    for _ in range(50):
-        batch.step(20)
-        senses.append(batch.brain.senses)
-        drives.append(np.array(batch.actuation.drive)[0])
-    expected = ReferenceEvaluator(str(path)).run(None, {"x": np.stack(senses)})[0]
-    np.testing.assert_allclose(np.stack(drives), expected.reshape(50, count), atol=5e-6)
+    senses, drives = fifty_thoughts(batch)
+    expected = ReferenceEvaluator(str(path)).run(None, {"x": senses})[0]
+    np.testing.assert_allclose(drives, expected.reshape(50, count), atol=5e-6)
 
 
 # Of a GRU of ONNX, by its documentation: X (steps, 1, inputs), W and R of the gates z, r, h, B = all of W, then all of R.
@@ -145,16 +151,12 @@ def test_a_gru_reads_a_sequence_of_senses(tmp_path, reset, bias):
     path = model(tmp_path / "gru.onnx", [helper.make_node("GRU", ["x", *constants], ["y"], hidden_size=count, **reset)],
                  constants, shape=["steps", 1, 6])  # fmt: skip
     batch = mercurysim.Batch(robot.with_brain(brains.from_onnx(path), SENSORS), device="cpu")
-    senses, drives = [], []
-    for _ in range(50):
-        batch.step(20)
-        senses.append(batch.brain.senses)
-        drives.append(np.array(batch.actuation.drive)[0])
-    expected = gru_of_onnx(np.stack(senses), *constants.values(), **reset)
-    np.testing.assert_allclose(np.stack(drives), expected, atol=5e-6)
-    evaluated = ReferenceEvaluator(str(path)).run(None, {"x": np.stack(senses)})[0]
-    np.testing.assert_allclose(np.stack(drives), evaluated.reshape(50, count), atol=5e-6)
-    other = gru_of_onnx(np.stack(senses), *constants.values(), linear_before_reset=1 - reset.get("linear_before_reset", 0))
+    senses, drives = fifty_thoughts(batch)
+    expected = gru_of_onnx(senses, *constants.values(), **reset)
+    np.testing.assert_allclose(drives, expected, atol=5e-6)
+    evaluated = ReferenceEvaluator(str(path)).run(None, {"x": senses})[0]
+    np.testing.assert_allclose(drives, evaluated.reshape(50, count), atol=5e-6)
+    other = gru_of_onnx(senses, *constants.values(), linear_before_reset=1 - reset.get("linear_before_reset", 0))
     assert abs(other - expected).max() > 1e-3  # the two kinds differ here
 
 

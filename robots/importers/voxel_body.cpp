@@ -19,7 +19,6 @@
 #include "mercury/voxel.h"
 #include "robots/file/document.h"
 #include "robots/importers/calibration.h"
-#include "robots/importers/standing_body.h"
 
 namespace mercury {
 namespace {

@@ -50,7 +50,7 @@ enum class SpringRule {
   stretching,  // each voxel adds springs and 1 kg, so that a body of any thickness stretches, shears and weighs as
                // beams
   bending,     // the same, but limbs are softer, so that they bend as beams do
-  standing     // with masses in the middles of voxels, on which the body stands (standing_body.h)
+  standing     // with masses in the middles of voxels, on which the body stands (standing_body.cpp)
 };
 
 // The one body of a grid as a robot.
@@ -63,6 +63,11 @@ enum class SpringRule {
 Robot voxel_body_robot(const VoxelBody& body, const std::string& name, const Provenance& provenance,
                        std::size_t most_materials, Rounding& rounding, SpringRule rule = SpringRule::equal,
                        double relaxation_time = 0);
+
+// The same by SpringRule::standing, without an origin. Materials have relaxation times, up to 3/2 of `relaxation_time`
+// [s].
+Robot standing_body(const VoxelBody& body, const std::string& name, double relaxation_time, std::size_t most_materials,
+                    Rounding& rounding);
 
 // Grid and substances of an origin: of a robot that was imported, was painted, or is any other voxel robot. Nothing for
 // robots of other kinds. Throws InputError("/origin: ...") for an origin that breaks a rule.

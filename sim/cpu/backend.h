@@ -2,29 +2,13 @@
 // The CPU backend with a kernel of choice; make_cpu_backend() takes the best.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <span>
 
 #include "mercury/backend.h"
-#include "sim/cpu/grouping/work_batch.h"
 #include "sim/cpu/kernels/kernel.h"
-#include "sim/cpu/layout/body.h"
 
 namespace mercury::cpu {
 
 std::unique_ptr<Backend> make_backend(const Device& device, const Kernel& kernel);
-
-// Advances work batches, and measures bodies.
-
-// Advances those of the batch's bodies that have not exploded. The batch's groups may hold states from then on. Returns
-// the number of groups that were broken up because a member may have exploded.
-std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& setting, const Clock& clock,
-                    std::int64_t steps);
-
-// Brings all states back to the bodies.
-void store(std::span<WorkBatch> batches);
-
-Telemetry measure_state(const Body& body, const Configuration& configuration, const Clock& clock);
 
 }  // namespace mercury::cpu

@@ -24,9 +24,9 @@
 //    up to 16 copies of the material table, interleaved, and each lane reads a copy of its own: copy (lane mod
 //    copies). With 16 copies there are no conflicts, since a read of 8 bytes serves half a warp per pass.
 //    launch_configuration.cpp weighs them against memory to cache with.
-// 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory,
-// unless
-//    the blocks of a cluster can step the robot in parts (parts.h). A block then has one part.
+// 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory.
+//    In the last case the blocks of a cluster step the robot in parts, if they can (parts.h); a block then has one
+//    part.
 // 4. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
 //    result.
 #pragma once
@@ -80,8 +80,8 @@ inline std::uint32_t contact_buckets(const Environment& environment, std::uint32
   return has_contacts(environment) ? std::bit_ceil(tiles * lanes) : 0;
 }
 
-// Bytes of ContactMemory (contacts.cuh): the list, and the grid of a robot of this many tiles. The list of a robot in
-// parts begins with two votes.
+// Bytes of ContactMemory (contacts.cuh): the list, and the grid of a robot of this many tiles. Before the list of a
+// robot in parts come two votes.
 inline constexpr std::uint32_t contact_vote_bytes = 8;
 MERCURY_HOST_DEVICE std::uint32_t contact_list_bytes(const LaunchConfiguration& launch) {
   return (1 + launch.listed_pairs) * 4;

@@ -57,6 +57,13 @@ class BlockRobot {
     return slot / lanes * tile_bytes + slot % lanes * 4;
   }
 
+  // The number of this part of the robot.
+  __device__ std::uint32_t part() const { return Memory::in_parts ? blockIdx.x % arguments_.batch.parts.per_robot : 0; }
+  // Where a robot in parts has the mass of a slot of the whole robot: part << 16 | slot in that part.
+  __device__ std::uint32_t place_of(std::uint32_t slot) const {
+    const PartsView& parts = arguments_.batch.parts;
+    return __ldg(parts.places + std::size_t{context_.robot} * parts.robot_tile_stride * lanes + slot);
+  }
   // Where the chunks begin that each part of a robot has, if robots are in parts.
   __device__ std::size_t chunk() const { return Memory::in_parts ? blockIdx.x : context_.robot; }
 

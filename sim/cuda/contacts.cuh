@@ -205,8 +205,8 @@ class ContactPass {
   // Between barriers.
   __device__ static void fill_grid(const Robot& robot, const ContactMemory& memory) {
     const std::uint32_t parts = in_parts ? robot.arguments().launch.parts : 1;
-    const std::uint32_t part = in_parts ? blockIdx.x % parts : 0;
-    for (std::uint32_t b = part * robot.threads() + robot.thread(); b < buckets(robot); b += parts * robot.threads())
+    for (std::uint32_t b = robot.part() * robot.threads() + robot.thread(); b < buckets(robot);
+         b += parts * robot.threads())
       memory.heads[b] = end_of_list;
     if (robot.thread() == 0) *memory.count = 0;
     robot_barrier<typename Robot::Memory>();
@@ -272,10 +272,7 @@ class ContactPass {
   }
   // Where the mass of a slot of the grid is: the slot, or part << 16 | slot in that part.
   __device__ static std::uint32_t other_of(const Robot& robot, std::uint32_t j) {
-    if constexpr (in_parts) {
-      const PartsView& parts = robot.arguments().batch.parts;
-      return __ldg(parts.places + std::size_t{robot.context().robot} * parts.robot_tile_stride * lanes + j);
-    }
+    if constexpr (in_parts) return robot.place_of(j);
     return j;
   }
   __device__ static typename Robot::Memory::Address address_of(const Robot& robot, std::uint32_t other) {
@@ -343,9 +340,8 @@ class ContactPass {
   __device__ static std::uint32_t* near_pairs(const Robot& robot) {
     const BatchView& batch = robot.arguments().batch;
     const std::uint32_t tiles = in_parts ? batch.parts.robot_tile_stride : batch.tile_stride;
-    const std::uint32_t part = in_parts ? blockIdx.x % robot.arguments().launch.parts : 0;
     return reinterpret_cast<std::uint32_t*>(listed_positions(robot) + 3 * tiles * lanes) +
-           part * near_pairs_per_slot * batch.tile_stride * lanes;
+           robot.part() * near_pairs_per_slot * batch.tile_stride * lanes;
   }
 
   // Calls visit(i, x_i, j) for every pair within the list radius whose slot i is one of this thread's; j is a slot of
@@ -387,7 +383,7 @@ class ContactPass {
   __device__ static bool joined(const Robot& robot, std::uint32_t i, std::uint32_t j) {
     if constexpr (in_parts) {
       const std::uint32_t other = other_of(robot, j);
-      if (other >> 16 != blockIdx.x % robot.arguments().launch.parts) return owns_to_ghost(robot, i, j);
+      if (other >> 16 != robot.part()) return owns_to_ghost(robot, i, j);
       j = other & 0xffff;
     }
     return owns(robot, i, j) || owns(robot, j, i);

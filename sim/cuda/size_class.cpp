@@ -2,7 +2,6 @@
 #include "sim/cuda/size_class.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "mercury/parallel.h"
 #include "sim/cuda/block_layout.h"

@@ -140,7 +140,7 @@ __global__ void __maxnreg__(72)
       }
       stepper.add_springs(step);
       stepper.prefetch_end();
-      robot_rendezvous<Memory>();
+      barrier_after_springs<Memory>();
       stepper.end(step);
       stepper.export_state();
       stepper.prefetch_environment();

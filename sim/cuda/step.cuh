@@ -48,7 +48,7 @@ class RobotStepper {
   // The robot's first thread stores when it exploded, if it did.
   __device__ void store_status() const {
     if (robot_.thread() != 0 || !failure_->happened()) return;
-    if (Memory::in_parts && blockIdx.x % batch().parts.per_robot != 0) return;  // they all have the same failure
+    if (robot_.part() != 0) return;  // all parts have the same failure
     batch().statuses[robot_.context().robot] = {robot_.arguments().clock.step + failure_->step(), failure_->bad_mass};
   }
 
@@ -254,10 +254,8 @@ class RobotStepper {
       if (perturbation.robot != robot_.context().robot) continue;
       std::uint32_t slot = perturbation.slot;
       if constexpr (Memory::in_parts) {
-        const PartsView& parts = batch().parts;
-        const std::uint32_t place =
-            parts.places[std::size_t{robot_.context().robot} * parts.robot_tile_stride * lanes + slot];
-        if (place >> 16 != blockIdx.x % parts.per_robot) continue;
+        const std::uint32_t place = robot_.place_of(slot);
+        if (place >> 16 != robot_.part()) continue;
         slot = place & 0xffff;
       }
       const Vec3 units =

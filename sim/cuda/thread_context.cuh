@@ -27,14 +27,18 @@ __device__ void robot_barrier() {
   __syncthreads();
 }
 
-// The same where what a part wrote to another one's memory, or to device memory, need not be seen yet.
+// The same between springs and masses: before it, parts write to each other's memory only to report a failure, which
+// they wait for themselves, and to add contacts. Without contacts it need not wait for device memory.
 template <class Memory>
-__device__ void robot_rendezvous() {
-  __syncthreads();
+__device__ void barrier_after_springs() {
 #if __CUDA_ARCH__ >= 900
-  if constexpr (Memory::in_parts)
+  if constexpr (Memory::in_parts && !Memory::finds_contacts) {
+    __syncthreads();
     asm volatile("barrier.cluster.arrive.relaxed.aligned;\nbarrier.cluster.wait.acquire.aligned;" ::: "memory");
+    return;
+  }
 #endif
+  robot_barrier<Memory>();
 }
 
 // The phases of a step. A phase is skipped if the robot failed in an earlier one, or in an earlier step.
