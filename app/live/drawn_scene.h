@@ -60,7 +60,7 @@ class DrawnScene {
   std::span<const render::Vector3> offsets() const;
   // The middle of a robot's cell, or of where it starts in other layouts [m].
   render::Vector3 cell_center(std::size_t robot) const;
-  // Whether a robot is left out of the view: hidden by the user, or torn apart and not selected.
+  // Whether a robot is left out of the view: hidden by the user, or torn apart.
   bool is_hidden(std::size_t robot) const;
 
  private:

@@ -239,8 +239,7 @@ Series LiveScene::series(RobotId robot) const { return parts_->physics.measureme
 std::vector<RankingRow> LiveScene::ranking() const { return parts_->physics.measurements().ranking(); }
 
 std::vector<ExplodedRobot> LiveScene::exploded() const {
-  std::vector<ExplodedRobot> robots =
-      exploded_robots(*parts_->snapshot, parts_->drawn.offsets(), parts_->drawn.last_boxes());
+  std::vector<ExplodedRobot> robots = exploded_robots(*parts_->snapshot, parts_->drawn.last_boxes());
   std::erase_if(robots, [&](const ExplodedRobot& robot) { return parts_->hidden.contains(robot.robot); });
   return robots;
 }

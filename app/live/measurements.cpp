@@ -14,13 +14,14 @@ namespace {
 constexpr double sample_period = 0.02;  // the first interval [s]
 
 constexpr std::array<MeasureName, 7> names{{
-    {Measure::speed, "speed", "m/s"},
-    {Measure::distance, "distance", "m"},
-    {Measure::kinetic_energy, "kinetic energy", "J"},
-    {Measure::elastic_energy, "elastic energy", "J"},
-    {Measure::strain, "largest strain", "1"},
-    {Measure::inverted, "inverted", "1", true},
-    {Measure::overlap, "overlap", "1", true},
+    {Measure::speed, "speed", "m/s", "of the center of mass"},
+    {Measure::distance, "distance", "m", "of the center of mass from where it was at first"},
+    {Measure::kinetic_energy, "kinetic energy", "J", "of the motion of all masses"},
+    {Measure::elastic_energy, "elastic energy", "J", "in all springs"},
+    {Measure::strain, "largest strain", "1", "how much longer than at rest the most stretched spring was so far"},
+    {Measure::inverted, "inverted", "1", "share of the body that is turned inside out, which real bodies cannot be",
+     true},
+    {Measure::overlap, "overlap", "1", "share of the masses that are inside another part of the body", true},
 }};
 
 Sample sample_of(const RankingRow& row, const Telemetry& telemetry) {

@@ -19,8 +19,9 @@ enum class Measure { speed, distance, kinetic_energy, elastic_energy, strain, in
 
 struct MeasureName {
   Measure measure;
-  const char* name;         // "distance"
-  const char* unit;         // "m"
+  const char* name;  // "distance"
+  const char* unit;  // "m"
+  const char* help;
   bool of_folding = false;  // NaN unless ViewSettings::folding
 };
 std::span<const MeasureName> measures();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -69,9 +70,7 @@ HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t robot,
 struct CulpritSpring {
   std::uint32_t index = 0;       // in Robot::springs
   std::uint16_t a = 0, b = 0;    // its masses
-  render::Vector3 at_a, at_b;    // their positions in the view; the robot is frozen there [m]
   HitDetails::OfSpring figures;  // at the explosion
-  render::Bounds surroundings;   // the part of the view that shows the spring and enough of its robot
 };
 
 struct ExplodedRobot {
@@ -80,11 +79,14 @@ struct ExplodedRobot {
   std::string name;
   double time = 0;                      // of the explosion [s]
   std::optional<CulpritSpring> spring;  // nothing if the cause is no spring
+  // As it was built, at the place where it was last: what a spring that is torn across the world belongs to.
+  std::shared_ptr<const Robot> body;
+  render::Vector3 offset;  // added to the coordinates of the body's masses in the view [m]
+  render::Bounds box;      // of the body in the view
 };
 
-// The exploded robots of a snapshot in the order of their explosions. `offsets`: per robot, added to its coordinates in
-// the view [m]. `boxes`: where each robot was last in the view; empty = where it was at rest.
-std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const render::Vector3> offsets,
-                                           std::span<const render::Bounds> boxes = {});
+// The exploded robots of a snapshot in the order of their explosions. `boxes`: per robot, where it was last in the
+// view, with the size that it has at rest.
+std::vector<ExplodedRobot> exploded_robots(const Snapshot& snapshot, std::span<const render::Bounds> boxes);
 
 }  // namespace mercury

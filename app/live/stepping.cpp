@@ -115,8 +115,11 @@ void Stepping::describe(Snapshot& next) const {
   next.due_at = playing_ && !is_unlimited() ? pace_.done_at() : 0;
   next.achieved_speed = playing_ ? gauge_.speed() : 0;
   next.step_seconds = step_seconds_;
+  std::size_t springs = batch_.robots()->springs;
+  for (std::size_t i = 0; i < next.telemetry.size(); ++i)
+    if (next.telemetry[i].exploded) springs -= next.robots->robots[i].robot->springs.size();  // it stands still
   next.springs_per_second =
-      step_seconds_ > 0 && (playing_ || left_ > 0) ? static_cast<double>(batch_.robots()->springs) / step_seconds_ : 0;
+      step_seconds_ > 0 && (playing_ || left_ > 0) ? static_cast<double>(springs) / step_seconds_ : 0;
 }
 
 double Stepping::published(double started) {

@@ -126,16 +126,15 @@ void GroupScene::place_patches() {
   scene_.patches = patches_;
 }
 
-// A robot that was torn apart would cover everything else, so only its name is shown where it was last, until it is
-// selected.
+// A robot that was torn apart would cover everything else, so only its name is shown where it was last.
 void GroupScene::hide_wrecks(std::span<const Telemetry> telemetry) {
   constexpr float most_strain = 3;  // of a wreck that is drawn
   shown_texts_ = texts_;
   torn_.assign(placements_.size(), false);
   for (std::size_t i = 0; i < placements_.size(); ++i) {
     torn_[i] = exploded_[i] && !(telemetry[i].largest_strain <= most_strain);
-    placements_[i].hidden = hidden_[i] || (torn_[i] && !placements_[i].selected);
-    if (torn_[i] && placements_[i].hidden && !hidden_[i])
+    placements_[i].hidden = hidden_[i] || torn_[i];
+    if (torn_[i] && !hidden_[i])
       shown_texts_.push_back({.at = render::Vector3(trails_[i].last()) + shown_offsets_[i],
                               .text = fmt::format("{} exploded at {:.4g} s", names_[i], telemetry[i].exploded_at),
                               .free = true});

@@ -19,12 +19,16 @@ TEST_F(SurroundingsTest, ABodyOnTheGroundCastsAShadow) {
   Orbit orbit{.elevation = 1.2f, .distance = 4};
   const Image empty = drawn(renderer, scene, orbit.camera());
   renderer.set_bodies(group.views());
-  const Image image = drawn(renderer, scene, orbit.camera());
-  int darker = 0;
-  for (int y = 0; y < 120; ++y)
-    for (int x = 0; x < 160; ++x) darker += pixel(image, x, y).sum() < pixel(empty, x, y).sum() - 40;
-  EXPECT_GT(darker, 150);
-  EXPECT_LE(largest_difference(pixel(image, 2, 2), pixel(empty, 2, 2)), 1);
+  for (const bool as_springs : {false, true}) {
+    scene.show.skin = !as_springs;
+    scene.show.springs = as_springs;
+    const Image image = drawn(renderer, scene, orbit.camera());
+    int darker = 0;
+    for (int y = 0; y < 120; ++y)
+      for (int x = 0; x < 160; ++x) darker += pixel(image, x, y).sum() < pixel(empty, x, y).sum() - 40;
+    EXPECT_GT(darker, 150) << as_springs;
+    EXPECT_LE(largest_difference(pixel(image, 2, 2), pixel(empty, 2, 2)), 1);
+  }
 }
 
 TEST_F(SurroundingsTest, ParticlesDriftWithTheFlow) {

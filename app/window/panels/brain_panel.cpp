@@ -107,7 +107,7 @@ BrainPanel::Graph BrainPanel::graph_of(const Robot& robot) {
     const float x = static_cast<float>(column) / static_cast<float>(columns - 1);
     graph.nodes.push_back({name, {x, height_of(index, count)}, column, ""});
   };
-  for (std::size_t i = 0; i < layout.senses.size(); ++i) add(layout.senses[i], 0, i, layout.senses.size());
+  for (std::size_t i = 0; i < layout.senses.size(); ++i) add(label_of(layout.senses[i]), 0, i, layout.senses.size());
   // Where a layer's neurons begin: all copies of a layer come before the next layer.
   std::vector<std::size_t> first;
   for (std::size_t l = 0, neuron = 0; l < brain.layers.size(); ++l) {
@@ -116,7 +116,7 @@ BrainPanel::Graph BrainPanel::graph_of(const Robot& robot) {
     for (std::size_t i = 0; i < count; ++i) add(layout.neurons[neuron++], l + 1, i, count);
   }
   for (std::size_t i = 0; i < layout.driven.size(); ++i)
-    add(actuators[layout.driven[i]].name, columns - 1, i, layout.driven.size());
+    add(label_of(actuators[layout.driven[i]].name), columns - 1, i, layout.driven.size());
 
   const std::size_t own_senses = layout.senses.size() / copies;
   const auto connect = [&](std::size_t l, std::size_t copy, const NeuronInput& input) {
@@ -237,8 +237,14 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
   const float height = std::clamp(1.3f * text * most, 10 * text, 24 * text);
   const float radius = std::clamp(0.4f * height / most, 0.12f * text, 0.42f * text), margin = 0.6f * text;
   const ImVec2 low = ImGui::GetCursorScreenPos();
+  // The names of senses stand beside them, if there is room for their lines.
+  float names = 0;
+  const bool named = static_cast<float>(graph_.senses) * text <= height;
+  for (std::size_t i = 0; named && i < graph_.senses; ++i)
+    names = std::max(names, ImGui::CalcTextSize(graph_.nodes[i].name.c_str()).x + 0.4f * text);
+  names = std::min(names, 0.45f * width);
   const auto place = [&](const Node& node) {
-    return ImVec2(low.x + margin + node.at.x * (width - 2 * margin), low.y + node.at.y * height);
+    return ImVec2(low.x + names + margin + node.at.x * (width - names - 2 * margin), low.y + node.at.y * height);
   };
   ImGui::InvisibleButton("graph", {width, height});
   log.item("brain.graph");
@@ -273,6 +279,9 @@ void BrainPanel::draw_graph(const BrainActivity& now, std::span<const float> hel
     const ImVec2 at = place(graph_.nodes[i]);
     const float value = value_of(now, i);
     list.AddCircleFilled(at, radius, packed(render::color_at(render::Colormap::diverging, std::tanh(value), -1, 1)));
+    if (named && i < graph_.senses)
+      list.AddText({low.x, at.y - text / 2}, palette().faint,
+                   shortened(graph_.nodes[i].name, names - 0.4f * text).c_str());
     if (plotted_.contains(i)) list.AddCircle(at, radius + 0.12f * text, palette().accent, 0, 0.12f * text);
     const std::optional<std::size_t> neuron = neuron_of(i);
     if (!neuron) continue;

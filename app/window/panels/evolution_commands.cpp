@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <set>
@@ -181,15 +182,20 @@ bool EvolveForm::draw(EventLog& log) {
   row("folder", "in which the new one is made");
   text_field("##folder", folder_);
   log.item("evolve.folder");
-  std::vector<const char*> names, all_genes;
+  std::vector<const char*> names, titles, all_genes;
+  std::deque<std::string> texts;
   for (const std::string& genes : names_of_gene_sets()) all_genes.push_back(genes.c_str());
   std::string help;
   for (const AlgorithmDescription& algorithm : algorithms()) {
     names.push_back(algorithm.name.data());
+    // Its name and the words for it: what the help says before the first colon or comma.
+    texts.push_back(
+        fmt::format("{}   {}", algorithm.name, algorithm.help.substr(0, algorithm.help.find_first_of(":,"))));
+    titles.push_back(texts.back().c_str());
     help += fmt::format("{}{}: {}", help.empty() ? "" : "\n", algorithm.name, algorithm.help);
   }
   int algorithm = index_in(names, values_.settings.algorithm.name), genes = index_in(all_genes, values_.genes);
-  combo("algorithm", help.c_str(), algorithm, names);
+  combo("algorithm", help.c_str(), algorithm, titles);
   log.item("evolve.algorithm");
   values_.settings.algorithm.name = names[static_cast<std::size_t>(algorithm)];
   note(std::string(algorithms()[static_cast<std::size_t>(algorithm)].help).c_str());

@@ -154,6 +154,7 @@ void draw_summary(const RunView& view) {
   note(fmt::format("{}, {} robots, {:.3g} s in {}\n{}", settings.algorithm.name, settings.algorithm.population,
                    settings.trials.seconds, name_of(settings.configuration.environment), objectives)
            .c_str());
+  tooltip(fmt::format("{}: {}", settings.algorithm.name, algorithm_named(settings.algorithm.name).help).c_str());
   std::size_t born = 0, exploded = 0, overstretched = 0, too_small = 0, undefined = 0, failed = 0;
   for (const GenerationSummary& generation : view.generations) {
     born += generation.born;
@@ -174,6 +175,18 @@ void draw_summary(const RunView& view) {
   add(undefined, "without a score");
   add(failed, "failed");
   note(text.c_str());
+  std::string meaning;
+  const auto explain = [&](std::size_t count, const std::string& what) {
+    if (count > 0) meaning += (meaning.empty() ? "" : "\n") + what;
+  };
+  explain(exploded, "exploded: the simulation of the robot failed; a smaller time step may help");
+  explain(overstretched,
+          fmt::format("overstretched: a spring was stretched or compressed by more than {:.3g} % of its length",
+                      100 * settings.trials.strain_limit));
+  explain(too_small, "too small: fewer masses than robots of this run must have");
+  explain(undefined, "without a score: the formula of the objective has no value for the robot");
+  explain(failed, "failed: the robot could not be made or tried");
+  if (!meaning.empty()) tooltip((meaning + "\nthey rank after all others").c_str());
 }
 
 void draw_scores(const RunView& view) {

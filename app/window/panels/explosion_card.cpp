@@ -64,10 +64,15 @@ void ExplosionCard::update(PanelContext& context, const ViewportArea& area, cons
     });
   });
   if (!chosen()) chosen_ = robots_.empty() ? std::nullopt : std::optional(robots_.front().robot);
+  if (const auto selected = context.scene.current(); std::exchange(selected_, selected) != selected)
+    for (const ExplodedRobot& robot : robots_)
+      if (robot.robot == selected) chosen_ = selected;
   const ExplodedRobot* const robot = chosen();
-  const bool is_selected = robot && context.scene.is_selected(robot->robot), is_open = high_.x > low_.x;
-  if (robot && (is_selected || is_open))
-    draw_explosion_mark(*robot, is_selected, {low_, high_}, context.log, area, camera);
+  marks_.clear();
+  if (!robot || !(context.scene.is_selected(robot->robot) || high_.x > low_.x)) return;
+  std::vector<Box> covered{box(), context.legend, context.first_steps};
+  for (const auto& [low, high] : context.toasts.places()) covered.push_back({low, high});
+  marks_ = draw_explosion_mark(*robot, covered, context.log, area, camera);
 }
 
 void ExplosionCard::draw(PanelContext& context, const ViewportArea& area) {
@@ -121,10 +126,7 @@ void ExplosionCard::draw_buttons(PanelContext& context, const ExplodedRobot& rob
   if (ImGui::Button("Show it")) {
     context.scene.select(robot.robot);
     context.camera.set_mode(CameraMode::still);
-    if (robot.spring)
-      context.camera.frame({&robot.spring->surroundings, 1}, area.aspect());
-    else
-      frame_robots(context, {robot.robot});
+    context.camera.frame({&robot.box, 1}, area.aspect());
   }
   context.log.item("explosion.show");
   ImGui::SameLine();

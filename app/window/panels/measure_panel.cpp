@@ -81,6 +81,7 @@ void MeasurePanel::draw(PanelContext& context) {
     }
     if (toggle_button(name.name, shown_[i])) shown_[i] = !shown_[i];
     context.log.item(std::string("measure.") + name.name);
+    tooltip(name.help);
   }
   bool folding = false;
   for (std::size_t i = 0; i < shown_.size(); ++i) folding = folding || (shown_[i] && measures()[i].of_folding);

@@ -205,6 +205,7 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
   context_.toasts.draw({area.low.x, below_caption(context_.caption, area)}, area.high, dt, context_.log);
   context_.covered = {axes, context_.legend, explosions_.box(), context_.first_steps};
+  context_.covered.insert(context_.covered.end(), explosions_.marks().begin(), explosions_.marks().end());
   for (const auto& [low, high] : context_.toasts.places()) context_.covered.push_back({low, high});
   std::erase_if(context_.covered, [](const Box& box) { return box.high.x <= box.low.x; });
   if (context_.dialogs.open()) palette_.close();
@@ -213,7 +214,10 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
 }
 
 // Dear ImGui requires that no window outside a modal appears after it in the frame in which the modal opens.
-void Panels::draw_dialogs() { context_.dialogs.draw(context_.log); }
+void Panels::draw_dialogs() {
+  palette_.hide_tooltip();
+  context_.dialogs.draw(context_.log);
+}
 
 void Panels::work() {
   left_.work(context_);

@@ -147,9 +147,9 @@ void draw_time(const LiveScene& scene, float middle) {
 
 // At the right end, if there is room.
 void draw_rate(const LiveScene& scene) {
-  const std::string rate = short_number(scene.snapshot().springs_per_second) + " springs/s";
-  const std::string text =
-      fmt::format("{}   {}", scene.playing() ? rate : "", name_of(scene.configuration().environment));
+  const double per_second = scene.playing() ? scene.snapshot().springs_per_second : 0;
+  const std::string text = fmt::format("{}   {}", per_second > 0 ? short_number(per_second) + " springs/s" : "",
+                                       name_of(scene.configuration().environment));
   const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
   if (room <= ImGui::GetFontSize()) return;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
@@ -179,7 +179,8 @@ std::string moment_text(double seconds) { return fmt::format("{:.2f} s", seconds
 
 std::string memory_text(const TimelineState& timeline) {
   const double used = static_cast<double>(timeline.bytes) / megabyte;
-  return fmt::format("{:.{}f} of {:.0f} MB", used, used < 10 ? 1 : 0, static_cast<double>(timeline.budget) / megabyte);
+  return fmt::format("memory {:.{}f} of {:.0f} MB", used, used < 10 ? 1 : 0,
+                     static_cast<double>(timeline.budget) / megabyte);
 }
 
 // A drag shows the moment under the mouse.
@@ -230,12 +231,13 @@ void draw_memory(PanelContext& context, const TimelineState& timeline, float wid
     ImGui::OpenPopup("timeline memory");
   ImGui::PopStyleColor(2);
   context.log.item("timeline.memory");
-  tooltip(timeline.recording
-              ? "a recording: its frames, and straight lines between them"
-              : fmt::format("{} states of the last minutes; the moments between them are computed again, to the bit. "
-                            "Click to set how much memory they may take",
-                            timeline.keyframes)
-                    .c_str());
+  tooltip(
+      timeline.recording
+          ? "a recording: its frames, and straight lines between them"
+          : fmt::format("memory of the timeline: {} states of the last minutes; the moments between them are computed "
+                        "again, to the bit. Click to set how much memory they may take",
+                        timeline.keyframes)
+                .c_str());
   if (!ImGui::BeginPopup("timeline memory")) return;
   int& megabytes = context.preferences.timeline_megabytes;
   ImGui::SetNextItemWidth(14 * ImGui::GetFontSize());
@@ -352,7 +354,7 @@ void draw_timeline_strip(PanelContext& context) {
   const TimelineState timeline = scene.snapshot().timeline;
   const std::size_t budget = static_cast<std::size_t>(context.preferences.timeline_megabytes) << 20;
   if (timeline.budget != budget) scene.set_timeline_budget(budget);
-  const float memory = ImGui::CalcTextSize("8888 of 8888 MB").x, height = ImGui::GetFrameHeight();
+  const float memory = ImGui::CalcTextSize("memory 8888 of 8888 MB").x, height = ImGui::GetFrameHeight();
   const float width =
       ImGui::GetContentRegionAvail().x - actions_width() - memory - ImGui::GetStyle().ItemInnerSpacing.x;
   const ImVec2 corner = ImGui::GetCursorScreenPos();

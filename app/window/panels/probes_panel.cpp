@@ -29,11 +29,16 @@ constexpr std::size_t most_samples = 4000;  // of a probe; when it is full, ever
 struct ProbeQuantity {
   const char* name;
   const char* unit;
+  const char* help;
   bool of_spring = false;
 };
 constexpr std::array quantities{
-    ProbeQuantity{"speed", "m/s"},      ProbeQuantity{"height", "m"},      ProbeQuantity{"acceleration", "m/s\xc2\xb2"},
-    ProbeQuantity{"strain", "%", true}, ProbeQuantity{"force", "N", true}, ProbeQuantity{"activation", "%", true}};
+    ProbeQuantity{"speed", "m/s", "of the mass"},
+    ProbeQuantity{"height", "m", "of the mass, its z"},
+    ProbeQuantity{"acceleration", "m/s\xc2\xb2", "of the mass, the mean between two points"},
+    ProbeQuantity{"strain", "%", "of the spring: how much longer than at rest it is", true},
+    ProbeQuantity{"force", "N", "of the spring; positive: it pulls", true},
+    ProbeQuantity{"activation", "%", "of the spring: by how much its muscle shortens it", true}};
 
 // A mass, and the spring that was clicked with it.
 class Probe {
@@ -154,6 +159,7 @@ void ProbesPanel::draw(PanelContext& context) {
     }
     if (toggle_button(quantities[i].name, shown_[i])) shown_[i] = !shown_[i];
     context.log.item(fmt::format("probe.{}", quantities[i].name));
+    tooltip(quantities[i].help);
   }
   draw_plots(context);
 }

@@ -57,12 +57,13 @@ struct Column {
 constexpr std::array columns{
     Column{"distance", "m", 3, "of the center of mass since birth: since the robot was added, or the last reset",
            [](const RankingRow& row) { return row.distance; }},
-    Column{"mean speed", "m/s", 3, "distance divided by age", [](const RankingRow& row) { return row.mean_speed; }},
+    Column{"speed", "m/s", 3, "the mean: distance divided by age",
+           [](const RankingRow& row) { return row.mean_speed; }},
     Column{"age", "s", 1, "time since birth: since the robot was added, or the last reset",
            [](const RankingRow& row) { return row.age; }},
     Column{"at equal age", "m", 3, "distance when it was as old as the youngest robot is now: fair to young robots",
            [](const RankingRow& row) { return row.distance_at_equal_age; }},
-    Column{"speed", "m/s", 3, "of the center of mass, now", [](const RankingRow& row) { return row.speed; }},
+    Column{"speed now", "m/s", 3, "of the center of mass", [](const RankingRow& row) { return row.speed; }},
     Column{"energy", "J", 2, "kinetic and elastic, now",
            [](const RankingRow& row) { return row.kinetic_energy + row.elastic_energy; }},
     Column{"largest strain", "%", 1, "of any spring, so far",
@@ -121,9 +122,10 @@ void RankingPanel::draw_notes(PanelContext& context, const std::vector<Row>& row
 
 void RankingPanel::draw_headings(PanelContext& context) {
   ImGui::TableSetupScrollFreeze(1, 1);
-  ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 9 * ImGui::GetFontSize());
+  // The rest of the width that the first two figures leave in a column of default width.
+  ImGui::TableSetupColumn("robot", ImGuiTableColumnFlags_WidthFixed, 6.7f * ImGui::GetFontSize());
   for (const Column& column : columns)
-    ImGui::TableSetupColumn(fmt::format("{} [{}]", column.name, column.unit).c_str(),
+    ImGui::TableSetupColumn(fmt::format("{}\n[{}]", column.name, column.unit).c_str(),
                             ImGuiTableColumnFlags_PreferSortDescending |
                                 (&column == columns.data() ? ImGuiTableColumnFlags_DefaultSort : 0));
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
@@ -183,7 +185,7 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   ImGui::PushID(static_cast<int>(robot));
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  if (thumbnail_row("##row", thumbnail_of_robot(context, robot), fmt::format("{}. {}", index + 1, row.name),
+  if (thumbnail_row("##row", thumbnail_of_robot(context, robot), fmt::format("{}.\n{}", index + 1, row.name),
                     context.scene.is_selected(robot),
                     ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
     if (ImGui::IsMouseDoubleClicked(0))

@@ -178,7 +178,7 @@ void RandomSection::draw(PanelContext& context) {
   ImGui::SameLine();
   ImGui::Checkbox("Lively", &context.creation.lively);
   context.log.item("generate.lively");
-  tooltip("ten times as many robots are tried for four seconds, and those that get farthest are kept");
+  tooltip("makes ten times as many robots, tries each for four seconds, and keeps those that get farthest");
   ImGui::SameLine();
   ImGui::Checkbox("Details", &advanced_);
   context.log.item("generate.more");

@@ -210,7 +210,8 @@ std::string title_of(const Quantity& quantity) {
 }
 
 std::string objective_label(const std::string& objective) {
-  return find_quantity(objective) ? label_of(objective) : objective;
+  const auto quantity = find_quantity(objective);
+  return quantity ? title_of(quantities()[*quantity]) : objective;
 }
 
 std::string score_text(double score) { return std::isfinite(score) ? short_number(score) : "-"; }
@@ -259,7 +260,7 @@ void show_individual(PanelContext& context, const Individual& individual, const 
   if (!assessment.values.empty() && ImGui::BeginTable("quantities", 4, ImGuiTableFlags_SizingFixedFit)) {
     for (std::size_t i = 0; i < assessment.values.size() && i < quantities().size(); ++i) {
       const Quantity& quantity = quantities()[i];
-      if (!counts(quantity, assessment.fate)) continue;
+      if (!counts(quantity, assessment.fate) || !std::isfinite(assessment.values[i])) continue;
       const bool is_score = std::ranges::find(settings.objectives, quantity.name) != settings.objectives.end();
       if (!is_score)
         entry(label_of(quantity.name),

@@ -61,6 +61,10 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
   }
   auto x_ticks = render::ticks(static_cast<float>(frame.x.low), static_cast<float>(frame.x.high), 5);
   if (axes.x_whole) std::erase_if(x_ticks, [](float tick) { return std::abs(tick - std::round(tick)) > 1e-3f; });
+  // The name of the x axis is beside the title, or at the end of the ticks if there is no room.
+  const std::string title = axes.unit.empty() ? axes.title : fmt::format("{} [{}]", axes.title, axes.unit);
+  const float x_width = ImGui::CalcTextSize(axes.x_title.c_str()).x, x_left = frame.high.x - x_width;
+  const bool beside = frame.low.x + ImGui::CalcTextSize(title.c_str()).x + text < x_left;
   for (const float tick : x_ticks) {
     const ImVec2 p = frame.at(tick, frame.y.low);
     list.AddLine({p.x, frame.low.y}, {p.x, frame.high.y}, palette().grid);
@@ -68,13 +72,12 @@ void draw_axes(const Frame& frame, const PlotAxes& axes) {
     const std::string label = render::tick_text(tick, step);
     const float width = ImGui::CalcTextSize(label.c_str()).x;
     const float x = std::clamp(p.x - width / 2, frame.low.x, frame.high.x - width);
+    if (!beside && x + width + 0.5f * text > x_left) continue;
     list.AddText({x, frame.high.y + 0.15f * text}, palette().faint, label.c_str());
   }
-  const std::string title = axes.unit.empty() ? axes.title : fmt::format("{} [{}]", axes.title, axes.unit);
   list.AddText({frame.low.x, frame.low.y - 1.25f * text}, ImGui::GetColorU32(ImGuiCol_Text), title.c_str());
-  const float width = ImGui::CalcTextSize(axes.x_title.c_str()).x;
-  if (frame.low.x + ImGui::CalcTextSize(title.c_str()).x + text < frame.high.x - width)
-    list.AddText({frame.high.x - width, frame.low.y - 1.25f * text}, palette().faint, axes.x_title.c_str());
+  list.AddText({x_left, beside ? frame.low.y - 1.25f * text : frame.high.y + 0.15f * text}, palette().faint,
+               axes.x_title.c_str());
 }
 
 // The line from a to b is inside the frame, along x, between these two shares of its length, from 0 to 1. It is outside
@@ -204,7 +207,7 @@ void plot_legend(std::span<const PlotLine> lines) {
   const float text = ImGui::GetFontSize(), end = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
   bool first = true;
   for (const PlotLine& line : lines) {
-    const std::string name = shortened(line.name, 9 * text);
+    const std::string name = shortened(line.name, 14 * text);
     const float width = 0.7f * text + ImGui::GetStyle().ItemSpacing.x + ImGui::CalcTextSize(name.c_str()).x;
     if (!first) {
       ImGui::SameLine();

@@ -147,11 +147,16 @@ void tooltip_now(const std::string& text) {
   ImGui::EndTooltip();
 }
 
+float row_name_width(bool differs) {
+  const float names = name_share * ImGui::GetContentRegionAvail().x;
+  return differs ? names - 0.75f * ImGui::GetFrameHeight() - 0.3f * ImGui::GetFontSize() : names;
+}
+
 bool row_with_reset(const char* name, const char* text, bool differs, const char* reset_text) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x, names = name_share * width;
   const float side = 0.75f * ImGui::GetFrameHeight();
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(shortened(name, differs ? names - side - 0.3f * ImGui::GetFontSize() : names).c_str());
+  ImGui::TextUnformatted(shortened(name, row_name_width(differs)).c_str());
   tooltip(text);
   bool clicked = false;
   if (differs) {

@@ -25,6 +25,9 @@ void row(const char* name, const char* help = nullptr);
 // Like row(), with a reset button beside the name if `differs`. Returns true when that button was clicked.
 bool row_with_reset(const char* name, const char* help, bool differs, const char* reset_help = "reset to the default");
 
+// The width that row_with_reset() has for a name, with or without its button [pixels].
+float row_name_width(bool differs);
+
 // True when the pointer has rested for a while on the item that was just drawn. Call only if that item is hovered.
 bool pointer_rests();
 

@@ -80,24 +80,28 @@ float percent_at(ImVec2 mouse, ImVec2 low, ImVec2 high, float before) {
   return 100 * ((mouse.x - low.x) * line.x + (mouse.y - low.y) * line.y) / squared;
 }
 
-// The part of a spring in front of the camera, in window coordinates.
+// The ends of a spring, in window coordinates.
 struct Line {
   ImVec2 a, b;
-  bool sees_a = true, sees_b = true;  // whether the ends are in front of the camera
 };
 
-std::optional<Line> line_of(const CulpritSpring& spring, const ViewportArea& area, const render::Camera& camera) {
-  const render::Vector3 forward = (camera.target - camera.eye).normalized();
-  const auto depth = [&](const render::Vector3& p) { return forward.dot(p - camera.eye) - camera.near; };
-  const float depth_a = depth(spring.at_a), depth_b = depth(spring.at_b);
-  if (depth_a <= 0 && depth_b <= 0) return std::nullopt;
-  const render::Vector3 along = spring.at_b - spring.at_a;
-  const float crossing = depth_a / (depth_a - depth_b);
-  const auto end = [&](const render::Vector3& p, float d) {
-    return on_screen(area, camera,
-                     d > 0 ? p : render::Vector3(spring.at_a + (crossing + (depth_a > 0 ? -1e-3f : 1e-3f)) * along));
-  };
-  return Line{end(spring.at_a, depth_a), end(spring.at_b, depth_b), depth_a > 0, depth_b > 0};
+// The edges of the robot's skin, or its springs if it has none. Of large bodies only every n-th.
+void draw_body(const ExplodedRobot& robot, const ViewportArea& area, const render::Camera& camera) {
+  constexpr std::size_t most = 4000;  // lines
+  const Robot& body = *robot.body;
+  std::vector<std::optional<ImVec2>> places;
+  for (const Vec3 mass : body.masses) places.push_back(seen_at(area, camera, render::Vector3(mass) + robot.offset));
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> edges;
+  for (const Face& face : body.faces)  // the skin is closed: each edge is in two faces, in both directions
+    for (const auto& [a, b] : {std::pair{face.a, face.b}, {face.b, face.c}, {face.c, face.a}})
+      if (a < b) edges.emplace_back(a, b);
+  if (edges.empty())
+    for (const Spring& spring : body.springs) edges.emplace_back(spring.a, spring.b);
+  const std::size_t step = 1 + edges.size() / most;
+  for (std::size_t i = 0; i < edges.size(); i += step) {
+    const auto &a = places[edges[i].first], &b = places[edges[i].second];
+    if (a && b) ImGui::GetBackgroundDrawList()->AddLine(*a, *b, palette().bad, 0.06f * ImGui::GetFontSize());
+  }
 }
 
 // A bar and two rings with an outline, so that they stand out from any background.
@@ -106,11 +110,9 @@ void draw_mark(const Line& line) {
   const float text = ImGui::GetFontSize(), bar = 0.22f * text, ring = 0.42f * text, edge = 0.14f * text;
   const ImU32 mark = palette().mark, outline = palette().mark_outline;
   list.AddLine(line.a, line.b, outline, bar + 2 * edge);
-  for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
-    if (sees) list.AddCircle(at, ring, outline, 0, bar + 2 * edge);
+  for (const ImVec2 at : {line.a, line.b}) list.AddCircle(at, ring, outline, 0, bar + 2 * edge);
   list.AddLine(line.a, line.b, mark, bar);
-  for (const auto& [at, sees] : {std::pair{line.a, line.sees_a}, {line.b, line.sees_b}})
-    if (sees) list.AddCircle(at, ring, mark, 0, bar);
+  for (const ImVec2 at : {line.a, line.b}) list.AddCircle(at, ring, mark, 0, bar);
 }
 
 std::string length_text(float meters) {
@@ -119,7 +121,7 @@ std::string length_text(float meters) {
 
 std::vector<std::string> lines_of(const ExplodedRobot& robot) {
   const CulpritSpring& spring = *robot.spring;
-  std::vector<std::string> lines{fmt::format("{}: spring {} exploded first", robot.name, spring.index)};
+  std::vector<std::string> lines{fmt::format("spring {} exploded first", spring.index)};
   lines.push_back(fmt::format("masses {} and {}, {}", spring.a, spring.b, spring.figures.material_name));
   lines.push_back(
       fmt::format("{} long, {} at rest", length_text(spring.figures.length), length_text(spring.figures.rest_length)));
@@ -293,25 +295,36 @@ void TargetHandle::move_to_mouse(LiveScene& scene, const ViewportArea& area, con
   scene.set_configuration(configuration);
 }
 
-void draw_explosion_mark(const ExplodedRobot& robot, bool was_sought, const Box& covered, EventLog& log,
-                         const ViewportArea& area, const render::Camera& camera) {
-  constexpr float longest = 0.3f;  // of a spring that was not sought [heights of the view]
-  const std::optional<Line> line = robot.spring ? line_of(*robot.spring, area, camera) : std::nullopt;
-  if (!line) return;
-  const bool torn = !line->sees_a || !line->sees_b ||
-                    std::hypot(line->a.x - line->b.x, line->a.y - line->b.y) > longest * area.height();
-  if (torn && !was_sought) return;
+std::vector<Box> draw_explosion_mark(const ExplodedRobot& robot, std::span<const Box> covered, EventLog& log,
+                                     const ViewportArea& area, const render::Camera& camera) {
+  if (!robot.spring) return {};  // the body is not torn
+  std::vector<Box> drawn;
   ImGui::GetBackgroundDrawList()->PushClipRect(area.low, area.high);
-  draw_mark(*line);
-  // The upper edge has the view's caption.
-  std::vector<Box> taken{covered, {area.low, {area.high.x, area.low.y + 2.2f * ImGui::GetFontSize()}}};
-  const float end = 0.7f * ImGui::GetFontSize();
-  for (const ImVec2 at : {line->a, line->b}) taken.push_back({{at.x - end, at.y - end}, {at.x + end, at.y + end}});
-  log.item("explosion.a", line->a, line->a);
-  log.item("explosion.b", line->b, line->b);
-  const std::vector<std::string> lines = lines_of(robot);
-  if (const std::optional<Box> place = place_of(lines, *line, area, taken)) write(lines, *place);
+  draw_body(robot, area, camera);
+  const auto place = [&](std::uint16_t mass) {
+    return seen_at(area, camera, render::Vector3(robot.body->masses[mass]) + robot.offset);
+  };
+  const auto a = place(robot.spring->a), b = place(robot.spring->b);
+  if (a && b) {
+    const Line line{*a, *b};
+    draw_mark(line);
+    log.item("explosion.a", line.a, line.a);
+    log.item("explosion.b", line.b, line.b);
+    // The upper edge has the view's caption.
+    std::vector<Box> taken(covered.begin(), covered.end());
+    taken.push_back({area.low, {area.high.x, area.low.y + 2.2f * ImGui::GetFontSize()}});
+    const float end = 0.7f * ImGui::GetFontSize();
+    for (const ImVec2 at : {line.a, line.b}) drawn.push_back({{at.x - end, at.y - end}, {at.x + end, at.y + end}});
+    taken.insert(taken.end(), drawn.begin(), drawn.end());
+    const std::vector<std::string> lines = lines_of(robot);
+    if (const std::optional<Box> box = place_of(lines, line, area, taken)) {
+      write(lines, *box);
+      log.item("explosion.text", box->low, box->high);
+      drawn.push_back(*box);
+    }
+  }
   ImGui::GetBackgroundDrawList()->PopClipRect();
+  return drawn;
 }
 
 }  // namespace mercury::window

@@ -48,10 +48,11 @@ class TargetHandle {
                             const render::Vector3& target, const render::Vector3& offset);
 };
 
-// Marks the culprit spring of a robot that exploded, with details in words, over the view, so that nothing hides it. A
-// spring that is torn across the view is marked only if it `was_sought`. No text covers the box `covered`. Call between
-// begin_frame() and end_frame() of ImGuiLayer. `camera`: the one the view was drawn with.
-void draw_explosion_mark(const ExplodedRobot& robot, bool was_sought, const Box& covered, EventLog& log,
-                         const ViewportArea& area, const render::Camera& camera);
+// Draws the body of a robot that a spring tore apart, as it was built, in thin lines, and in it marks that spring with
+// details in words, over the view, so that nothing hides it. The text covers none of the boxes `covered`. Returns what
+// names should leave free: the spring's ends, and the text if there is room for it. Call between begin_frame() and
+// end_frame() of ImGuiLayer. `camera`: the one the view was drawn with.
+std::vector<Box> draw_explosion_mark(const ExplodedRobot& robot, std::span<const Box> covered, EventLog& log,
+                                     const ViewportArea& area, const render::Camera& camera);
 
 }  // namespace mercury::window

@@ -100,8 +100,14 @@ bool thumbnail_row(const char* id, ImTextureID thumbnail, const std::string& tex
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const bool clicked = ImGui::Selectable(id, selected, flags, {0, height});
   draw_thumbnail(thumbnail, {low.x, low.y + 1}, {low.x + width, low.y + height - 1});
-  ImGui::GetWindowDrawList()->AddText({low.x + width + 0.5f * font, low.y + (height - font) / 2},
-                                      ImGui::GetColorU32(ImGuiCol_Text), shortened(text, room).c_str());
+  const auto lines = 1 + std::ranges::count(text, '\n');
+  float y = low.y + (height - static_cast<float>(lines) * font) / 2;
+  for (std::size_t begin = 0; begin <= text.size(); y += font) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    ImGui::GetWindowDrawList()->AddText({low.x + width + 0.5f * font, y}, ImGui::GetColorU32(ImGuiCol_Text),
+                                        shortened(text.substr(begin, end - begin), room).c_str());
+    begin = end + 1;
+  }
   return clicked;
 }
 

@@ -89,15 +89,24 @@ class LayoutTest(WindowCase):
         area = window.items["view"]
         self.assertLess(abs(x - area["x"]), area["width"] / 2)
         self.assertLess(abs(y - area["y"]), area["height"] / 2)
-        # Its name stands clear of the card; no spring that is torn across the view is marked until it is asked for.
-        card, name = window.items["panel.Explosion"], window.items.get("wreck.0")
-        if name:
-            self.assertFalse(self.meet(card, name))
-        self.assertNotIn("explosion.a", window.items)
+        # Its name stands clear of the card and of the text beside its spring.
+        name = window.items.get("wreck.0")  # if there is room
+        for other in ("panel.Explosion", "explosion.text") if name else ():
+            self.assertFalse(self.meet(window.items[other], name))
+
+        def red():
+            picture = window.screenshot()
+            return ((picture[:, :, 0] > 0.75) & (picture[:, :, 1] < 0.6) & (picture[:, :, 2] < 0.65)).mean()
+
+        # Its springs are torn across the view; it is drawn as it was built.
+        window.click("explosion.show")
+        window.standing()
+        self.assertLess(red(), 0.02)
+        ends = [window.items[f"explosion.{end}"] for end in "ab"]
+        self.assertLess(abs(ends[0]["x"] - ends[1]["x"]), area["width"] / 2)
         window.click("explosion.dismiss")
-        picture = window.screenshot()
-        red = (picture[:, :, 0] > 0.75) & (picture[:, :, 1] < 0.6) & (picture[:, :, 2] < 0.65)
-        self.assertLess(red.mean(), 0.02)
+        window.key("Escape")
+        self.assertLess(red(), 0.02)
         self.finish(window)
 
     @staticmethod

@@ -235,9 +235,7 @@ class PanelsTest(WindowCase):
         changed = numpy.abs(after - before).max(axis=2) > 0.05
         self.assertGreater(changed[y - 80:y + 80, x - 100:x + 100].sum(), 50, "the graph shows what neurons do")
         since = window.mark()
-        window.do("mousemove", x - 42, y)  # the neuron that turns, in the second of four columns
-        window.frame()
-        window.do("click", 1)
+        window.click("brain.neuron.0")
         window.wait("brain", since, lambda event: event["node"] == "turn 0" and event["plotted"] == 4)
         self.finish(window)
 

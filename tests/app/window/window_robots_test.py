@@ -98,6 +98,22 @@ class RobotsTest(WindowCase):
         self.assertEqual(window.wait("palette", since)["name"], "duplicate the selected robots")
         self.finish(window)
 
+    def test_no_tooltip_covers_the_palette(self):
+        window = self.small("--paused")
+        x, y = window.place("tab.Tree")
+
+        def beside():
+            return window.pixels()[y - 10:y + 11, x + 30:x + 150]
+
+        before = beside()
+        window.do("mousemove", x, y)
+        window.until("a tooltip", lambda: (beside() != before).any())
+        window.key("ctrl+k")
+        window.place("panel.Palette")
+        window.until("no tooltip", lambda: (beside() == before).all())
+        window.key("Escape")
+        self.finish(window)
+
     def test_the_robot_that_is_looked_at_stays_in_view(self):
         """Cells are packed again for a fork and for two views; a camera that stands goes along."""
         window = self.open(*(str(SAMPLES / f"{name}.json") for name in ("eel", "fish", "ray", "squid", "turtle")), "--paused")
