@@ -2,11 +2,12 @@
 // Measures what users wait for when they evolve robots: robots are made, loaded, stepped for ten seconds and read, once
 // each. Prints a table; a row per batch, with the parts and how busy the device was.
 //
-//     bench_generation [--device cuda] [--rows voxel,lattice] [--scale 0.01] [--stream 200000] ...
+//     bench_generation [--device cuda] [--environment land] [--rows voxel,lattice] [--scale 0.01] [--stream 200000] ...
 //
 // Each row runs in a process of its own, so "whole" is what a program takes from its start to its end, including the
 // start of CUDA. Parts overlap: while some robots are stepped, others are made. Busy is the share of the whole time
-// during which the device stepped robots, averaged over devices.
+// during which the device stepped robots, averaged over devices. springs/s are those while it did. A row "in one call"
+// shows what the device reaches with the same robots: they are all loaded before, and no sample is taken.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -28,6 +29,7 @@
 #include "mercury/error.h"
 #include "mercury/evaluator.h"
 #include "mercury/generator.h"
+#include "mercury/parallel.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 #include "mercury/stopwatch.h"
@@ -44,25 +46,28 @@ struct Row {
   bool streams = false;        // --stream says how many robots
   bool all_devices = false;    // on cuda:all
   bool to_first_step = false;  // in one simulation, for one step
+  bool in_one_call = false;    // in one simulation, all steps
 };
 
 const std::vector<Row>& rows() {
   const ParameterValues lattice{{"voxels", SizeRange{{10, 10, 10}, {10, 10, 10}}}, {"air", 0.3}};
   // Without spacing every point is a mass, as in the numbers of docs/performance.md.
   const ParameterValues network{{"points", std::int64_t{512}}, {"spacing", 0.f}};
-  static const std::vector<Row> all{{"voxel", "random voxel robots", "voxel", {}, 4000},
-                                    {"lattice", "of 10x10x10 voxels, 30 % air", "voxel", lattice, 4000},
-                                    {"network-1000", "network robots, 512 points", "nn", network, 1000},
-                                    {"network", "network robots, 512 points", "nn", network, 4000},
-                                    {"load", "of 1,331 masses, to the first step", "", {}, 50000, false, false, true},
-                                    {"stream", "random voxel robots, a stream", "voxel", {}, 0, true},
-                                    {"stream-all", "the same on all devices", "voxel", {}, 0, true, true}};
+  static const std::vector<Row> all{
+      {"voxel", "random voxel robots", "voxel", {}, 4000},
+      {"voxel-one-call", "the same in one call", "voxel", {}, 4000, false, false, false, true},
+      {"lattice", "of 10x10x10 voxels, 30 % air", "voxel", lattice, 4000},
+      {"network-1000", "network robots, 512 points", "nn", network, 1000},
+      {"network", "network robots, 512 points", "nn", network, 4000},
+      {"load", "of 1,331 masses, to the first step", "", {}, 50000, false, false, true},
+      {"stream", "random voxel robots, a stream", "voxel", {}, 0, true},
+      {"stream-all", "the same on all devices", "voxel", {}, 0, true, true}};
   return all;
 }
 
 struct Options {
-  std::string device = "auto", row;
-  std::vector<std::string> rows;  // empty = all
+  std::string device = "auto", environment, row;  // environment: empty = the default
+  std::vector<std::string> rows;                  // empty = all
   double scale = 1, seconds = 10;
   std::size_t stream = 200000, portion = 0;
   int workers = 0, threads = 0;
@@ -72,22 +77,24 @@ struct Result {
   std::size_t robots = 0, devices = 1;
   double start = 0, grow = 0, check = 0, schedule = 0, upload = 0, step = 0, read = 0;  // [s]
   double busy = 0;                                                                      // [s], mean over devices
+  double evaluated = 0;                                                                 // springs times steps
 };
 
 void print(const Result& r) {
-  std::printf("%zu %zu %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", r.robots, r.devices, r.start, r.grow, r.check,
-              r.schedule, r.upload, r.step, r.read, r.busy);
+  std::printf("%zu %zu %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", r.robots, r.devices, r.start, r.grow, r.check,
+              r.schedule, r.upload, r.step, r.read, r.busy, r.evaluated);
 }
 
 bool scan(std::FILE* from, Result& r) {
-  return std::fscanf(from, "%zu %zu %lf %lf %lf %lf %lf %lf %lf %lf", &r.robots, &r.devices, &r.start, &r.grow,
-                     &r.check, &r.schedule, &r.upload, &r.step, &r.read, &r.busy) == 10;
+  return std::fscanf(from, "%zu %zu %lf %lf %lf %lf %lf %lf %lf %lf %lf", &r.robots, &r.devices, &r.start, &r.grow,
+                     &r.check, &r.schedule, &r.upload, &r.step, &r.read, &r.busy, &r.evaluated) == 11;
 }
 
 Configuration configuration_of(const Options& options, const Row& row) {
   Configuration configuration;
   configuration.device = device_named(row.all_devices ? "cuda:all" : options.device);
   configuration.device.threads = options.threads;
+  if (!options.environment.empty()) configuration.environment = environment_named(options.environment);
   return configuration;
 }
 
@@ -111,7 +118,11 @@ Result evaluate(const Options& options, const Row& row) {
       count_of(options, row));
   Result result;
   std::size_t exploded = 0;
-  for (; const std::optional<Evaluation> robot = evaluator.next(); ++result.robots) exploded += robot->end.exploded;
+  for (; const std::optional<Evaluation> robot = evaluator.next(); ++result.robots) {
+    exploded += robot->end.exploded;
+    if (robot->robot)
+      result.evaluated += static_cast<double>(robot->robot->springs.size()) * static_cast<double>(robot->steps);
+  }
   if (exploded > 0) std::fprintf(stderr, "%zu robots exploded\n", exploded);
   const EvaluationProgress progress = evaluator.progress();
   result.devices = progress.devices.size();
@@ -167,6 +178,34 @@ Result load(const Options& options, const Row& row) {
   return result;
 }
 
+Result one_call(const Options& options, const Row& row) {
+  const Configuration configuration = configuration_of(options, row);
+  const Generator& generator = generator_named(row.kind);
+  Result result{.robots = count_of(options, row)};
+  std::vector<std::shared_ptr<const Robot>> robots(result.robots);
+  {
+    const Stopwatch stopwatch(result.grow);
+    parallel_for(0, robots.size(),
+                 [&](std::size_t i) { robots[i] = std::make_shared<Robot>(generator.make(row.values, "", 1, i)); });
+  }
+  Simulation simulation(configuration, robots);
+  simulation.step(1);  // groups of the CPU are formed at the first step
+  const double before = simulation.busy_seconds();
+  const std::int64_t steps = std::llround(options.seconds / configuration.dt);
+  {
+    const Stopwatch stopwatch(result.step);
+    simulation.step(steps);
+  }
+  result.busy = simulation.busy_seconds() - before;
+  for (const auto& robot : robots)
+    result.evaluated += static_cast<double>(robot->springs.size()) * static_cast<double>(steps);
+  const LoadTimes times = simulation.load_times();
+  result.check = times.check;
+  result.schedule = times.schedule;
+  result.upload = times.upload;
+  return result;
+}
+
 // --- The parent: a process per row
 
 double seconds_of(const timeval& time) {
@@ -203,9 +242,9 @@ void run_row(const Row& row, std::vector<std::string> arguments) {
     return;
   }
   const double cpu = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-  std::printf("%7zu %-36s %8.2f %8.1f | %6.2f %6.2f %6.2f %6.2f %6.2f %6.2f %6.2f | %4.0f %% of %zu\n", r.robots,
+  std::printf("%7zu %-36s %8.2f %8.1f | %6.2f %6.2f %6.2f %6.2f %6.2f %6.2f %6.2f | %4.0f %% of %zu  %.3g\n", r.robots,
               row.title, whole, cpu, r.start, r.grow, r.check, r.schedule, r.upload, r.step, r.read,
-              100 * r.busy / whole, r.devices);
+              100 * r.busy / whole, r.devices, r.busy > 0 ? r.evaluated / r.busy : 0);
   std::fflush(stdout);
 }
 
@@ -218,6 +257,7 @@ Options options_from(int argc, char** argv) {
          std::stringstream names(text);
          for (std::string name; std::getline(names, name, ',');) options.rows.push_back(name);
        }},
+      {"--environment", [&](const std::string& text) { options.environment = text; }},
       {"--row", [&](const std::string& text) { options.row = text; }},
       {"--scale", [&](const std::string& text) { options.scale = std::stod(text); }},
       {"--seconds", [&](const std::string& text) { options.seconds = std::stod(text); }},
@@ -236,12 +276,12 @@ Options options_from(int argc, char** argv) {
 int bench(const Options& options, const std::vector<std::string>& arguments) {
   for (const Row& row : rows())
     if (row.name == options.row) {
-      print(row.to_first_step ? load(options, row) : evaluate(options, row));
+      print(row.in_one_call ? one_call(options, row) : row.to_first_step ? load(options, row) : evaluate(options, row));
       return 0;
     }
   std::printf(
       "seconds                                          whole      CPU |  start   grow  check  sched upload   step   "
-      "read |  busy\n");
+      "read |  busy, springs/s\n");
   for (const Row& row : rows()) {
     const bool is_wanted = std::ranges::find(options.rows, row.name) != options.rows.end();
     // Without --rows, several devices are used only if CUDA was asked for.
