@@ -122,12 +122,12 @@ std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& s
   const std::size_t muscles = batch.muscles.amplitude.size();
   const std::int64_t at_once =
       std::clamp(static_cast<std::int64_t>(limits.factors_at_once / muscles), std::int64_t{1}, limits.steps_at_once);
-  batch.factors.resize(static_cast<std::size_t>(std::min(steps, at_once)) * muscles);
+  batch.factors.resize(static_cast<std::size_t>(std::min(steps, at_once)) * muscles + Factors::readable);
   for (std::int64_t done = 0; done < steps; done += at_once) {
     const std::int64_t now = std::min(at_once, steps - done);
     const StepRange range{clock.step + done, now};
     kernel.fill_factors(batch.muscles, batch.factors.data(), now);
-    const Factors factors{batch.factors.data(), muscles};
+    const Factors factors{batch.factors.data(), muscles, kernel.looks_up_one_by_one()};
     for (LockstepGroup& group : batch.groups) {
       if (group.bodies.empty()) continue;
       reset_padding(group, now);

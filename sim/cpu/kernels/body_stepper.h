@@ -31,7 +31,7 @@ class BodyStepper {
   }
 
   // Returns false if the robot has exploded.
-  bool step(Solver solver, const float* factors, std::int64_t number) {
+  bool step(Solver solver, StepFactors factors, std::int64_t number) {
     dither_ = dither_of_step(number);
     return solver == Solver::force ? step_force(factors) : step_xpbd(factors);
   }
@@ -41,7 +41,7 @@ class BodyStepper {
   static constexpr bool needs_aos = BodyMotion::needs_aos;
 
   // Algorithm 1.
-  bool step_force(const float* factors) {
+  bool step_force(StepFactors factors) {
     if (!add_environment()) return false;
     if constexpr (EnvironmentModel::real_bodies)
       if (model_.sums_apart()) {
@@ -57,7 +57,7 @@ class BodyStepper {
   }
 
   // Algorithm 2.
-  bool step_xpbd(const float* factors) {
+  bool step_xpbd(StepFactors factors) {
     if (!add_environment()) return false;
     BodyMotion prediction(body_, model_, constants_, body_.scale.environment);
     for (std::size_t slot = 0; slot < body_.slots.mass_at.size(); slot += lane_count) prediction.predict(slot);
@@ -73,13 +73,13 @@ class BodyStepper {
 
   // No spring is longer than the diagonal of the box around all masses: springs need no check if that is short enough.
   template <class Finish>
-  bool add_springs(const float* factors, float squared_diagonal, const Finish& finish) {
+  bool add_springs(StepFactors factors, float squared_diagonal, const Finish& finish) {
     if constexpr (EnvironmentModel::real_bodies)
       if (body_.viscous) return add_springs<true>(factors, squared_diagonal, finish);
     return add_springs<false>(factors, squared_diagonal, finish);
   }
   template <bool viscous, class Finish>
-  bool add_springs(const float* factors, float squared_diagonal, const Finish& finish) {
+  bool add_springs(StepFactors factors, float squared_diagonal, const Finish& finish) {
     if (squared_diagonal <= body_.measures.squared_stretch_limit())
       return HWY_NAMESPACE::add_springs<false, gathered_springs, viscous>(body_, factors, finish);
     return HWY_NAMESPACE::add_springs<true, gathered_springs, viscous>(body_, factors, finish);

@@ -4,6 +4,7 @@
 //   kernel_avx2.cpp ...    one file per instruction set: sets HWY_TARGET and includes the rest
 //     lanes.h              vectors that compute as floats do
 //     gather.h             masses in any slots
+//     factor_table.h       the factors of a row of springs
 //     body_stepper.h       a robot alone       spring_rows.h, face_tiles.h, motion.h, near_search.h
 //     lockstep_stepper.h   a lockstep group
 //     muscle_factors.h     all muscles
@@ -26,6 +27,8 @@ struct Kernel {
   // Computes L(t) / L0 of all muscles at the next steps, factors[step][muscles.amplitude.size()], and moves the
   // muscles' phases on by these steps.
   void (*fill_factors)(Muscles& muscles, float* factors, std::int64_t steps);
+  // Whether this machine reads factors faster one by one than by gathering them (Factors::one_by_one).
+  bool (*looks_up_one_by_one)();
 
   // Advances a body that has not exploded. Returns the number of complete steps; if it is less than `steps`, the body
   // exploded in the step after them.

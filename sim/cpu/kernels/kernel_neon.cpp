@@ -9,7 +9,11 @@
 
 namespace mercury::cpu {
 
-const Kernel neon_kernel{"NEON", HWY_NAMESPACE::lane_count, HWY_NAMESPACE::fill_factors, HWY_NAMESPACE::advance,
+const Kernel neon_kernel{"NEON",
+                         HWY_NAMESPACE::lane_count,
+                         HWY_NAMESPACE::fill_factors,
+                         HWY_NAMESPACE::looks_up_one_by_one,
+                         HWY_NAMESPACE::advance,
                          HWY_NAMESPACE::advance_group};
 
 }  // namespace mercury::cpu

@@ -12,7 +12,6 @@
 
 #include "mercury/host_device.h"
 #include "mercury/vec3.h"
-#include "sim/cpu/layout/muscles.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {
@@ -144,22 +143,6 @@ HWY_INLINE void store_aligned(Lanes a, float* to) { hn::Store(a.v, floats, to); 
 HWY_INLINE void store_aligned(Integers a, std::int32_t* to) { hn::Store(a.v, integers, to); }
 HWY_INLINE void store_aligned(Words a, std::uint32_t* to) { hn::Store(a.v, words, to); }
 HWY_INLINE void store(Integers a, std::int32_t* to) { hn::StoreU(a.v, integers, to); }
-// table[id] by lane, where the mask is set; elsewhere 0 or table[id].
-HWY_INLINE Lanes look_up(const float* table, const FactorId* ids, Mask wanted) {
-  const auto narrow = hn::LoadU(hn::Rebind<FactorId, decltype(integers)>(), ids);
-  const auto index = hn::PromoteTo(integers, narrow);
-  // An x86 gather keeps the register's old value in lanes that are not wanted, so it waits for whatever wrote that
-  // register last. The compiler clears the register first only if the mask is not a constant.
-#if HWY_TARGET == HWY_AVX2
-  return hn::Vec<decltype(floats)>{_mm256_mask_i32gather_ps(_mm256_setzero_ps(), table, index.raw, wanted.m.raw, 4)};
-#elif HWY_TARGET == HWY_AVX3
-  return hn::Vec<decltype(floats)>{_mm512_mask_i32gather_ps(_mm512_setzero_ps(), wanted.m.raw, index.raw, table, 4)};
-#else
-  (void)wanted;
-  return hn::GatherIndex(floats, table, index);
-#endif
-}
-
 // One 64-bit integer per lane.
 struct Phases {
   hn::Vec<decltype(long_words)> lower, upper;  // halves of the lanes

@@ -49,7 +49,7 @@ class LockstepStepper {
         squared_stretch_limit_(load_aligned(group.squared_stretch_limit.data())) {}
 
   // Returns false if a member may have exploded.
-  bool step(Solver solver, const float* factors, std::int64_t number) {
+  bool step(Solver solver, StepFactors factors, std::int64_t number) {
     dither_ = dither_of_step(number);
     if (!group_.perturbations.empty()) add_perturbations(group_);
     if constexpr (EnvironmentModel::has_contacts)
@@ -61,7 +61,7 @@ class LockstepStepper {
 
  private:
   // Algorithm 1.
-  bool step_force(const float* factors) {
+  bool step_force(StepFactors factors) {
     const bool apart = accelerate_by_environment();
     Box box;
     const bool compact = is_compact(load_aligned(group_.squared_diagonal.data()));
@@ -96,7 +96,7 @@ class LockstepStepper {
   }
 
   // Algorithm 2.
-  bool step_xpbd(const float* factors) {
+  bool step_xpbd(StepFactors factors) {
     Box predicted;
     for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
       const Lanes3 v =
@@ -216,13 +216,13 @@ class LockstepStepper {
   }
 
   template <class Finish>
-  bool add_springs(const float* factors, bool compact, const Finish& finish) {
+  bool add_springs(StepFactors factors, bool compact, const Finish& finish) {
     if constexpr (EnvironmentModel::real_bodies)
       if (group_.viscous) return add_springs<true>(factors, compact, finish);
     return add_springs<false>(factors, compact, finish);
   }
   template <bool viscous, class Finish>
-  bool add_springs(const float* factors, bool compact, const Finish& finish) {
+  bool add_springs(StepFactors factors, bool compact, const Finish& finish) {
     if (compact) return add_springs<false, viscous>(factors, finish);
     return add_springs<true, viscous>(factors, finish);
   }
@@ -230,7 +230,7 @@ class LockstepStepper {
   // Calls finish(slot, sum of all that acts on it) for each slot. If `checked`, returns false if a spring is beyond the
   // stretch limit.
   template <bool checked, bool viscous, class Finish>
-  bool add_springs(const float* factors, const Finish& finish) {
+  bool add_springs(StepFactors factors, const Finish& finish) {
     SpringRow<checked, viscous> next_row{factors,
                                          group_.rest_length.data(),
                                          group_.stiffness.data(),

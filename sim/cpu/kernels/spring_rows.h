@@ -3,6 +3,7 @@
 #pragma once
 
 #include "sim/cpu/kernels/body_arrays.h"
+#include "sim/cpu/kernels/factor_table.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {
@@ -11,7 +12,7 @@ namespace mercury::cpu::HWY_NAMESPACE {
 // xpbd_stiffness().
 template <bool checked, bool viscous>
 struct SpringRow {
-  const float* factors;
+  StepFactors factors;
   const float* rest_length;
   const float* stiffness;
   const float* relaxation_time;  // if `viscous`
@@ -50,7 +51,7 @@ struct SpringRow {
 // rows, whose partners are in any tile, it is after all springs; so it is if `checked`, since no mass may move before
 // all springs have passed.
 template <bool checked, bool gathered_springs, bool viscous, class Finish>
-bool add_springs(Body& body, const float* factors, const Finish& finish) {
+bool add_springs(Body& body, StepFactors factors, const Finish& finish) {
   constexpr bool finish_early = !checked && !gathered_springs;
   const BodyArrays arrays(body);
   const SpringSchedule& schedule = body.springs;

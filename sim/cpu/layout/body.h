@@ -6,7 +6,7 @@
 // not depend on the order of its terms. A slot has four sums, each filled by another part of the step:
 //
 //   own         springs that the mass owns                                              stored once per step
-//   reaction    runs in which it is the partner, perturbations, contacts                reaction_arrays arrays in turn
+//   reaction    runs in which it is the partner, perturbations, contacts                reaction_arrays arrays
 //   scattered   gathered rows in which it is the partner, faces                         x, y, z, unused: 16 bytes a
 //   slot taken       reaction + scattered when they were last read
 //

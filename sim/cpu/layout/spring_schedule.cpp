@@ -2,6 +2,7 @@
 #include "sim/cpu/layout/spring_schedule.h"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 #include <utility>
 
@@ -131,14 +132,48 @@ class Scheduler {
 
   void append_runs(std::uint32_t tile) {
     const auto stride = static_cast<std::uint32_t>(slots_.size_with_spare());
-    for (; next_run_ < runs_.size() && tile_of(runs_[next_run_].front().owner) == tile; ++next_run_) {
-      const ScheduledSpring& first = runs_[next_run_].front();
-      const auto partner = static_cast<std::uint32_t>(tile * lanes_) + (first.partner - first.owner);
+    const std::size_t first_run = next_run_;
+    while (next_run_ < runs_.size() && tile_of(runs_[next_run_].front().owner) == tile) ++next_run_;
+    for (std::size_t i = first_run; i < next_run_; ++i) {
+      const std::uint32_t array = choose_next_run(i, next_run_, tile);
+      const std::uint32_t partner = first_partner(runs_[i], tile);
       const std::size_t first_entry = append_row(tile);
-      for (const ScheduledSpring& s : runs_[next_run_]) fill(first_entry, s);
+      for (const ScheduledSpring& s : runs_[i]) fill(first_entry, s);
       for (std::uint32_t lane = 0; lane < lanes_; ++lane) expect_force_at(partner + lane);
-      schedule_.runs.push_back({partner, schedule_.tiles[tile].runs++ % reaction_arrays * stride + partner});
+      schedule_.runs.push_back({partner, array * stride + partner});
+      latest_[latest_count_++ % runs_in_flight] = {partner, array};
+      ++schedule_.tiles[tile].runs;
     }
+  }
+  // The slot of the first lane's partner.
+  std::uint32_t first_partner(std::span<const ScheduledSpring> run, std::uint32_t tile) const {
+    return tile * static_cast<std::uint32_t>(lanes_) + (run.front().partner - run.front().owner);
+  }
+  // Moves that one of the runs from `next` to `end` to `next` which goes best with the latest ones. Returns the
+  // reaction array that it adds to.
+  std::uint32_t choose_next_run(std::size_t next, std::size_t end, std::uint32_t tile) {
+    std::size_t best = next, largest_distance = 0;
+    std::uint32_t best_array = 0;
+    for (std::size_t i = next; i < end && largest_distance < runs_in_flight; ++i)
+      for (std::uint32_t array = 0; array < reaction_arrays && largest_distance < runs_in_flight; ++array)
+        if (const std::size_t distance = runs_since_overlap(first_partner(runs_[i], tile), array);
+            distance > largest_distance) {
+          best = i;
+          best_array = array;
+          largest_distance = distance;
+        }
+    std::swap(runs_[next], runs_[best]);
+    return best_array;
+  }
+  // How many runs ago one was added to a part of these slots in this array, or `runs_in_flight`. Exactly the same slots
+  // do not count: what was stored is there to be loaded at once.
+  std::size_t runs_since_overlap(std::uint32_t partner, std::uint32_t array) const {
+    const auto lanes = static_cast<std::uint32_t>(lanes_);
+    for (std::size_t ago = 1; ago < runs_in_flight && ago <= latest_count_; ++ago) {
+      const auto& [other, other_array] = latest_[(latest_count_ - ago) % runs_in_flight];
+      if (other_array == array && other != partner && other < partner + lanes && partner < other + lanes) return ago;
+    }
+    return runs_in_flight;
   }
 
   void append_gathered_rows(std::uint32_t tile) {
@@ -168,6 +203,12 @@ class Scheduler {
   std::vector<std::span<const ScheduledSpring>> candidates_, runs_;
   std::vector<ScheduledSpring> gathered_;
   std::size_t next_run_ = 0, next_gathered_ = 0;
+  static constexpr std::size_t runs_in_flight = 12;  // about as many as a processor has in hand at a time
+  struct RunTarget {
+    std::uint32_t partner = 0, array = 0;
+  };
+  std::array<RunTarget, runs_in_flight> latest_;  // runs, the latest at latest_count_ - 1, modulo `runs_in_flight`
+  std::size_t latest_count_ = 0;
   SpringSchedule schedule_;
 };
 

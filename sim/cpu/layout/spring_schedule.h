@@ -16,8 +16,9 @@
 // 3. Gathered rows hold all other springs. Their partners are loaded one by one (kernels/gather.h), which costs more
 //    than twice as much, so that even a run with several unused lanes is cheaper. Owners are chosen so that the lanes
 //    of a tile have about equally many springs in gathered rows: the busiest lane sets the number of rows.
-// 4. Forces on the partners of runs go to one of several reaction arrays in turn. If consecutive runs added to the same
-//    array, the load of one would overlap the recent, differently aligned store of another, and wait for it.
+// 4. Forces on the partners of runs are added to one of several reaction arrays. A load that overlaps a recent store
+//    which is aligned otherwise waits until that is in the cache. So runs of a tile take turns in an order, and in
+//    arrays, such that what they add to overlaps with none of the latest runs.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,7 @@
 
 namespace mercury::cpu {
 
-inline constexpr std::uint32_t reaction_arrays = 2;
+inline constexpr std::uint32_t reaction_arrays = 3;
 
 struct Run {
   std::uint32_t partner;   // slot of the first lane's partner
