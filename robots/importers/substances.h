@@ -2,6 +2,7 @@
 // Materials in double precision, and as few of them as a table holds.
 #pragma once
 
+#include <complex>
 #include <cstddef>
 #include <numbers>
 #include <span>
@@ -26,6 +27,10 @@ struct Substance {
   friend bool operator==(const Substance&, const Substance&) = default;
 };
 
+inline bool moves(const Substance& substance) { return substance.amplitude != 0; }
+// The amplitude times exp(i phase).
+std::complex<double> movement_of(const Substance& substance);
+
 Substance substance_of(const Material& material);
 Material material_of(const Substance& substance);
 
@@ -39,8 +44,7 @@ Substance mean_substance(std::span<const Substance> substances, std::span<const 
 
 // How far rounded substances are from the exact ones, at most.
 struct Rounding {
-  bool is_exact() const { return steps == 0; }
-  int steps = 0;               // 0 = nothing was rounded; else the range of each value was divided into as many steps
+  bool is_exact() const { return groups == substances; }
   std::size_t substances = 0;  // distinct ones before
   std::size_t groups = 0;      // and after
   double stiffness = 0;        // relative
@@ -51,7 +55,7 @@ struct Rounding {
 std::string text_of(const Rounding& rounding);
 
 // Substances in groups, at most `most` of them (at least 8), each with the mean of its members. Equal substances are in
-// one group. If there are too many distinct substances, the range of each value is divided into steps, as many as fit.
+// one group. If there are too many distinct substances, near ones share a group (substance_groups.cpp).
 struct SubstanceGroups {
   std::vector<std::size_t> group_of;  // of each substance
   std::vector<Substance> substances;  // of each group

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mercury/random.h"
+
 namespace mercury {
 namespace {
 
@@ -71,6 +73,44 @@ TEST(SubstanceRounding, RoundsToStepsThatFitAndSaysByHowMuch) {
   EXPECT_NEAR(groups.rounding.phase, largest, 1e-12);
   EXPECT_LT(largest, pi / 200);
   EXPECT_LT(groups.rounding.stiffness, 1e-12);
+}
+
+// Points that fill a disk are rounded best to a hexagonal lattice: the mean square of the error is 5 / (18 sqrt 3)
+// times the area per group (Fejes Toth 1953).
+TEST(SubstanceRounding, RoundsMovementsNearlyAsWellAsAnythingCan) {
+  constexpr std::size_t groups = 255;
+  constexpr double largest = 0.2;
+  Random random(3);
+  std::vector<Substance> substances;
+  for (int i = 0; i < 20000; ++i) {
+    const double amplitude = largest * std::sqrt(random.uniform());
+    substances.push_back(muscle(amplitude, 2 * pi * random.uniform()));
+  }
+  const SubstanceGroups found = grouped(substances, groups);
+  EXPECT_LE(found.substances.size(), groups);
+  double squares = 0;
+  for (std::size_t i = 0; i < substances.size(); ++i)
+    squares += std::norm(movement_of(found.substances[found.group_of[i]]) - movement_of(substances[i]));
+  const double best = 5 / (18 * std::sqrt(3.0)) * pi * largest * largest / groups;
+  const double mean = squares / static_cast<double>(substances.size());
+  EXPECT_LT(mean, 1.15 * best);
+  EXPECT_GT(mean, 0.85 * best);
+}
+
+// A stiffness counts at strains as large as the movements: 255 groups serve what varies.
+TEST(SubstanceRounding, GivesEachValueTheGroupsThatItNeeds) {
+  std::vector<Substance> substances;
+  for (int i = 0; i < 4000; ++i) {
+    Substance substance = muscle(0.1, 0.5);
+    substance.stiffness = std::exp(i / 4000.0);
+    substance.relaxation_time = 0.01 * (i % 2);
+    substances.push_back(substance);
+  }
+  const SubstanceGroups found = grouped(substances, 254);
+  for (std::size_t i = 0; i < substances.size(); ++i)
+    EXPECT_DOUBLE_EQ(found.substances[found.group_of[i]].relaxation_time, substances[i].relaxation_time);
+  EXPECT_LT(found.rounding.stiffness, 1.0 / 127);  // half of what 127 groups of one size would have is the least
+  EXPECT_LT(found.rounding.phase, 1e-9);
 }
 
 TEST(SubstanceRounding, NeverMixesMusclesWithPassiveVoxels) {
