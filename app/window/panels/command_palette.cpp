@@ -4,7 +4,6 @@
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
-#include <imgui_internal.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -434,13 +433,6 @@ void CommandPalette::draw(PanelContext& context) {
   context.log.write("palette", {{"name", entries_[*chosen].name}});
   const std::function<void()> act = entries_[*chosen].act;  // a copy, since it may open the palette again
   act();
-}
-
-void CommandPalette::hide_tooltip() const {
-  ImGuiWindow* const tooltip = open_ ? ImGui::FindWindowByName("##Tooltip_00") : nullptr;
-  if (!tooltip || !tooltip->Active) return;
-  tooltip->Hidden = true;
-  tooltip->HiddenFramesCanSkipItems = 1;
 }
 
 std::optional<std::size_t> CommandPalette::draw_entries(PanelContext& context) {

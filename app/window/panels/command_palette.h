@@ -29,8 +29,6 @@ class CommandPalette {
   // Up, Down, Page Up, Page Down and Enter; what is typed goes to the field.
   void press(const KeyPress& press);
   void draw(PanelContext& context);
-  // While it is open, hides the tooltip of what the mouse rests on below it. Call after everything else was drawn.
-  void hide_tooltip() const;
 
  private:
   void search();

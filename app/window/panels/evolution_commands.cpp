@@ -69,6 +69,15 @@ constexpr Aim aims[] = {
     {"to reach the target", "target_approach"},
 };
 
+// The words of a help text that say most: those before its colon, or after it if only an abbreviation is before it.
+std::string_view gist_of(std::string_view help) {
+  constexpr std::size_t abbreviation = 12;  // letters
+  const std::size_t colon = std::min(help.find(':'), help.size());
+  if (colon >= abbreviation || colon == help.size()) return help.substr(0, colon);
+  help = help.substr(colon + 2);
+  return help.substr(0, help.find(';'));
+}
+
 class EvolveForm {
  public:
   EvolveForm(PanelContext& context, std::vector<LiveRobot> founders);
@@ -171,8 +180,9 @@ std::string EvolveForm::duration_of(double trials, const EvolveRequest& request)
   springs /= static_cast<double>(founders_.size());
   const double steps = request.settings.trials.seconds / request.settings.configuration.dt;
   const double seconds = trials * steps * springs / rate;
-  return fmt::format("; about {} at the current speed of the scene",
-                     seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60));
+  return fmt::format(
+      "; about {} at the current speed of the scene",
+      seconds < 90 ? fmt::format("{:.0f} s", std::max(1.0, seconds)) : fmt::format("{:.0f} min", seconds / 60));
 }
 
 bool EvolveForm::draw(EventLog& log) {
@@ -188,9 +198,8 @@ bool EvolveForm::draw(EventLog& log) {
   std::string help;
   for (const AlgorithmDescription& algorithm : algorithms()) {
     names.push_back(algorithm.name.data());
-    // Its name and the words for it: what the help says before the first colon or comma.
-    texts.push_back(
-        fmt::format("{}   {}", algorithm.name, algorithm.help.substr(0, algorithm.help.find_first_of(":,"))));
+    texts.push_back(shortened(fmt::format("{}   {}", algorithm.name, gist_of(algorithm.help)),
+                              0.5f * ImGui::GetContentRegionAvail().x));
     titles.push_back(texts.back().c_str());
     help += fmt::format("{}{}: {}", help.empty() ? "" : "\n", algorithm.name, algorithm.help);
   }

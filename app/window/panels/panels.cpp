@@ -203,7 +203,14 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   draw_body_editor(context_, area);
   draw_robot_menu(context_, [this](Action action) { execute(action); });
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
-  context_.toasts.draw({area.low.x, below_caption(context_.caption, area)}, area.high, dt, context_.log);
+  // Messages leave the legend at the right edge free, if there is room.
+  constexpr float least = 20;  // [letters]
+  ViewportArea messages = area;
+  const Box& legend = context_.legend;
+  if (legend.high.x > legend.low.x) context_.log.item("legend", legend.low, legend.high);
+  if (legend.high.x > legend.low.x && legend.low.x - area.low.x > least * ImGui::GetFontSize())
+    messages.high.x = legend.low.x;
+  context_.toasts.draw({area.low.x, below_caption(context_.caption, messages)}, messages.high, dt, context_.log);
   context_.covered = {axes, context_.legend, explosions_.box(), context_.first_steps};
   context_.covered.insert(context_.covered.end(), explosions_.marks().begin(), explosions_.marks().end());
   for (const auto& [low, high] : context_.toasts.places()) context_.covered.push_back({low, high});
@@ -215,7 +222,7 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
 
 // Dear ImGui requires that no window outside a modal appears after it in the frame in which the modal opens.
 void Panels::draw_dialogs() {
-  palette_.hide_tooltip();
+  if (palette_.is_open() || help_open_) hide_tooltip();
   context_.dialogs.draw(context_.log);
 }
 

@@ -80,9 +80,11 @@ void Toasts::show(Tone tone, std::string text) {
   if (toasts_.size() > max_count) toasts_.pop_front();
 }
 
+float Toasts::line_height() { return 1.5f * ImGui::GetFontSize() + 2 * ImGui::GetStyle().WindowPadding.y; }
+
 void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
   const float line = ImGui::GetFontSize();
-  float y = low.y + line;
+  float y = low.y + 0.5f * line;
   int number = 0;
   places_.clear();
   for (Toast& toast : toasts_) {

@@ -31,6 +31,8 @@ std::string clock_text(std::chrono::system_clock::time_point time);
 class Toasts {
  public:
   void show(Tone tone, std::string text);
+  // The height at the top of a rectangle that a message of one line takes, with space around it [pixels].
+  static float line_height();
   // Draws the messages at the top center of a rectangle. `dt`: time since the last frame [s].
   void draw(ImVec2 low, ImVec2 high, double dt, EventLog& log);
   bool empty() const { return toasts_.empty(); }

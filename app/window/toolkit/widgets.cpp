@@ -147,6 +147,13 @@ void tooltip_now(const std::string& text) {
   ImGui::EndTooltip();
 }
 
+void hide_tooltip() {
+  ImGuiWindow* const window = ImGui::FindWindowByName("##Tooltip_00");
+  if (!window || !window->Active) return;
+  window->Hidden = true;
+  window->HiddenFramesCanSkipItems = 1;
+}
+
 float row_name_width(bool differs) {
   const float names = name_share * ImGui::GetContentRegionAvail().x;
   return differs ? names - 0.75f * ImGui::GetFrameHeight() - 0.3f * ImGui::GetFontSize() : names;

@@ -36,6 +36,9 @@ void tooltip(const char* text);
 // The same at once, whatever the pointer is over. Long lines are wrapped, and long texts cut (brief()).
 void tooltip_now(const std::string& text);
 
+// Hides the tooltip of this frame: what the mouse rests on is below something else. Call after all that have tooltips.
+void hide_tooltip();
+
 // Secondary text in a fainter color, wrapped at the panel's edge.
 void note(const char* text);
 

@@ -128,6 +128,20 @@ class LayoutTest(WindowCase):
                 self.assertFalse(self.meet(label, item), (label, item))
         self.finish(window)
 
+    def test_messages_cover_no_robot_and_leave_the_legend_free(self):
+        window = self.open(*(str(SAMPLES / f"{name}.json") for name in ("eel", "fish", "squid")), "--camera", "group", "--paused")
+        window.frame(lambda frame: len(frame["where"]) == 3)
+        window.key("2", "3")  # colors by activation, then by strain
+        window.place("toast.1")
+        window.place("legend")
+        window.standing()
+        toasts = [window.items[f"toast.{i}"] for i in (0, 1)]
+        for toast in toasts:
+            self.assertFalse(self.meet(toast, window.items["legend"]))
+        lowest = max(toast["y"] + toast["height"] / 2 for toast in toasts)
+        self.assertLess(lowest + 15, min(y for x, y in window.frame()["where"]), "15 pixels: half the height of an eel")
+        self.finish(window)
+
     def labels(self, window):
         window.frame()
         window.frame()
