@@ -19,6 +19,11 @@
 
 namespace mercury::cuda {
 
+// A mass at rest, as the frame of the body is found by it. One access reads it.
+struct alignas(16) RestingMass {
+  Vec3 moment;  // its mass times its position from the center of the body [kg m]
+  float mass;   // [kg]
+};
 struct SensedSpring {
   std::uint16_t a, b;  // slots
   float inverse_rest_length;
@@ -41,10 +46,6 @@ struct SensingShare {
   std::uint64_t first;  // in the lists
 };
 inline constexpr std::uint32_t tiles_per_share = 3, entries_per_share = 256, sums_per_row = 16;
-
-struct BrainLayer : BrainPlan::Layer {
-  bool reads_itself;  // a neuron has inputs from neurons of its layer
-};
 
 // How a brain drives a material of its robot.
 struct BrainMuscle {
@@ -78,7 +79,8 @@ struct ThinkingRobot {
   float* weights;
   float *stored_weights, *activations, *samples_of_senses;
   const float* clamps;
-  const Vec3 *rest, *target;  // rest: [slot], from the center [m]
+  const RestingMass* rest;  // [slot], if sums over the whole body are measured
+  const Vec3* target;       // [m]
   const std::uint16_t* slots;
   const SensedSpring* springs;
   const std::uint64_t* noise_seed;

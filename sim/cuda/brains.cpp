@@ -16,14 +16,6 @@ DeviceArray<T> uploaded(const std::vector<T>& values, cudaStream_t stream) {
   return array;
 }
 
-bool reads_itself(const BrainPlan& plan, const BrainPlan::Layer& layer) {
-  const auto first = static_cast<std::uint32_t>(plan.senses.size()) + layer.first, last = first + layer.count;
-  for (const BrainPlan::Neuron& neuron : std::span(plan.neurons).subspan(layer.first, layer.count))
-    for (const BrainPlan::Run& run : std::span(plan.runs).subspan(neuron.first_run, neuron.runs))
-      if (run.source < last && run.source + run.count > first) return true;
-  return false;
-}
-
 // A list of the bytes of several lists, each of which begins at a multiple of 16.
 class Bytes {
  public:
@@ -49,7 +41,7 @@ class TableMaker {
   std::vector<BrainMaterial> materials;
   std::vector<std::uint16_t> slots;
   std::vector<SensedSpring> springs;
-  std::vector<Vec3> rest;
+  std::vector<RestingMass> rest;
   std::size_t activations = 0, samples = 0, weights = 0;
   BrainBytes largest;  // of each part
 
@@ -71,8 +63,8 @@ class TableMaker {
     robot.body = offset<char>(bodies.size());
     robot.body_bytes = static_cast<std::uint32_t>(body.all.size());
     bodies.insert(bodies.end(), body.all.begin(), body.all.end());
-    robot.rest = offset<Vec3>(rest.size());
-    if (plan.uses_frame) add_rest(thinker);
+    robot.rest = offset<RestingMass>(rest.size());
+    if (robot.tile_shares > 0) add_rest(thinker);
     add_materials(thinker, robot);
     robot.activations = offset<float>(activations);
     robot.samples_of_senses = offset<float>(samples);
@@ -108,9 +100,7 @@ class TableMaker {
     robot.at.runs = append(plan.runs);
     robot.at.gates = append(plan.gates);
     robot.at.learnings = append(plan.learnings);
-    std::vector<BrainLayer> layers;
-    for (const BrainPlan::Layer& layer : plan.layers) layers.push_back({layer, reads_itself(plan, layer)});
-    robot.at.layers = append(layers);
+    robot.at.layers = append(plan.layers);
     robot.at.outputs = append(plan.outputs);
     robot.plan = offset<char>(plans.size());
     robot.plan_bytes = static_cast<std::uint32_t>(tables.all.size());
@@ -184,7 +174,8 @@ class TableMaker {
     const Double3 center = (1 / mass) * sum;
     for (const std::uint16_t i : thinker.order->masses()) {
       const Double3 x = Double3(body.masses[i]) - center;
-      rest.push_back({static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)});
+      const float m = mass_of(body, i);
+      rest.push_back({m * Vec3{static_cast<float>(x.x), static_cast<float>(x.y), static_cast<float>(x.z)}, m});
     }
   }
 
@@ -275,7 +266,7 @@ void DeviceBrains::set(std::span<const Thinker> thinkers, std::span<const std::u
     address<const BrainMaterial>(robot.material_sources, materials_.data());
     address<const std::uint16_t>(robot.slots, slots_.data());
     address<const SensedSpring>(robot.springs, springs_.data());
-    address<const Vec3>(robot.rest, rest_.data());
+    address<const RestingMass>(robot.rest, rest_.data());
     robot.clamps = reinterpret_cast<const float*>(robot.activations);
     address<const float>(robot.clamps, clamps_.data());
     address(robot.activations, activations_->data());

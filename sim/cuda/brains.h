@@ -61,7 +61,7 @@ class DeviceBrains {
   DeviceArray<BrainMaterial> materials_;
   DeviceArray<std::uint16_t> slots_;
   DeviceArray<SensedSpring> springs_;
-  DeviceArray<Vec3> rest_;
+  DeviceArray<RestingMass> rest_;
   using SharedNumbers = std::shared_ptr<DeviceArray<float>>;
   SharedNumbers activations_, samples_, weights_;
   bool shared_ = false;

@@ -31,19 +31,22 @@ __device__ inline void wait_for_robot(std::uint32_t number, std::uint32_t warps)
   asm volatile("bar.sync %0, %1;" ::"r"(1 + number), "r"(warps * lanes) : "memory");
 }
 
-// Sums of 16 values over the lanes of a warp. Lanes exchange halves of what they have, so that lanes 2 i and 2 i + 1
-// have the sum of value i in the end.
-__device__ inline float sums_of_warp(float (&values)[sums_per_row]) {
+// Sums of 2, 4, 8 or 16 values over the lanes of a warp. Lanes exchange halves of what they have, so that lanes 2 i and
+// 2 i + 1 have the sum of the i-th of 16 values in the end. (A loop over halves put the values into local memory.)
+template <unsigned count>
+__device__ float sums_of_warp(const float (&values)[count]) {
+  constexpr unsigned half = count / 2;
+  const bool upper = threadIdx.x & count;
+  float sums[half];
 #pragma unroll
-  for (unsigned half = 8, distance = 16; half > 0; half /= 2, distance /= 2) {
-    const bool upper = threadIdx.x & distance;
-#pragma unroll
-    for (unsigned i = 0; i < half; ++i) {
-      const float give = upper ? values[i] : values[i + half], keep = upper ? values[i + half] : values[i];
-      values[i] = keep + __shfl_xor_sync(0xffffffffu, give, distance);
-    }
+  for (unsigned i = 0; i < half; ++i) {
+    const float give = upper ? values[i] : values[i + half], keep = upper ? values[i + half] : values[i];
+    sums[i] = keep + __shfl_xor_sync(0xffffffffu, give, count);
   }
-  return values[0] + __shfl_xor_sync(0xffffffffu, values[0], 1);
+  if constexpr (half > 1)
+    return sums_of_warp(sums);
+  else
+    return sums[0] + __shfl_xor_sync(0xffffffffu, sums[0], 1);
 }
 
 // The memory of a robot's brain: on the chip, beside the robot's masses, or in device memory, as they are. So the
@@ -161,7 +164,7 @@ class Thought {
     sense();
     wait();
 #pragma unroll 1
-    for (std::uint32_t layer = 0; layer < of_.layers; ++layer) update(plan_part<BrainLayer>(of_.at.layers)[layer]);
+    for (std::uint32_t layer = 0; layer < of_.layers; ++layer) update(plan_part<BrainPlan::Layer>(of_.at.layers)[layer]);
     drive();
   }
 
@@ -231,10 +234,9 @@ class Thought {
 
   __device__ void measure_tiles(std::uint32_t share) const {
     const Vec3 origin = first_position(), moving = first_velocity();
-    const bool uses_frame = of_.uses_frame, uses_turn_rate = of_.uses_turn_rate;
+    const bool uses_turn_rate = of_.uses_turn_rate;
     const std::uint32_t masses_of_robot = of_.masses;
-    const Vec3* const at_rest = of_.rest;
-    const float* const point_masses = of_.point_masses;
+    const auto* const at_rest = reinterpret_cast<const float4*>(of_.rest);
     MassSums masses;
     TurningSums turning;
     float shape[9] = {};
@@ -242,16 +244,17 @@ class Thought {
     for (std::uint32_t tile = 0; tile < tiles_per_share; ++tile) {
       const std::uint32_t slot = (share * tiles_per_share + tile) * lanes + robot_.lane;
       if (slot >= masses_of_robot) break;
-      const Vec3 rest = uses_frame ? at_rest[slot] : Vec3{};
-      const float m = point_masses ? point_masses[slot] : 1;
+      const float4 rest = __ldg(at_rest + slot);  // a RestingMass
+      const float m = rest.w;
       const Vec3 x = robot_.mass_at(slot).vector(field_x), d = x - origin,
                  v = robot_.mass_at(slot).vector(field_v) - moving;
       masses.add(m, d, v, x.z);
       if (uses_turn_rate) turning.add(m, d, v);
-      const Vec3 X = m * rest;
-      shape[0] = fmaf(X.x, d.x, shape[0]), shape[1] = fmaf(X.x, d.y, shape[1]), shape[2] = fmaf(X.x, d.z, shape[2]);
-      shape[3] = fmaf(X.y, d.x, shape[3]), shape[4] = fmaf(X.y, d.y, shape[4]), shape[5] = fmaf(X.y, d.z, shape[5]);
-      shape[6] = fmaf(X.z, d.x, shape[6]), shape[7] = fmaf(X.z, d.y, shape[7]), shape[8] = fmaf(X.z, d.z, shape[8]);
+      shape[0] = fmaf(rest.x, d.x, shape[0]), shape[1] = fmaf(rest.x, d.y, shape[1]);
+      shape[2] = fmaf(rest.x, d.z, shape[2]), shape[3] = fmaf(rest.y, d.x, shape[3]);
+      shape[4] = fmaf(rest.y, d.y, shape[4]), shape[5] = fmaf(rest.y, d.z, shape[5]);
+      shape[6] = fmaf(rest.z, d.x, shape[6]), shape[7] = fmaf(rest.z, d.y, shape[7]);
+      shape[8] = fmaf(rest.z, d.z, shape[8]);
     }
     float* const out = row_of_sums(share * (uses_turn_rate ? 2 : 1));
     float sums[sums_per_row];
@@ -280,7 +283,7 @@ class Thought {
     write_sums(sums, out);
   }
 
-  __device__ void write_sums(float (&sums)[sums_per_row], float* out) const {
+  __device__ void write_sums(const float (&sums)[sums_per_row], float* out) const {
     const float sum = sums_of_warp(sums);
     if (robot_.lane % 2 == 0) out[robot_.lane / 2] = sum;
   }
@@ -413,9 +416,9 @@ class Thought {
     }
   }
 
-  // y <- k y + g act(W z + b). Eight lanes sum up a neuron, and each of them ends one of the eight that they
-  // have summed up before.
-  __device__ void update(const BrainLayer& layer) const {
+  // y <- k y + g act(W z + b). Eight lanes sum up a neuron; then a thread ends each, in as few warps as there can be,
+  // since an activation takes more instructions than a short sum.
+  __device__ void update(const BrainPlan::Layer& layer) const {
     float* const neurons = z_ + of_.senses;
     float* const sums = neurons + of_.neurons;
     const std::uint32_t groups = robot_.threads() / neuron_lanes, group = robot_.thread() / neuron_lanes,
@@ -423,21 +426,15 @@ class Thought {
     const Inputs inputs{plan_part<BrainPlan::Neuron>(of_.at.neurons) + layer.first,
                         plan_part<BrainPlan::Run>(of_.at.runs), of_.weights, z_, member};
 #pragma unroll 1
-    for (std::uint32_t first = group; first - group < count; first += groups * neuron_lanes) {
-      float own = 0;
-#pragma unroll 1
-      for (std::uint32_t pass = 0, i = first; pass < neuron_lanes && i - group < count; ++pass, i += groups) {
-        const float sum = sum_of_lanes(i < count ? inputs.part_of_sum(i) : 0);
-        own = pass == member ? sum : own;
-      }
-      const std::uint32_t i = first + member * groups;
-      if (i < count) (layer.reads_itself ? sums : neurons + layer.first)[i] = updated(layer, i, own);
+    for (std::uint32_t i = group; i - group < count; i += groups) {
+      const float sum = sum_of_lanes(i < count ? inputs.part_of_sum(i) : 0);
+      if (i < count && member == 0) sums[i] = sum;
     }
     wait();
-    if (layer.reads_itself) {
-      for (std::uint32_t i = robot_.thread(); i < count; i += robot_.threads()) neurons[layer.first + i] = sums[i];
-      wait();
-    }
+#pragma unroll 1
+    for (std::uint32_t i = robot_.thread(); i < count; i += robot_.threads())
+      neurons[layer.first + i] = updated(layer, i, sums[i]);
+    wait();
     if (layer.learnings == 0) return;
 #pragma unroll 1
     for (std::uint32_t i = robot_.thread(); i < layer.learnings; i += robot_.threads()) {
@@ -449,8 +446,8 @@ class Thought {
     wait();
   }
 
-  // The new activation of a neuron of a layer, of which others know nothing yet: only itself may be gated by it.
-  __device__ float updated(const BrainLayer& layer, std::uint32_t i, float sum) const {
+  // The new activation of a neuron of a layer. All sums of the layer are known: only itself may be gated by it.
+  __device__ float updated(const BrainPlan::Layer& layer, std::uint32_t i, float sum) const {
     const std::uint32_t number = layer.first + i;
     const BrainPlan::Neuron& neuron = plan_part<BrainPlan::Neuron>(of_.at.neurons)[number];
     const float clamped = part_of<float>(robot_.brain, of_.at.clamps)[number];
