@@ -138,7 +138,8 @@ class CudaBackend final : public Backend {
   void fork_launches(const Clock& clock, cudaStream_t stream) const;
   void join_launches(cudaStream_t stream) const;
   // Queues launches of all classes. `report` = null or one element per robot, for after the last step.
-  void launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream) const;
+  void launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream,
+              bool early = false) const;
   // fork_launches() and join_launches() in main(), with the time in between.
   void begin_launches(const Clock& clock) const;
   void end_launches(Event& end);

@@ -103,7 +103,7 @@ void CudaBackend::step_in_stream(const Clock& clock, std::int64_t steps, const P
   const cudaStream_t stream = enter(cuda_stream);
   owned_->actuators.apply(clock, true, stream);
   fork_launches(clock, stream);
-  launch(clock, steps, nullptr, stream);
+  launch(clock, steps, nullptr, stream, true);
   join_launches(stream);
   publish_states(views(), places_.size(), arrays, stream);
   leave(stream);
@@ -145,7 +145,8 @@ void CudaBackend::begin_launches(const Clock& clock) const {
   fork_launches(clock, main().get());
 }
 
-void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream) const {
+void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream,
+                         bool early) const {
   for (const std::uint32_t c : launch_order_) {
     const SizeClass& robots = owned_->classes[c];
     StepArguments arguments{.batch = robots.view(),
@@ -167,11 +168,11 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
         in_parts.batch = robots.view_of_parts();
         in_parts.launch = *robots.launch_in_parts();
         in_parts.report = nullptr;
-        launch_steps(configuration_.solver, model_in_parts(robots), in_parts, of_class);
+        launch_steps(configuration_.solver, model_in_parts(robots), in_parts, early, of_class);
         if (!arguments.report) continue;
         arguments.clock.step += std::exchange(arguments.steps, 0);
       }
-      launch_steps(configuration_.solver, model, arguments, of_class);
+      launch_steps(configuration_.solver, model, arguments, early, of_class);
     } while (done < steps);
   }
 }

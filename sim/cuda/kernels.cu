@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "sim/cuda/stream.h"
+#include "sim/cuda/early_start.cuh"
 #include "sim/physics/actuation.h"
 
 namespace mercury::cuda {
@@ -20,20 +20,33 @@ __device__ double sum_of_warp(double value) {
   return value;
 }
 
+__device__ void prefetch(const void* from) { asm volatile("prefetch.global.L1 [%0];" ::"l"(from)); }
+
 // The vectors of one robot that begin at this field: per mass, and their mean by mass. All threads of the block call
 // this.
 __device__ void publish_field(const RobotView& robot, Field first_field, float* per_mass, float* mean) {
+  // Masses stand in the order of slots. Brought into their own on the chip, neighbors are written together.
+  constexpr std::uint32_t most_staged = 1024;
+  __shared__ float staged[3 * most_staged];
   __shared__ double sums[3][warps];
+  const bool stages = per_mass && robot.masses <= most_staged;
+  float* const to_all = stages ? staged : per_mass + 3 * robot.first_mass;
   double sum[3] = {};
   for (std::uint32_t slot = threadIdx.x; slot < robot.masses; slot += threads) {
     const float* from = robot.state + offset_of_slot(slot, state_fields) + first_field * lanes;
-    const std::size_t to = 3 * (robot.first_mass + robot.order[slot]);
+    const std::uint32_t to = 3u * robot.order[slot];
     const double mass = robot.point_masses ? static_cast<double>(robot.point_masses[slot]) : 1.0;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       const float value = from[axis * lanes];
-      if (per_mass) per_mass[to + axis] = value;
+      if (per_mass) to_all[to + axis] = value;
       sum[axis] += mass * static_cast<double>(value);
     }
+  }
+  if (stages) {
+    __syncthreads();
+    float* const out = per_mass + 3 * robot.first_mass;
+    for (std::uint32_t i = threadIdx.x; i < 3 * robot.masses; i += threads) out[i] = staged[i];
+    __syncthreads();
   }
   if (!mean) return;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -53,6 +66,8 @@ __device__ void publish_field(const RobotView& robot, Field first_field, float* 
 __global__ void __launch_bounds__(threads) publish_kernel(const RobotView* robots, PublishedArrays arrays) {
   const std::size_t i = blockIdx.x;
   const RobotView robot = robots[i];
+  for (std::uint32_t slot = threadIdx.x; slot < robot.masses; slot += threads) prefetch(robot.order + slot);
+  wait_for_kernel_before();
   const auto of_robot = [&](float* centers) { return centers ? centers + 3 * i : nullptr; };
   if (arrays.positions || arrays.centers) publish_field(robot, field_x, arrays.positions, of_robot(arrays.centers));
   if (arrays.velocities || arrays.center_velocities)
@@ -129,6 +144,8 @@ __global__ void rename_kernel(std::uint32_t* records, std::size_t records_per_ro
 
 __global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, ActuationSources sources, Clock clock,
                                bool before_step) {
+  wait_for_kernel_before();
+  let_next_kernel_start();
   const std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
   if (i >= count) return;
   const DrivenMaterial to = driven[i];
@@ -147,8 +164,7 @@ __global__ void actuate_kernel(const DrivenMaterial* driven, std::size_t count, 
 
 void publish_states(const RobotView* robots, std::size_t count, const PublishedArrays& arrays, cudaStream_t stream) {
   if (count == 0 || arrays.empty()) return;
-  publish_kernel<<<static_cast<unsigned>(count), threads, 0, stream>>>(robots, arrays);
-  check(cudaGetLastError(), "writing shared arrays");
+  start_early(publish_kernel, static_cast<unsigned>(count), threads, stream, robots, arrays);
 }
 
 void put_masked_at_rest(const RobotView* robots, std::size_t count, const float* start, const std::uint8_t* mask,
@@ -200,8 +216,7 @@ void rename_materials(std::uint32_t* records, std::size_t robots, std::size_t re
 
 void actuate(const DrivenMaterial* driven, std::size_t count, const ActuationSources& sources, const Clock& clock,
              bool before_step, cudaStream_t stream) {
-  actuate_kernel<<<blocks_for(count), many_threads, 0, stream>>>(driven, count, sources, clock, before_step);
-  check(cudaGetLastError(), "driving actuators");
+  start_early(actuate_kernel, blocks_for(count), many_threads, stream, driven, count, sources, clock, before_step);
 }
 
 }  // namespace mercury::cuda

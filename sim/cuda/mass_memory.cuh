@@ -33,6 +33,20 @@ class OnChip {
   __device__ static void raise(Address at, std::uint32_t offset, std::uint32_t value) {
     asm volatile("red.shared.max.u32 [%0], %1;" ::"r"(at + offset), "r"(value));
   }
+  // 16 bytes from device memory. They are there after wait_for_copies().
+  __device__ static void copy(Address at, const float* from) {
+#if __CUDA_ARCH__ >= 800
+    asm volatile("cp.async.cg.shared.global [%0], [%1], 16;" ::"r"(at), "l"(from) : "memory");
+#else
+    const float4 all = *reinterpret_cast<const float4*>(from);
+    asm volatile("st.shared.v4.f32 [%0], {%1, %2, %3, %4};" ::"r"(at), "f"(all.x), "f"(all.y), "f"(all.z), "f"(all.w));
+#endif
+  }
+  __device__ static void wait_for_copies() {
+#if __CUDA_ARCH__ >= 800
+    asm volatile("cp.async.wait_all;" ::: "memory");
+#endif
+  }
 };
 
 // For robots that are too large by this one field: the valences are read from device memory.
@@ -110,6 +124,10 @@ class OffChip {
   __device__ static void raise(Address at, std::uint32_t offset, std::uint32_t value) {
     atomicMax(reinterpret_cast<std::uint32_t*>(at + offset), value);
   }
+  __device__ static void copy(Address at, const float* from) {
+    *reinterpret_cast<float4*>(at) = *reinterpret_cast<const float4*>(from);
+  }
+  __device__ static void wait_for_copies() {}
 };
 
 // Two floats of shared memory in one instruction.

@@ -29,14 +29,21 @@ class MaterialTable {
   // Writes the parameters of the launch's first step.
   __device__ void fill(const StepArguments& arguments) {
     for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
-      const Material material = materials_[chunk * lanes + lane_];
+      const std::uint32_t id = chunk * lanes + lane_;
+      const Material material = materials_[id];
+      const MuscleSwing swing = swings_[id];
+      const MusclePhase phase = phases_[id];
       const double stiffness = static_cast<double>(arguments.stiffness_scale) * static_cast<double>(material.stiffness);
       float value = static_cast<float>(stiffness);
       if constexpr (solver == Solver::xpbd)
         value = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
       spread(chunk, coefficient, value);
+      // A muscle of frequency 0, as a brain drives it, keeps its length.
+      const std::uint32_t moving = __ballot_sync(0xffffffffu, swing.amplitude != 0 && phase.per_step != 0);
+      if (lane_ == 0) moving_[chunk] = moving;
+      spread_length_factors(arguments, chunk, swing, phase, 0);
     }
-    update(arguments, 0, 0xffffffffu);
+    __syncwarp();
   }
 
   // Writes the relaxation times of all materials.
@@ -57,17 +64,7 @@ class MaterialTable {
     for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
       if (!(which >> chunk & 1)) continue;
       const std::uint32_t id = chunk * lanes + lane_;
-      const MuscleSwing swing = swings_[id];
-      const MusclePhase phase = phases_[id];
-      // A muscle of frequency 0, as a brain drives it, keeps its length.
-      if (step == 0) {
-        const std::uint32_t moving = __ballot_sync(0xffffffffu, swing.amplitude != 0 && phase.per_step != 0);
-        if (lane_ == 0) moving_[chunk] = moving;
-        __syncwarp();
-      }
-      const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
-      const float sine = sine_of_phase(phase_at(phase, now));
-      spread(chunk, &Parameters::length_factor, length_factor(swing.amplitude, sine, swing.highest_sine));
+      spread_length_factors(arguments, chunk, swings_[id], phases_[id], step);
     }
   }
 
@@ -104,6 +101,13 @@ class MaterialTable {
     else
       return &Parameters::compliance;
   }();
+
+  __device__ void spread_length_factors(const StepArguments& arguments, std::uint32_t chunk, MuscleSwing swing,
+                                        MusclePhase phase, std::uint32_t step) {
+    const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
+    const float sine = sine_of_phase(phase_at(phase, now));
+    spread(chunk, &Parameters::length_factor, length_factor(swing.amplitude, sine, swing.highest_sine));
+  }
 
   // Writes each lane's value to all copies of its material. In a turn the warp writes 32 consecutive entries, which
   // belong to 32 / copies materials.

@@ -2,6 +2,7 @@
 #include "sim/cuda/step.h"
 
 #include "sim/cuda/device_limits.h"
+#include "sim/cuda/early_start.cuh"
 #include "sim/cuda/material_table.cuh"
 #include "sim/cuda/report.cuh"
 #include "sim/cuda/step.cuh"
@@ -90,8 +91,11 @@ __global__ void __maxnreg__(72)
   using EnvironmentModel = typename Part::EnvironmentModel;
   constexpr bool has_contacts = Part::Stepper::has_contacts;
   const LaunchConfiguration& launch = arguments.launch;
+  wait_for_kernel_before();
+  let_next_kernel_start();
   {
     Part part(arguments, model);
+    part.stepper.load_state();
     part.materials.fill(arguments);
     if constexpr (EnvironmentModel::real_bodies)
       if (launch.viscous) part.materials.fill_relaxation_times(part.context.relaxation_times);
@@ -106,7 +110,7 @@ __global__ void __maxnreg__(72)
         arguments.thoughts.thinkers[thread.robot] != Thoughts::none)
       load_brain<typename Part::Memory>(arguments, part.context.brain, part.context.number, thread.robot, thread.warp);
     part.stepper.load_lengths(part.context.lengths);
-    part.stepper.load_state();
+    Memory::wait_for_copies();
     if constexpr (has_contacts) part.stepper.begin_contacts();
     robot_barrier<Memory>();
   }
@@ -204,29 +208,35 @@ class Start {
     configuration_.blockDim = launch.robots_per_block * launch.warps_per_robot * lanes;
     configuration_.dynamicSmemBytes = launch.shared_bytes;
     configuration_.stream = stream;
-    cluster_.id = cudaLaunchAttributeClusterDimension;
-    cluster_.val.clusterDim = {launch.parts, 1, 1};
-    configuration_.attrs = &cluster_;
-    configuration_.numAttrs = launch.parts > 1 ? 1 : 0;
+    configuration_.attrs = attributes_;
+    if (launch.parts > 1) {
+      cudaLaunchAttribute& cluster = attributes_[configuration_.numAttrs++];
+      cluster.id = cudaLaunchAttributeClusterDimension;
+      cluster.val.clusterDim = {launch.parts, 1, 1};
+    }
   }
   Start(const Start&) = delete;
   Start& operator=(const Start&) = delete;
 
+  void early() {
+    if (kernels_can_start_early()) attributes_[configuration_.numAttrs++] = early_start();
+  }
   const cudaLaunchConfig_t& configuration() const { return configuration_; }
 
  private:
   cudaLaunchConfig_t configuration_{};
-  cudaLaunchAttribute cluster_{};
+  cudaLaunchAttribute attributes_[2]{};
 };
 
 template <Solver solver, class EnvironmentModel>
-void start(const EnvironmentModel& model, const StepArguments& arguments, cudaStream_t stream) {
+void start(const EnvironmentModel& model, const StepArguments& arguments, bool early, cudaStream_t stream) {
   const LaunchConfiguration& launch = arguments.launch;
   const auto kernel = kernel_for<solver, EnvironmentModel>(launch);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributePreferredSharedMemoryCarveout,
                              static_cast<int>(launch.shared_percent)),
         "dividing memory between blocks and cache");
-  const Start how(launch, arguments.batch.robot_count, stream);
+  Start how(launch, arguments.batch.robot_count, stream);
+  if (early) how.early();
   check(cudaLaunchKernelEx(&how.configuration(), kernel, arguments, model), "starting the step kernel");
 }
 
@@ -265,14 +275,15 @@ void prepare_steps(Solver solver, const StepModel& model, const LaunchConfigurat
   with_kernel(solver, model, launch, [&](auto kernel) { prepare(kernel, launch); });
 }
 
-void launch_steps(Solver solver, const StepModel& model, const StepArguments& arguments, cudaStream_t stream) {
+void launch_steps(Solver solver, const StepModel& model, const StepArguments& arguments, bool early,
+                  cudaStream_t stream) {
   std::visit(
       [&](const auto& kind) {
         using EnvironmentModel = std::decay_t<decltype(kind)>;
         if (solver == Solver::force)
-          start<Solver::force, EnvironmentModel>(kind, arguments, stream);
+          start<Solver::force, EnvironmentModel>(kind, arguments, early, stream);
         else
-          start<Solver::xpbd, EnvironmentModel>(kind, arguments, stream);
+          start<Solver::xpbd, EnvironmentModel>(kind, arguments, early, stream);
       },
       model);
 }

@@ -183,17 +183,15 @@ class RobotStepper {
   }
 
  private:
-  // Tiles whose states are on their way at the same time.
+  // Tiles of which anything else than the state is on its way at the same time.
   static constexpr std::uint32_t tiles_at_once = 4;
   __device__ void load_tiles(std::uint32_t first, std::uint32_t count) {
-    float values[tiles_at_once][state_fields], valences[tiles_at_once];
+    float valences[tiles_at_once];
     int sums[tiles_at_once];
 #pragma unroll
     for (std::uint32_t i = 0; i < tiles_at_once; ++i) {
       const std::uint32_t tile = min(first + i, first + count - 1);
-      const float* from = robot_.state(tile);
-#pragma unroll
-      for (std::uint32_t field = 0; field < state_fields; ++field) values[i][field] = from[field * lanes];
+      if (i < count) copy_state(tile);
       sums[i] = solver == Solver::force ? robot_.incoming_bias(tile) : 0;
       if constexpr (solver == Solver::xpbd && Memory::keeps_valence)
         valences[i] = robot_.load_valence(robot_.own_slot(tile));
@@ -202,11 +200,24 @@ class RobotStepper {
     for (std::uint32_t i = 0; i < tiles_at_once; ++i) {
       if (i >= count) break;
       const Mass<Memory> mass = robot_.own_mass(first + i);
-#pragma unroll
-      for (std::uint32_t field = 0; field < state_fields; ++field) mass.set_value(field, values[i][field]);
       mass.set_sum(sums[i]);
       if constexpr (solver == Solver::xpbd && Memory::keeps_valence) mass.set_value(field_valence, valences[i]);
     }
+  }
+
+  // A tile's fields of the state follow one another in both memories. Those of a part lie apart in device memory.
+  __device__ void copy_state(std::uint32_t tile) const {
+    if constexpr (Memory::in_parts) {
+      const float* const from = robot_.state(tile);
+      const Vec3 x{from[0], from[lanes], from[2 * lanes]}, v{from[3 * lanes], from[4 * lanes], from[5 * lanes]};
+      robot_.own_mass(tile).set_vector(field_x, x);
+      robot_.own_mass(tile).set_vector(field_v, v);
+      return;
+    }
+    const std::uint32_t lane = robot_.context().lane;
+    const auto to = robot_.own_mass(tile).at - 4 * lane;
+    const float* const from = robot_.state(tile) - lane;
+    for (std::uint32_t i = lane; i < state_fields * lanes / 4; i += lanes) Memory::copy(to + 16 * i, from + 4 * i);
   }
 
   __device__ bool faces_act() const {

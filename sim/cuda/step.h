@@ -81,7 +81,9 @@ std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const Laun
 // Makes the kernel for this launch ready, once per device.
 void prepare_steps(Solver solver, const StepModel& model, const LaunchConfiguration& launch);
 
-// Asynchronous. prepare_steps() comes first.
-void launch_steps(Solver solver, const StepModel& model, const StepArguments& arguments, cudaStream_t stream);
+// Asynchronous. prepare_steps() comes first. `early` = blocks may take their places on the device while the kernel
+// before in the stream still runs; they then keep them from other streams.
+void launch_steps(Solver solver, const StepModel& model, const StepArguments& arguments, bool early,
+                  cudaStream_t stream);
 
 }  // namespace mercury::cuda

@@ -164,7 +164,8 @@ class Thought {
     sense();
     wait();
 #pragma unroll 1
-    for (std::uint32_t layer = 0; layer < of_.layers; ++layer) update(plan_part<BrainPlan::Layer>(of_.at.layers)[layer]);
+    for (std::uint32_t layer = 0; layer < of_.layers; ++layer)
+      update(plan_part<BrainPlan::Layer>(of_.at.layers)[layer]);
     drive();
   }
 
