@@ -41,17 +41,19 @@ double cost_alone(const Body& body, bool faces) {
   const double cost = costs.body + costs.run * static_cast<double>(schedule.runs.size()) +
                       costs.gathered_row * static_cast<double>(schedule.partners.size() / lanes) +
                       per_tile * static_cast<double>(body.slots.tiles()) +
-                      (faces ? costs.face_tile * static_cast<double>(body.face_tiles.size() / (4 * lanes)) : 0.0);
+                      (faces ? costs.face_run * static_cast<double>(body.faces.runs.size()) +
+                                   costs.face_tile * static_cast<double>(body.faces.gathered_tiles(lanes))
+                             : 0.0);
   return factor_of_lanes(lanes) * cost;
 }
 
-// As if all springs were in full runs.
+// As if all springs and faces were in full runs.
 double least_cost_alone(const Body& body, bool faces) {
   const std::size_t lanes = body.slots.lanes;
   const auto rows = [&](std::size_t items) { return static_cast<double>((items + lanes - 1) / lanes); };
   const double cost = costs.body + costs.run * rows(body.robot->springs.size()) +
                       (faces ? costs.tile_with_faces : costs.tile) * static_cast<double>(body.slots.tiles()) +
-                      (faces ? costs.face_tile * rows(body.face_pairs.size()) : 0.0);
+                      (faces ? costs.face_run * rows(body.face_pairs.size()) : 0.0);
   return factor_of_lanes(lanes) * cost;
 }
 
@@ -61,8 +63,8 @@ std::size_t footprint(const Topology& topology, std::size_t lanes) {
 
 std::size_t footprint(const Body& body) {
   return body.springs.rest_length.size() * (2 * sizeof(float) + sizeof(FactorId)) +
-         body.springs.partners.size() * sizeof(std::uint32_t) + body.face_tiles.size() * sizeof(std::uint32_t) +
-         body.slots.size_with_spare() * 32 * sizeof(float);
+         body.springs.partners.size() * sizeof(std::uint32_t) + body.faces.runs.size() * sizeof(FaceSchedule::Run) +
+         body.faces.tiles.size() * sizeof(std::uint32_t) + body.slots.size_with_spare() * 32 * sizeof(float);
 }
 
 bool fits_in_cache(const Topology& topology, std::size_t lanes) {

@@ -27,7 +27,8 @@ struct CostModel {
   double tile = 4.5;               // moving one tile of masses
   double tile_with_springs = 5.0;  // the same if gathered rows need x_aos
   double tile_with_faces = 5.5;    // the same if faces need x_aos and v_aos
-  double face_tile = 8.5;          // one face pair per lane
+  double face_run = 2.5;           // one face pair per lane, whose corners stand side by side
+  double face_tile = 8.5;          // the same with corners anywhere
 
   // The costs of a robot alone, times this.  [1]
   double few_lanes = 0.95;   // with fewer than 8 lanes

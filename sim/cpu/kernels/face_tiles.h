@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The water's forces on the faces of a body, one tile of face pairs after the other.
+// The water's forces on the faces of a body, one run or tile of face pairs after the other
+// (FaceSchedule).
 #pragma once
 
 #include "sim/cpu/kernels/body_arrays.h"
@@ -11,7 +12,8 @@ namespace mercury::cpu::HWY_NAMESPACE {
 // A third of the forces on the two faces (a, b, c) and (a, c, d) of each pair, in units.
 struct FaceForces {
   Lanes3 first, second;
-  Lanes fastest_squared;  // the larger of the squared sums of velocities of either face
+  Lanes fastest_squared;  // the larger of the squared sums of velocities of
+                          // either face
 
   // The same with the offsets of fixed_point.h.
   HWY_INLINE FaceForces dithered(Words offset, Lanes factor) const {
@@ -36,75 +38,136 @@ HWY_INLINE FaceForces face_forces(FaceCoefficients<Lanes> coefficients, Lanes3 t
           larger(first_squared, second_squared)};
 }
 
+// Lanes of a run of faces that have a pair.
+HWY_INLINE Mask mask_of(std::uint32_t lanes) {
+  std::uint8_t bytes[8] = {static_cast<std::uint8_t>(lanes), static_cast<std::uint8_t>(lanes >> 8)};
+  return {hn::LoadMaskBits(floats, bytes)};
+}
+HWY_INLINE Integers3 only(Mask lanes, Integers3 a) {
+  const auto in = hn::RebindMask(integers, lanes.m);
+  return {{hn::IfThenElseZero(in, a.x.v)}, {hn::IfThenElseZero(in, a.y.v)}, {hn::IfThenElseZero(in, a.z.v)}};
+}
+
 template <class EnvironmentModel>
 class FaceTiles {
  public:
   // `dither` is dither_of_step().
   FaceTiles(Body& body, const EnvironmentModel& model, std::uint32_t dither)
-      : arrays_(body), dither_of_pairs_(body.face_dither.data()), dither_(dither), dither_factor_(model.dither()),
-        tiles_(body.face_tiles.data()), end_(tiles_ + body.face_tiles.size()),
+      : arrays_(body), faces_(body.faces), dither_(dither), dither_factor_(model.dither()),
         coefficients_(model.of_sums(body.scale.environment)),
-        bound_per_squared_speed_(coefficients_.bound() * body.squared_diagonal),
-        thrice_flow_(broadcast_aos(model.thrice_flow)) {}
+        bound_per_squared_speed_(coefficients_.bound() * body.squared_diagonal), thrice_flow_(model.thrice_flow),
+        thrice_flow_aos_(broadcast_aos(model.thrice_flow)) {}
 
   // Adds a third of each face's force to each of its masses. Returns false if a force is out of range. The forces are
   // searched for that only if a bound, from the size of the body and its fastest face, does not exclude it.
   bool add_forces() const {
     Lanes fastest_squared = 0.0f;
-    for (const std::uint32_t* tile = tiles_; tile != end_; tile += 4 * lane_count) {
-      FaceForces f = forces(tile);
-      if constexpr (EnvironmentModel::real_bodies)
-        f = f.dithered(load_aligned(dither_of_pairs_ + (tile - tiles_) / 4) + Words(dither_), dither_factor_);
+    const std::size_t stride = arrays_.reaction_stride;
+    for_each_run([&](const FaceSchedule::Run& run, Mask lanes, const FaceForces& f) HWY_ATTR {
+      fastest_squared = larger(fastest_squared, select(lanes, f.fastest_squared, 0.0f));
+      const Integers3 on_b = only(lanes, round_to_int(f.first)), on_d = only(lanes, round_to_int(f.second)),
+                      on_both = on_b + on_d;
+      static_assert(reaction_arrays >= 3);
+      const auto& [a, b, c, d] = run.corners;
+      add(on_both, arrays_.reaction, a);
+      add(on_b, arrays_.reaction, stride + b);
+      add(on_both, arrays_.reaction, 2 * stride + c);
+      add(on_d, arrays_.reaction, d);
+    });
+    for_each_tile([&](const std::uint32_t* tile, const FaceForces& f) HWY_ATTR {
       fastest_squared = larger(fastest_squared, f.fastest_squared);
       const Integers3 on_b = round_to_int(f.first), on_d = round_to_int(f.second), on_both = on_b + on_d;
       scatter_add(on_both, arrays_.scattered, tile);
       scatter_add(on_b, arrays_.scattered, tile + lane_count);
       scatter_add(on_both, arrays_.scattered, tile + 2 * lane_count);
       scatter_add(on_d, arrays_.scattered, tile + 3 * lane_count);
-    }
+    });
     return every(fastest_squared * bound_per_squared_speed_ < 0.5f * face_limit_units) || forces_fit();
   }
 
   // Calls visit(slot) for the corners of all face pairs with a force out of range.
   template <class Visit>
   void for_each_bad_corner(const Visit& visit) const {
-    for (const std::uint32_t* tile = tiles_; tile != end_; tile += 4 * lane_count) {
-      const FaceForces f = forces(tile);
-      const std::uint32_t good = bits_of(fits(f.first) & fits(f.second));
+    for_each_run([&](const FaceSchedule::Run& run, Mask, const FaceForces& f) {
+      const std::uint32_t bad = run.lanes & ~good_lanes(f);
+      for (std::uint32_t lane = 0; lane < lane_count; ++lane)
+        for (std::size_t k = 0; k < 4 && (bad >> lane & 1) != 0; ++k) visit(run.corners[k] + lane);
+    });
+    for_each_tile([&](const std::uint32_t* tile, const FaceForces& f) {
+      const std::uint32_t good = good_lanes(f);
       for (std::size_t lane = 0; lane < lane_count; ++lane)
         for (std::size_t k = 0; k < 4 && (good >> lane & 1) == 0; ++k) visit(tile[k * lane_count + lane] / 4);
-    }
+    });
   }
 
  private:
-  HWY_INLINE FaceForces forces(const std::uint32_t* tile) const {
-    const std::uint32_t *const a = tile, *const b = a + lane_count, *const c = b + lane_count,
-                               *const d = c + lane_count;
-    const Aos xa = x(a);
-    Aos common = v(a) + v(c);
-    if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow_;
-    return face_forces<EnvironmentModel>(
-        FaceCoefficients<Lanes>{coefficients_.drag, coefficients_.lift, coefficients_.tangential, coefficients_.normal},
-        components(x(b) - xa), components(x(c) - xa), components(x(d) - xa), components(common + v(b)),
-        components(common + v(d)));
+  static std::uint32_t good_lanes(const FaceForces& f) { return bits_of(fits(f.first) & fits(f.second)); }
+
+  // Calls visit(run, lanes, FaceForces) for all runs. Forces in other lanes mean nothing.
+  template <class Visit>
+  HWY_INLINE void for_each_run(const Visit& visit) const {
+    const Lanes3 thrice_flow{thrice_flow_.x, thrice_flow_.y, thrice_flow_.z};
+    const std::uint32_t* dither = faces_.dither.data();
+    for (const FaceSchedule::Run& run : faces_.runs) {
+      const auto& [a, b, c, d] = run.corners;
+      const Lanes3 xa = load(arrays_.x, a);
+      Lanes3 common = load(arrays_.v, a) + load(arrays_.v, c);
+      if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow;
+      visit(run, mask_of(run.lanes),
+            dithered(face_forces<EnvironmentModel>(coefficients(), load(arrays_.x, b) - xa, load(arrays_.x, c) - xa,
+                                                   load(arrays_.x, d) - xa, common + load(arrays_.v, b),
+                                                   common + load(arrays_.v, d)),
+                     dither));
+      dither += lane_count;
+    }
+  }
+  // Calls visit(corners, FaceForces) for all tiles of gathered faces.
+  template <class Visit>
+  HWY_INLINE void for_each_tile(const Visit& visit) const {
+    const std::uint32_t* dither = faces_.dither.data() + faces_.runs.size() * lane_count;
+    const std::uint32_t* const end = faces_.tiles.data() + faces_.tiles.size();
+    for (const std::uint32_t* tile = faces_.tiles.data(); tile != end; tile += 4 * lane_count) {
+      const std::uint32_t *const a = tile, *const b = a + lane_count, *const c = b + lane_count,
+                                 *const d = c + lane_count;
+      const Aos xa = x(a);
+      Aos common = v(a) + v(c);
+      if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow_aos_;
+      visit(tile, dithered(face_forces<EnvironmentModel>(coefficients(), components(x(b) - xa), components(x(c) - xa),
+                                                         components(x(d) - xa), components(common + v(b)),
+                                                         components(common + v(d))),
+                           dither));
+      dither += lane_count;
+    }
+  }
+  HWY_INLINE FaceForces dithered(const FaceForces& forces, const std::uint32_t* of_pairs) const {
+    if constexpr (EnvironmentModel::real_bodies)
+      return forces.dithered(load_aligned(of_pairs) + Words(dither_), dither_factor_);
+    return forces;
+  }
+  HWY_INLINE FaceCoefficients<Lanes> coefficients() const {
+    return {coefficients_.drag, coefficients_.lift, coefficients_.tangential, coefficients_.normal};
   }
   HWY_NOINLINE bool forces_fit() const {
     Integers largest_force = zeros();
-    for (const std::uint32_t* tile = tiles_; tile != end_; tile += 4 * lane_count)
-      largest_force = larger(largest_force, forces(tile).largest_component());
+    for_each_run([&](const FaceSchedule::Run&, Mask lanes, const FaceForces& f) HWY_ATTR {
+      const Integers largest_of_run = f.largest_component();
+      largest_force = larger(largest_force, {hn::IfThenElseZero(hn::RebindMask(integers, lanes.m), largest_of_run.v)});
+    });
+    for_each_tile([&](const std::uint32_t*, const FaceForces& f)
+                      HWY_ATTR { largest_force = larger(largest_force, f.largest_component()); });
     return largest(largest_force) < mercury::bits_of(face_limit_units);
   }
   HWY_INLINE Aos x(const std::uint32_t* corner) const { return gather(arrays_.x_aos, corner); }
   HWY_INLINE Aos v(const std::uint32_t* corner) const { return gather(arrays_.v_aos, corner); }
 
   const BodyArrays arrays_;
-  const std::uint32_t* const dither_of_pairs_;
+  const FaceSchedule& faces_;
   const std::uint32_t dither_;
   const float dither_factor_;
-  const std::uint32_t *const tiles_, *const end_;  // tile_faces()
   const FaceCoefficients<float> coefficients_;
   const float bound_per_squared_speed_;
-  const Aos thrice_flow_;
+  const Vec3 thrice_flow_;
+  const Aos thrice_flow_aos_;
 };
 
 }  // namespace mercury::cpu::HWY_NAMESPACE

@@ -3,8 +3,9 @@
 //
 // Every row of springs does it, so it is made in the way that is fastest here:
 //
-//   AVX-512, up to 256 factors   the table is in registers of 16, and one instruction picks from two of them by the
-//                                lower five bits of a number; the higher bits choose among the results
+//   AVX-512, up to 256 factors   the table is in registers of 16 numbers, of which the first 8 are loaded once per
+//                                step; one instruction picks from two of them by the lower five bits of an index, and
+//                                the higher bits choose among the results
 //   gather                       one instruction, on most processors as many loads as lanes
 //   one by one                   a load per lane, where gathers are slower still (AMD; Intel with a protection
 //                                against Downfall)
@@ -20,28 +21,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace mercury::cpu::HWY_NAMESPACE {
-
-#if HWY_TARGET == HWY_AVX3
-// table[index] for at most 256 numbers.
-HWY_INLINE __m512 look_up_in_registers(const float* table, std::size_t count, __m512i index) {
-  const auto among_32 = [&](std::size_t first) HWY_ATTR {
-    return _mm512_permutex2var_ps(_mm512_load_ps(table + first), index, _mm512_load_ps(table + first + 16));
-  };
-  const auto has_bit = [&](int bit) HWY_ATTR { return _mm512_test_epi32_mask(index, _mm512_set1_epi32(bit)); };
-  __m512 result = among_32(0);
-  if (count <= 32) return result;
-  const __mmask16 odd = has_bit(32);
-  result = _mm512_mask_mov_ps(result, odd, among_32(32));
-  if (count <= 64) return result;
-  const __mmask16 upper = has_bit(64);
-  if (count <= 96) return _mm512_mask_mov_ps(result, upper, among_32(64));
-  result = _mm512_mask_mov_ps(result, upper, _mm512_mask_mov_ps(among_32(64), odd, among_32(96)));
-  if (count <= 128) return result;
-  const __m512 third = _mm512_mask_mov_ps(among_32(128), odd, among_32(160));
-  const __m512 fourth = _mm512_mask_mov_ps(among_32(192), odd, among_32(224));
-  return _mm512_mask_mov_ps(result, has_bit(128), _mm512_mask_mov_ps(third, upper, fourth));
-}
-#endif
 
 // table[id] by lane.
 HWY_INLINE Lanes look_up_one_by_one(const float* table, const FactorId* ids) {
@@ -77,17 +56,56 @@ HWY_INLINE Lanes look_up_gathering(const float* table, const FactorId* ids, Mask
 #endif
 }
 
-// The factors of these springs, where the mask is set; elsewhere 0 or any factor.
-HWY_INLINE Lanes look_up(StepFactors factors, const FactorId* ids, Mask wanted) {
+class FactorTable {
+ public:
+  HWY_INLINE explicit FactorTable(StepFactors factors) : factors_(factors) {
 #if HWY_TARGET == HWY_AVX3
-  if (factors.count <= Factors::readable) {
-    const auto index = hn::PromoteTo(integers, hn::LoadU(hn::Rebind<FactorId, decltype(integers)>(), ids));
-    return hn::Vec<decltype(floats)>{look_up_in_registers(factors.first, factors.count, index.raw)};
+    for (std::size_t i = 0; i < in_registers; ++i) registers_[i] = _mm512_load_ps(factors.first + 16 * i);
+#endif
+  }
+
+  // The factors of these springs, where the mask is set; elsewhere 0 or any factor.
+  HWY_INLINE Lanes look_up(const FactorId* ids, Mask wanted) const {
+#if HWY_TARGET == HWY_AVX3
+    const __m512i index = hn::PromoteTo(integers, hn::LoadU(hn::Rebind<FactorId, decltype(integers)>(), ids)).raw;
+    if (HWY_LIKELY(factors_.count <= 16 * in_registers)) return hn::Vec<decltype(floats)>{among_first(index)};
+    if (factors_.count <= Factors::readable) return hn::Vec<decltype(floats)>{among_all(index)};
+#endif
+    if (factors_.one_by_one) return look_up_one_by_one(factors_.first, ids);
+    return look_up_gathering(factors_.first, ids, wanted);
+  }
+
+ private:
+  StepFactors factors_;
+#if HWY_TARGET == HWY_AVX3
+  static constexpr std::size_t in_registers = 8;  // more do not stay there
+  __m512 registers_[in_registers];
+
+  static HWY_INLINE __mmask16 has_bit(__m512i index, int bit) {
+    return _mm512_test_epi32_mask(index, _mm512_set1_epi32(bit));
+  }
+  // The result for an index whose bit is not set, or the other.
+  static HWY_INLINE __m512 choose(__mmask16 bit, __m512 no, __m512 yes) { return _mm512_mask_mov_ps(no, bit, yes); }
+
+  HWY_INLINE __m512 among_first(__m512i index) const {
+    const __mmask16 odd = has_bit(index, 32);
+    const auto among_32 = [&](std::size_t i)
+                              HWY_ATTR { return _mm512_permutex2var_ps(registers_[i], index, registers_[i + 1]); };
+    const __m512 lower = choose(odd, among_32(0), among_32(2));
+    return choose(has_bit(index, 64), lower, choose(odd, among_32(4), among_32(6)));
+  }
+  HWY_INLINE __m512 among_all(__m512i index) const {
+    const float* const upper = factors_.first + 16 * in_registers;
+    const __mmask16 odd = has_bit(index, 32);
+    const auto among_32 = [&](std::size_t i) HWY_ATTR {
+      return _mm512_permutex2var_ps(_mm512_load_ps(upper + 16 * i), index, _mm512_load_ps(upper + 16 * i + 16));
+    };
+    const __m512 lower = choose(odd, among_32(0), among_32(2));
+    return choose(has_bit(index, 128), among_first(index),
+                  choose(has_bit(index, 64), lower, choose(odd, among_32(4), among_32(6))));
   }
 #endif
-  if (factors.one_by_one) return look_up_one_by_one(factors.first, ids);
-  return look_up_gathering(factors.first, ids, wanted);
-}
+};
 
 // Measures it in less than 0.1 ms.
 inline bool one_by_one_is_faster() {

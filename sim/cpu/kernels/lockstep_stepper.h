@@ -231,7 +231,7 @@ class LockstepStepper {
   // stretch limit.
   template <bool checked, bool viscous, class Finish>
   bool add_springs(StepFactors factors, const Finish& finish) {
-    SpringRow<checked, viscous> next_row{factors,
+    SpringRow<checked, viscous> next_row{FactorTable(factors),
                                          group_.rest_length.data(),
                                          group_.stiffness.data(),
                                          group_.relaxation_time.data(),

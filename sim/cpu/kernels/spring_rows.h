@@ -12,7 +12,7 @@ namespace mercury::cpu::HWY_NAMESPACE {
 // xpbd_stiffness().
 template <bool checked, bool viscous>
 struct SpringRow {
-  StepFactors factors;
+  FactorTable factors;
   const float* rest_length;
   const float* stiffness;
   const float* relaxation_time;  // if `viscous`
@@ -29,7 +29,7 @@ struct SpringRow {
     const Lanes rest = load_aligned(rest_length);
     const Mask is_spring = rest > 0.0f;
     if constexpr (checked) longest_squared = select((squared > longest_squared) & is_spring, squared, longest_squared);
-    Lanes length = rest * look_up(factors, factor, is_spring);
+    Lanes length = rest * factors.look_up(factor, is_spring);
     if constexpr (viscous) {
       const Lanes length_rate = mercury::length_rate(squared, inner(d, rate()), highest_rate);
       length = viscous_length(length, load_aligned(relaxation_time), length_rate);
@@ -55,7 +55,7 @@ bool add_springs(Body& body, StepFactors factors, const Finish& finish) {
   constexpr bool finish_early = !checked && !gathered_springs;
   const BodyArrays arrays(body);
   const SpringSchedule& schedule = body.springs;
-  SpringRow<checked, viscous> next_row{factors,
+  SpringRow<checked, viscous> next_row{FactorTable(factors),
                                        schedule.rest_length.data(),
                                        schedule.stiffness.data(),
                                        schedule.relaxation_time.data(),

@@ -53,9 +53,7 @@ void prepare_to_step_alone(Body& body) {
   if (body.steps_alone) return;
   body.steps_alone = true;
   body.springs = schedule_springs(*body.robot, body.slots);
-  body.face_tiles = tile_faces(body.face_pairs, body.slots);
-  body.face_dither.resize(body.face_tiles.size() / 4);
-  for (std::uint32_t pair = 0; pair < body.face_dither.size(); ++pair) body.face_dither[pair] = dither_of_pair(pair);
+  body.faces = schedule_faces(body.face_pairs, body.slots);
   const std::size_t size = body.slots.size_with_spare();
   body.inverse_inertia.assign(size, 0);
   body.weight.assign(size, 0);

@@ -5,12 +5,14 @@
 // Fixed-point sums. What acts on a mass is summed as 32-bit integers (sim/physics/fixed_point.h), so that a sum does
 // not depend on the order of its terms. A slot has four sums, each filled by another part of the step:
 //
-//   own         springs that the mass owns                                              stored once per step
-//   reaction    runs in which it is the partner, perturbations, contacts                reaction_arrays arrays
-//   scattered   gathered rows in which it is the partner, faces                         x, y, z, unused: 16 bytes a
-//   slot taken       reaction + scattered when they were last read
+//   own         springs that the mass owns                     stored once per step
+//   reaction    runs in which it is the partner or a corner,   reaction_arrays arrays
+//               perturbations, contacts
+//   scattered   gathered rows in which it is the partner,      x, y, z, unused: 16 bytes per slot
+//               gathered faces
+//   taken       reaction + scattered when they were last read
 //
-//   force = own + reaction[0] + reaction[1] + scattered - taken + bias
+//   force = own + reaction[0] + reaction[1] + ... + scattered - taken + bias
 //
 // 1. Nothing is set to zero. `reaction` and `scattered` only grow, and wrap around; the difference to `taken` is what
 //    this step has added.
@@ -104,8 +106,7 @@ struct Body {
   // What only bodies need that are stepped alone: from prepare_to_step_alone() on.
   bool steps_alone = false;
   SpringSchedule springs;
-  std::vector<std::uint32_t> face_tiles;   // tile_faces()
-  Aligned<std::uint32_t> face_dither;      // dither_of_pair(), [face tile][lane]
+  FaceSchedule faces;
   Aligned<float> inverse_inertia, weight;  // PointProperties by slot; 0 in padding
   Aligned<float> x_aos, v_aos;             // [slot][x, y, z, unused]
   Sums sums;

@@ -212,17 +212,79 @@ class Scheduler {
   SpringSchedule schedule_;
 };
 
+struct FaceRunPairs {
+  std::array<std::uint32_t, 4> first{};  // slots of the corners of the first pair
+  std::vector<std::uint32_t> pairs;      // by number; each in the lane that its corner a has from there
+  std::size_t before = 0;                // runs of the same side
+};
+
+// Pairs whose corners b, c and d are equally far from a are of one side, and can be in one run. A run with fewer pairs
+// than the limit costs more than to gather them. `others`: all pairs that are in no run, ascending.
+std::vector<FaceRunPairs> face_runs(std::span<const FacePair> pairs, const Slots& slots,
+                                    std::vector<std::uint32_t>& others) {
+  const std::size_t min_pairs = (3 * slots.lanes + 7) / 8;
+  const auto corners_of = [&](const FacePair& pair) {
+    return std::array{slots.of_mass[pair.a], slots.of_mass[pair.b], slots.of_mass[pair.c], slots.of_mass[pair.d]};
+  };
+  using Side = std::array<std::uint32_t, 3>;                         // distances of b, c and d from a, modulo 2^32
+  std::vector<std::tuple<Side, std::uint32_t, std::uint32_t>> keys;  // corner a, number
+  keys.reserve(pairs.size());
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+    const auto [a, b, c, d] = corners_of(pairs[i]);
+    keys.emplace_back(Side{b - a, c - a, d - a}, a, i);
+  }
+  std::ranges::sort(keys);
+  std::vector<FaceRunPairs> runs;
+  std::size_t of_side = 0;
+  for (auto key = keys.begin(); key != keys.end();) {
+    const auto [side, first, number] = *key;
+    if (key != keys.begin() && std::get<0>(*(key - 1)) != side) of_side = 0;
+    FaceRunPairs run{.first = corners_of(pairs[number]), .pairs = {}, .before = of_side};
+    std::uint32_t lanes = 0;
+    for (; key != keys.end() && std::get<0>(*key) == side && std::get<1>(*key) < first + slots.lanes; ++key) {
+      const std::uint32_t lane = 1u << (std::get<1>(*key) - first);
+      ((lanes & lane) != 0 ? others : run.pairs).push_back(std::get<2>(*key));
+      lanes |= lane;
+    }
+    if (run.pairs.size() >= min_pairs) {
+      runs.push_back(std::move(run));
+      ++of_side;
+    } else {
+      others.insert(others.end(), run.pairs.begin(), run.pairs.end());
+    }
+  }
+  std::ranges::sort(others);
+  // Runs of one side add to sums that overlap, so sides take turns: a load then waits for no store (spring_schedule.h).
+  std::ranges::stable_sort(runs, {}, &FaceRunPairs::before);
+  return runs;
+}
+
 }  // namespace
 
 SpringSchedule schedule_springs(const Robot& robot, const Slots& slots) { return Scheduler(robot, slots).take(); }
 
-std::vector<std::uint32_t> tile_faces(std::span<const FacePair> pairs, const Slots& slots) {
-  std::vector<std::uint32_t> corners;
-  for (std::size_t first = 0; first < pairs.size(); first += slots.lanes)
+FaceSchedule schedule_faces(std::span<const FacePair> pairs, const Slots& slots) {
+  FaceSchedule schedule;
+  std::vector<std::uint32_t> gathered;
+  for (const auto& [first, numbers, before] : face_runs(pairs, slots, gathered)) {
+    FaceSchedule::Run run{.corners = first};
+    const std::size_t entries = schedule.dither.size();
+    schedule.dither.resize(entries + slots.lanes);
+    for (const std::uint32_t pair : numbers) {
+      const std::uint32_t lane = slots.of_mass[pairs[pair].a] - first[0];
+      run.lanes |= 1u << lane;
+      schedule.dither[entries + lane] = dither_of_pair(pair);
+    }
+    schedule.runs.push_back(run);
+  }
+  for (std::size_t first = 0; first < gathered.size(); first += slots.lanes) {
     for (const auto corner : {&FacePair::a, &FacePair::b, &FacePair::c, &FacePair::d})
-      for (std::size_t p = first; p < first + slots.lanes; ++p)
-        corners.push_back(4 * slots.of_mass[p < pairs.size() ? pairs[p].*corner : 0]);
-  return corners;
+      for (std::size_t i = first; i < first + slots.lanes; ++i)
+        schedule.tiles.push_back(4 * slots.of_mass[i < gathered.size() ? pairs[gathered[i]].*corner : 0]);
+    for (std::size_t i = first; i < first + slots.lanes; ++i)
+      schedule.dither.push_back(i < gathered.size() ? dither_of_pair(gathered[i]) : 0);
+  }
+  return schedule;
 }
 
 }  // namespace mercury::cpu

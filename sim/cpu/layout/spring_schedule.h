@@ -21,6 +21,7 @@
 //    arrays, such that what they add to overlaps with none of the latest runs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -63,8 +64,21 @@ struct SpringSchedule {
 
 SpringSchedule schedule_springs(const Robot& robot, const Slots& slots);
 
-// Face tiles: as many face pairs as there are lanes. [face tile][corner a, b, c, d][lane]: four times the corner's
-// slot. The last tile is filled up with pairs that have no area.
-std::vector<std::uint32_t> tile_faces(std::span<const FacePair> pairs, const Slots& slots);
+// The order in which the CPU evaluates a robot's pairs of faces. As with springs there are runs, of pairs whose corners
+// stand side by side, as along most sides of a lattice, and tiles of all other pairs, whose corners are gathered.
+struct FaceSchedule {
+  struct Run {
+    std::array<std::uint32_t, 4> corners{};  // slots of corners a, b, c, d of the first lane's pair
+    std::uint32_t lanes = 0;                 // those that have a pair, one bit each
+  };
+  std::vector<Run> runs;
+  // As many face pairs as there are lanes. [face tile][corner a, b, c, d][lane]: four times the corner's slot. The last
+  // tile is filled up with pairs that have no area.
+  std::vector<std::uint32_t> tiles;
+  Aligned<std::uint32_t> dither;  // dither_of_pair(), [run, then face tile][lane]
+
+  std::size_t gathered_tiles(std::size_t lanes) const { return tiles.size() / (4 * lanes); }
+};
+FaceSchedule schedule_faces(std::span<const FacePair> pairs, const Slots& slots);
 
 }  // namespace mercury::cpu
