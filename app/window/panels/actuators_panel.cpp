@@ -121,11 +121,7 @@ void ActuatorsPanel::draw_actuator(PanelContext& context, const LiveRobot& robot
       material < body_.colors.size() ? body_.colors[material] : palette().faint, 0.15f * text);
   ImGui::Indent(1.1f * text);
   const char* source = body_.neurons[index] ? "its brain" : "its sine";
-  // A long name has a line of its own above the slider.
-  const std::string name = label_of(actuator.name);
-  const bool is_long = ImGui::CalcTextSize(name.c_str()).x > row_name_width(held);
-  if (is_long) ImGui::TextUnformatted(shortened(name, ImGui::GetContentRegionAvail().x, true).c_str());
-  const bool released = row_with_reset(is_long ? "" : name.c_str(),
+  const bool released = row_with_reset(label_of(actuator.name).c_str(),
                                        fmt::format("{}: {}", actuator.name, held ? "driven by hand" : source).c_str(),
                                        held, fmt::format("release: {} drives it again", source).c_str());
   const std::string reset = fmt::format("actuator.{}.release", index);

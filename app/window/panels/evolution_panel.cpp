@@ -314,7 +314,7 @@ void EvolutionPanel::draw_champions(PanelContext& context, const RunView& view) 
     ImGui::TableSetupColumn(
         objectives == 1 ? "score" : objective_label(view.settings.objectives[i]).c_str(),
         ImGuiTableColumnFlags_PreferSortDescending | (i == 0 ? ImGuiTableColumnFlags_DefaultSort : 0));
-  ImGui::TableSetupColumn("generation", ImGuiTableColumnFlags_PreferSortDescending);
+  ImGui::TableSetupColumn("since", ImGuiTableColumnFlags_PreferSortDescending);
   for (const Quantity& quantity : quantities())
     ImGui::TableSetupColumn(
         title_of(quantity).c_str(),
@@ -326,6 +326,7 @@ void EvolutionPanel::draw_champions(PanelContext& context, const RunView& view) 
     ImGui::PushID(column);
     ImGui::TableHeader(ImGui::TableGetColumnName(column));
     context.log.item(std::string("champions.by.") + ImGui::TableGetColumnName(column));
+    if (column == 1 + static_cast<int>(objectives)) tooltip("the first generation whose best it was");
     ImGui::PopID();
   }
   read_sort_order();

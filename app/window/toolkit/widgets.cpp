@@ -154,16 +154,17 @@ void hide_tooltip() {
   window->HiddenFramesCanSkipItems = 1;
 }
 
-float row_name_width(bool differs) {
-  const float names = name_share * ImGui::GetContentRegionAvail().x;
-  return differs ? names - 0.75f * ImGui::GetFrameHeight() - 0.3f * ImGui::GetFontSize() : names;
-}
-
 bool row_with_reset(const char* name, const char* text, bool differs, const char* reset_text) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x, names = name_share * width;
   const float side = 0.75f * ImGui::GetFrameHeight();
+  const float room = differs ? names - side - 0.3f * ImGui::GetFontSize() : names;
+  const bool is_long = ImGui::CalcTextSize(name).x > names;  // whether or not there is a button, so that rows stay
+  if (is_long) {
+    ImGui::TextUnformatted(shortened(name, width, true).c_str());
+    tooltip(text);
+  }
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(shortened(name, row_name_width(differs)).c_str());
+  ImGui::TextUnformatted(is_long ? "" : shortened(name, room).c_str());
   tooltip(text);
   bool clicked = false;
   if (differs) {

@@ -18,15 +18,12 @@ namespace mercury::window {
 // A heading with a line below and some space above.
 void heading(const char* text);
 
-// Starts a row: draws the name on the left and makes the next item as wide as the rest of the row. `help` is the
-// tooltip of the name.
+// Starts a row: draws the name on the left, or in a line of its own if it is long, and makes the next item as wide as
+// the rest of the row. `help` is the tooltip of the name.
 void row(const char* name, const char* help = nullptr);
 
 // Like row(), with a reset button beside the name if `differs`. Returns true when that button was clicked.
 bool row_with_reset(const char* name, const char* help, bool differs, const char* reset_help = "reset to the default");
-
-// The width that row_with_reset() has for a name, with or without its button [pixels].
-float row_name_width(bool differs);
 
 // True when the pointer has rested for a while on the item that was just drawn. Call only if that item is hovered.
 bool pointer_rests();
