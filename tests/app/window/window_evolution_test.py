@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of an evolution in the real window: window_evolution_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
 import csv
+import json
 import re
 import shutil
 import subprocess
@@ -59,6 +60,25 @@ class EvolutionTest(WindowCase):
         since = window.mark()
         window.key("ctrl+z", "ctrl+z")
         window.wait("robots", since, lambda event: event["count"] == count)
+        self.finish(window)
+
+    def test_a_click_on_the_map_brings_an_elite(self):
+        window, folder = self.open_run("--algorithm", "map-elites", "--axis", "masses:12:36:2", "--axis", "muscle_share:0:1:2")
+        window.wait("robots")
+        window.key("ctrl+a", "Delete")
+        window.frame(lambda frame: not frame["where"])
+        x, y = window.place("evolution.map")
+        grid = window.items["evolution.map"]
+        since = window.mark()
+        for right, up in ((1, 1), (-1, 1), (1, -1), (-1, -1)):  # not every cell has an elite
+            window.do("mousemove", round(x + right * grid["width"] / 4), round(y - up * grid["height"] / 4))
+            window.frame()
+            window.do("click", 1)
+            window.frame()
+            window.frame()
+        names = window.wait("robots", since)["names"]
+        best = {json.loads(file.read_text())["name"] for file in (folder / "best").iterdir()}
+        self.assertLessEqual(set(names), best, "they are in the map at the end of the run")
         self.finish(window)
 
     def test_champions_ancestors_and_the_ranking_have_pictures_of_robots(self):
