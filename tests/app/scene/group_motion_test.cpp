@@ -127,7 +127,8 @@ TEST_P(Explosions, CamerasLeaveOutARobotThatHasExploded) {
   EXPECT_FALSE(scene_.scene().texts.empty()) << "but its name is there";
   scene_.mark(1, true, false);
   scene_.update(2, telemetry_, {});
-  EXPECT_FALSE(scene_.scene().placements[1].hidden) << "whoever selects it sees it";
+  EXPECT_TRUE(scene_.scene().placements[1].hidden) << "also when it is selected: it would fill the view";
+  EXPECT_FALSE(scene_.scene().texts.empty());
 }
 
 TEST_P(Explosions, IfAllHaveExplodedCamerasShowWhereTheyWereLast) {
