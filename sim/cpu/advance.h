@@ -19,6 +19,6 @@ std::size_t advance(const Kernel& kernel, WorkBatch& batch, const StepSetting& s
 // Brings all states back to the bodies.
 void store(std::span<WorkBatch> batches);
 
-Telemetry measure_state(const Body& body, const Configuration& configuration, const Clock& clock);
+Telemetry measure_state(const Kernel& kernel, const Body& body, const Configuration& configuration, const Clock& clock);
 
 }  // namespace mercury::cpu

@@ -186,7 +186,7 @@ class CpuBackend final : public Backend {
 
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
     for_each_body([&](std::size_t i) {
-      telemetry[i] = measure_state(*bodies_[i], configuration_, clock);
+      telemetry[i] = measure_state(kernel_, *bodies_[i], configuration_, clock);
       statuses[i] = bodies_[i]->status;
     });
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/advance.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <vector>
 
 #include "mercury/observables.h"
 
@@ -23,16 +23,21 @@ struct Sum {
 
 }  // namespace
 
-Telemetry measure_state(const Body& body, const Configuration& configuration, const Clock& clock) {
+Telemetry measure_state(const Kernel& kernel, const Body& body, const Configuration& configuration,
+                        const Clock& clock) {
   Telemetry result;
   Sum position, velocity;
   double total_mass = 0;
   const std::size_t masses = body.robot->masses.size();
+  Aligned<float> positions(4 * masses);
   for (std::size_t i = 0; i < masses; ++i) {
-    const Vec3 v = body.velocity(i);
+    const Vec3 x = body.position(i), v = body.velocity(i);
+    positions[4 * i] = x.x;
+    positions[4 * i + 1] = x.y;
+    positions[4 * i + 2] = x.z;
     const auto mass = static_cast<double>(mass_of(*body.robot, i));
     total_mass += mass;
-    position.add(mass, body.position(i));
+    position.add(mass, x);
     velocity.add(mass, v);
     result.kinetic_energy +=
         0.5 * mass *
@@ -41,22 +46,21 @@ Telemetry measure_state(const Body& body, const Configuration& configuration, co
   }
   result.center_of_mass = position.over(total_mass);
   result.velocity = velocity.over(total_mass);
-  std::array<MaterialNow, max_materials> materials;
-  for (std::size_t id = 0; id < body.materials.size(); ++id)
-    if (body.measures.used[id]) materials[id] = material_at(body.materials[id], configuration.environment, clock);
-  std::uint32_t strained = 0;
-  for (const Spring& spring : body.robot->springs) {
-    const MaterialNow& material = materials[spring.material];
-    const float distance = length(body.position(spring.b) - body.position(spring.a));
-    const double stiffness{material.stiffness};
-    const double too_long{stretch(distance, spring.rest_length, material.length_factor)};
-    const float relative = strain(distance, spring.rest_length);
-    result.elastic_energy += elastic_energy(stiffness, too_long);
-    result.muscle_power += muscle_power(stiffness, too_long, double{spring.rest_length}, double{material.length_rate});
-    result.largest_strain = std::max(result.largest_strain, std::abs(relative));
-    strained += is_strained(relative) ? 1 : 0;
+  alignas(16) std::array<float, 4 * max_materials> materials;
+  for (std::size_t id = 0; id < body.materials.size(); ++id) {
+    if (!body.measures.used[id]) continue;
+    const MaterialNow now = material_at(body.materials[id], configuration.environment, clock);
+    materials[4 * id] = now.stiffness;
+    materials[4 * id + 1] = now.length_factor;
+    materials[4 * id + 2] = now.length_rate;
+    materials[4 * id + 3] = 0;
   }
-  result.strained_share = strained_share(strained, static_cast<std::uint32_t>(body.robot->springs.size()));
+  const std::vector<Spring>& springs = body.robot->springs;
+  const SpringMeasures measures = kernel.measure_springs(springs, positions.data(), materials.data());
+  result.elastic_energy = measures.elastic_energy;
+  result.muscle_power = measures.muscle_power;
+  result.largest_strain = measures.largest_strain;
+  result.strained_share = strained_share(measures.strained, static_cast<std::uint32_t>(springs.size()));
   return result;
 }
 

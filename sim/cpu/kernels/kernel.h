@@ -8,17 +8,26 @@
 //     body_stepper.h       a robot alone       spring_rows.h, face_tiles.h, motion.h, near_search.h
 //     lockstep_stepper.h   a lockstep group
 //     muscle_factors.h     all muscles
+//     spring_measures.h    springs, for telemetry
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string_view>
 
+#include "mercury/robot.h"
 #include "sim/cpu/layout/lockstep_group.h"
 #include "sim/cpu/layout/muscles.h"
 #include "sim/cpu/layout/step_setting.h"
 
 namespace mercury::cpu {
+
+// Part of Telemetry.
+struct SpringMeasures {
+  double elastic_energy = 0, muscle_power = 0;  // [J], [W]
+  float largest_strain = 0;                     // [1]
+  std::uint32_t strained = 0;                   // springs
+};
 
 struct Kernel {
   std::string_view name;  // "AVX2"
@@ -27,6 +36,9 @@ struct Kernel {
   // Computes L(t) / L0 of all muscles at the next steps, factors[step][muscles.amplitude.size()], and moves the
   // muscles' phases on by these steps.
   void (*fill_factors)(Muscles& muscles, float* factors, std::int64_t steps);
+  // Measures the springs of a robot. `positions`: x, y, z and an unused number per mass; `materials`, by id: what
+  // MaterialNow has and an unused number. Both are aligned to 16 bytes.
+  SpringMeasures (*measure_springs)(std::span<const Spring> springs, const float* positions, const float* materials);
   // Whether this machine reads factors faster one by one than by gathering them (Factors::one_by_one).
   bool (*looks_up_one_by_one)();
 

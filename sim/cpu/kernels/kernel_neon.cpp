@@ -6,12 +6,14 @@
 #include "sim/cpu/kernels/kernel_target.h"
 
 #include "sim/cpu/kernels/kernel.h"
+#include "sim/cpu/kernels/spring_measures.h"
 
 namespace mercury::cpu {
 
 const Kernel neon_kernel{"NEON",
                          HWY_NAMESPACE::lane_count,
                          HWY_NAMESPACE::fill_factors,
+                         HWY_NAMESPACE::measure_springs,
                          HWY_NAMESPACE::looks_up_one_by_one,
                          HWY_NAMESPACE::advance,
                          HWY_NAMESPACE::advance_group};
