@@ -35,8 +35,8 @@ struct GroundContact {
 };
 
 struct GroundContacts {
-  double time = 0;  // [s]
-  std::vector<GroundContact> parts;
+  double time = 0;                   // [s]
+  std::vector<GroundContact> parts;  // in the order of bodies
 };
 
 // Sees contacts on the simulating thread.

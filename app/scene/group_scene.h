@@ -152,7 +152,8 @@ class GroupScene {
   Environment environment_;
   std::vector<Trail> trails_;
   std::vector<Footprints> footprints_;
-  std::vector<render::Print> prints_;
+  std::vector<std::vector<render::Print>> prints_of_robots_;
+  std::vector<render::Print> prints_;  // of all
   Later later_ = Later::forget;
   std::vector<render::Path> paths_;
   std::vector<std::vector<float>> marks_;         // of the paths

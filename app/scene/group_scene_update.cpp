@@ -11,6 +11,7 @@
 
 #include "app/scene/group_scene.h"
 #include "mercury/distance.h"
+#include "mercury/parallel.h"
 
 namespace mercury {
 namespace {
@@ -145,25 +146,29 @@ void GroupScene::hide_wrecks(std::span<const Telemetry> telemetry) {
 // In cells, prints move with the ground below the robot, and end with it. There are none in races: a robot's way in its
 // lane is not the one that it went.
 void GroupScene::leave_footprints(double time, std::span<const GroundContacts> contacts) {
-  for (Footprints& one : footprints_) one.go_to(time, later_);
-  for (const GroundContacts& then : contacts) {
-    for (const GroundContact& contact : then.parts) footprints_[contact.body].touch(then.time, contact);
-    for (Footprints& one : footprints_) one.know_until(then.time);
-  }
-  prints_.clear();
-  if (settings_.footprints && scene_.surroundings == render::Surroundings::land && motion_.layout() != Layout::race)
-    for (std::size_t i = 0; i < footprints_.size(); ++i) {
-      if (placements_[i].hidden) continue;
-      const std::size_t first = prints_.size();
-      footprints_[i].show(shown_offsets_[i].xy(), prints_);
-      if (patches_.empty()) continue;
-      const render::Vector2 middle = (offsets_[i] + rooms_[i].center).xy();
-      const auto outside = [&](const render::Print& print) {
-        return (print.corners[0] - middle).norm() > rooms_[i].radius;
-      };
-      prints_.erase(std::remove_if(prints_.begin() + static_cast<std::ptrdiff_t>(first), prints_.end(), outside),
-                    prints_.end());
+  const bool shows =
+      settings_.footprints && scene_.surroundings == render::Surroundings::land && motion_.layout() != Layout::race;
+  prints_of_robots_.resize(footprints_.size());
+  parallel_for(0, footprints_.size(), [&](std::size_t i) {
+    Footprints& own = footprints_[i];
+    own.go_to(time, later_);
+    for (const GroundContacts& then : contacts) {
+      for (const GroundContact& contact : std::ranges::equal_range(then.parts, i, {}, &GroundContact::body))
+        own.touch(then.time, contact);
+      own.know_until(then.time);
     }
+    std::vector<render::Print>& prints = prints_of_robots_[i];
+    prints.clear();
+    if (!shows || placements_[i].hidden) return;
+    own.show(shown_offsets_[i].xy(), prints);
+    if (patches_.empty()) return;
+    const render::Vector2 middle = (offsets_[i] + rooms_[i].center).xy();
+    std::erase_if(prints,
+                  [&](const render::Print& print) { return (print.corners[0] - middle).norm() > rooms_[i].radius; });
+  });
+  prints_.clear();
+  for (const std::vector<render::Print>& prints : prints_of_robots_)
+    prints_.insert(prints_.end(), prints.begin(), prints.end());
   scene_.prints = prints_;
 }
 
