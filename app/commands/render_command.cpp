@@ -208,8 +208,8 @@ int render_robots(RenderOptions& options) {
   if (!options.video.single_picture() && task.plan.size != options.video.asked_size())
     say(fmt::format("{} needs even sides: drawn at {}x{}", options.video.output_of(""), width, height));
   for (const std::string& note : task.subject.notes) say(note);
+  int status = task.subject.check_results() ? 0 : 1;
   Filming filming(options, task, may_replace);
-  int status = 0;
   for (const Output& output : outputs) {
     bool whole = true;
     const std::string name = options.video.output_of(output.name);
@@ -229,7 +229,7 @@ void add_render_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("render", "Make a video or picture of robots, without a window");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files, folders, samples (sample:eel), a run; or up to four recordings (.h5) and runs");
+      "Robot files, folders, samples (sample:eel), a run; or up to four recordings, results (.json) and runs");
   options->video.add_to(command);
   options->view.add_to(command);
   options->film.add_to(command);
@@ -247,7 +247,7 @@ void add_render_command(const Command& program, const Choose& choose) {
       "  mercury render run.h5 -o run.mp4                    plays a recording of mercury run --record\n"
       "  mercury render RUN --lineage best -o ancestry.mp4   films a run of mercury evolve\n"
       "  mercury render RUN --map -o map.png\n"
-      "  mercury render before.h5 after.h5 -o both.mp4       recordings, or runs, side by side\n"
+      "  mercury render before.h5 after.json -o both.mp4     recordings, results (run --json) or runs, side by side\n"
       "  mercury render eel.json --still 2 --background transparent --tight --scale-bar --dpi 300 -o figure.png\n"
       "  mercury render my-robots --fps 60 -o frames/        a folder of PNG pictures");
   command.when_chosen(

@@ -30,6 +30,17 @@ Subject recording_of(const RenderOptions& options, const std::filesystem::path& 
   return subject;
 }
 
+Subject result_of(const RenderOptions& options, const std::filesystem::path& file) {
+  const auto result = std::make_shared<RunResult>(read_result(file));
+  Subject subject{.configuration = options.simulation.configuration_over(result->configuration),
+                  .clips = std::vector<Clip>(1),
+                  .result = result,
+                  .seconds = options.simulation.seconds(result->seconds)};
+  subject.of_result = robots_of(*result, options.robots);
+  subject.clips.front().robots = subject.of_result;
+  return subject;
+}
+
 Subject robots_of(const RenderOptions& options) {
   options.simulation.check(options.robots.physics());  // errors in options come before those in files
   Subject subject;
@@ -94,26 +105,29 @@ Subject best_of(const RenderOptions& options, const std::filesystem::path& folde
           .seconds = options.simulation.seconds()};
 }
 
-// Recordings and runs side by side, as long as the longest recording.
+// Recordings, results and runs side by side, as long as the longest recording or result.
 std::optional<Subject> side_by_side(const RenderOptions& options, ViewSettings& view) {
   constexpr std::size_t most = 4;
   const auto is_run = [](const std::filesystem::path& path) { return is_run_folder(path); };
   const auto can_stand = [&](const std::filesystem::path& path) {
-    return is_readable_trajectory_name(path) || is_run(path);
+    return is_readable_trajectory_name(path) || is_run(path) || is_result(path);
   };
   const std::vector<std::filesystem::path> files = options.robots.files();
   if (files.size() < 2 || options.robots.has_random() || !std::ranges::all_of(files, can_stand)) return std::nullopt;
   if (files.size() > most)
-    throw InputError(files[most].string(), fmt::format("at most {} recordings and runs stand side by side", most));
+    throw InputError(files[most].string(),
+                     fmt::format("at most {} recordings, results and runs stand side by side", most));
   if (const std::string option = options.film.given(); !option.empty() && option != "--best")
     throw InputError(option, "is of one run; beside others only its best are shown (--best N)");
   std::vector<Subject> sides;
   double recorded = 0;
   for (const std::filesystem::path& file : files) {
-    Subject& side = sides.emplace_back(is_run(file) ? best_of(options, file) : recording_of(options, file));
-    if (side.recording) recorded = std::max(recorded, side.seconds);
+    Subject& side = sides.emplace_back(is_run(file)      ? best_of(options, file)
+                                       : is_result(file) ? result_of(options, file)
+                                                         : recording_of(options, file));
+    if (!is_run(file)) recorded = std::max(recorded, side.seconds);
     side.title =
-        side.recording ? file.stem().string() : (file / ".").lexically_normal().parent_path().filename().string();
+        is_run(file) ? (file / ".").lexically_normal().parent_path().filename().string() : file.stem().string();
   }
   if (!options.view.chooses_what_is_shown()) view.shown.captions = std::ranges::any_of(files, is_run);
   Subject subject = std::move(sides.front());
@@ -130,6 +144,8 @@ Subject subject_of(RenderOptions& options, ViewSettings& view) {
     if (const auto run = options.robots.alone(is_run_folder, "a run is filmed alone; give it without other robots"))
       return run_of(options, *run, view);
   }
+  const auto result = options.robots.alone(
+      is_result, "a result stands beside recordings, results and runs; give it without other robots");
   if (const std::string option = options.film.given(); !option.empty()) {
     if (are_chosen) throw InputError("--robot", "not together with " + option);
     const auto files = options.robots.files();
@@ -137,7 +153,7 @@ Subject subject_of(RenderOptions& options, ViewSettings& view) {
                                  (files.empty() ? "; give its folder" : ", and " + files[0].string() + " is none"));
   }
   if (const auto file = options.robots.recording()) return recording_of(options, *file);
-  return robots_of(options);
+  return result ? result_of(options, *result) : robots_of(options);
 }
 
 // Throws InputError for a moment that a recording does not have, or that a simulation would never reach.
@@ -194,6 +210,12 @@ std::vector<FilmedGroup> Subject::groups_of(const Clip& clip, const ViewSettings
   for (const Subject& other : others) groups.push_back(group(other, other.clips.front(), other.title));
   if (view.compare) groups.push_back({simulation(view.compare->over(configuration), clip), clip.captions});
   return groups;
+}
+
+bool Subject::check_results() const {
+  bool same = !result || check_again(*result, of_result, configuration.device);
+  for (const Subject& other : others) same = other.check_results() && same;
+  return same;
 }
 
 std::string Subject::comment(const Clip& clip) const {

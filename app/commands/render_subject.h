@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What mercury render films: robots to simulate, a recording to play back, or a run of an evolution.
+// What mercury render films: robots to simulate, a recording to play back, a result to simulate again, or a run of an
+// evolution.
 #pragma once
 
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include "app/commands/run_film.h"
 #include "app/options/output_options.h"
+#include "app/options/result_file.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/options/trial_start.h"
@@ -30,16 +32,20 @@ struct RenderOptions {
 
 struct Subject {
   Configuration configuration;
-  std::vector<Clip> clips;                      // one after another
-  std::shared_ptr<TrajectoryReader> recording;  // of the only clip, which has no robots then; or nothing
-  double seconds = 0;                           // of each clip
-  TrialStart start;                             // where robots begin
+  std::vector<Clip> clips;                              // one after another
+  std::shared_ptr<TrajectoryReader> recording;          // of the only clip, which has no robots then; or nothing
+  std::shared_ptr<const RunResult> result;              // that names the robots of the only clip, or nothing
+  std::vector<std::shared_ptr<const Robot>> of_result;  // its robots
+  double seconds = 0;                                   // of each clip
+  TrialStart start;                                     // where robots begin
   std::vector<std::string> notes;
   std::string title;            // above it, if there are others
   std::vector<Subject> others;  // beside it, each of one clip; empty = none
 
   // What is filmed of a clip, from left to right: it, and what is beside it.
   std::vector<FilmedGroup> groups_of(const Clip& clip, const ViewSettings& view) const;
+  // Simulates the results, and compares: check_again() of this and the others. Returns whether none differs.
+  bool check_results() const;
   // What pictures of a clip say of it: VideoSettings::comment.
   std::string comment(const Clip& clip) const;
 

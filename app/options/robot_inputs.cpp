@@ -15,6 +15,7 @@
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
+#include "app/options/result_file.h"
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/robot_file.h"
@@ -57,7 +58,13 @@ std::string read_standard_input() {
 // The robot of a file, or those of a file of another simulator. Their worlds are not applied.
 std::vector<Robot> robots_in(const fs::path& file) {
   const ImportFormat* format = import_format_of(file);
-  if (!format) return {load_robot(file)};
+  if (!format) try {
+      return {load_robot(file)};
+    } catch (const InputError&) {
+      if (is_result(file))
+        throw InputError(file.string(), "is a result of mercury run; mercury render films it, here give robots");
+      throw;
+    }
   Import import = import_file(file, *format);
   if (import.robots.empty()) throw InputError(file.string(), "holds no robot: " + import.report.notes.front());
   if (import.motion)

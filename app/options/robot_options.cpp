@@ -77,6 +77,16 @@ std::optional<std::filesystem::path> RobotOptions::repro() const {
   return alone(is_repro_name, "a repro has a time of its own; give it without other robots");
 }
 
+std::vector<Robot> RobotOptions::robots_in(const std::filesystem::path& file) const {
+  std::vector<Robot> robots = mercury::robots_of(files_.load({file}));
+  for (Robot& robot : robots) give_body(robot, file.string());
+  return robots;
+}
+
+Robot RobotOptions::random_robot(const std::string& request) const {
+  return std::move(random_robots(random_from(request)).front());
+}
+
 std::optional<RunSettings> RobotOptions::settings_of_run() const {
   const std::vector<std::filesystem::path> paths = files();
   if (paths.size() != 1 || has_random() || !is_run_folder(paths.front())) return std::nullopt;

@@ -74,6 +74,11 @@ class RobotOptions {
   // given with it.
   std::optional<std::filesystem::path> alone(bool (*is_such)(const std::filesystem::path&), const char* why) const;
 
+  // The robots of a file as load() reads them, and the robot that --random makes alone of such a request, with the
+  // options of its kind. Throw InputError.
+  std::vector<Robot> robots_in(const std::filesystem::path& file) const;
+  Robot random_robot(const std::string& request) const;
+
   // The same in parts: the robots of the files, the files and folders as the user gave them, and the random robots to
   // make.
   std::vector<RobotFromFile> load_files() const;

@@ -315,7 +315,113 @@ TEST_F(RenderCommand, TwoRecordingsPlaySideBySide) {
   EXPECT_NE(half(first, 160), half(last, 160));
   const std::string one = path("one.h5");
   EXPECT_THAT(mercury({"render", one, one, one, one, one, "-o", path("a.mp4")}).messages,
-              HasSubstr("at most 4 recordings and runs stand side by side"));
+              HasSubstr("at most 4 recordings, results and runs stand side by side"));
+}
+
+// What mercury run --json printed names robots, settings and final states.
+class RenderResult : public RenderCommand {
+ protected:
+  // The same run as a recording (.h5) and a result (.json).
+  std::string run(const std::string& name, std::vector<std::string> robots) const {
+    robots.insert(robots.begin(), "run");
+    robots.insert(robots.end(), {"--seconds", "0.2", "--environment", "land", "--friction", "0.3", "--device", "cpu",
+                                 "--json", "--record", path(name + ".h5")});
+    const Outcome outcome = mercury(robots);
+    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    write(name + ".json", outcome.output);
+    return name + ".json";
+  }
+  Outcome film(std::vector<std::string> inputs, const std::string& output) const {
+    for (std::string& input : inputs)
+      if (input.ends_with(".json") || input.ends_with(".h5")) input = path(input);
+    inputs.insert(inputs.begin(), "render");
+    inputs.insert(inputs.end(), {"--device", "cpu", "--size", "240x90", "--show", "skin", "-o", path(output)});
+    return mercury(inputs);
+  }
+  static std::string with(std::string text, const std::string& what, const std::string& instead) {
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), instead);
+  }
+};
+
+TEST_F(RenderResult, IsSimulatedAgainBesideARecordingOfTheSameRun) {
+  const std::string result = run("walk", {"--random", "voxel:2:7"});
+  const Outcome outcome = film({"walk.h5", result, "--still", "0.165"}, "both.png");  // a frame
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.messages, HasSubstr("all final states are those of the result, bit for bit"));
+  const render::Image both = render::read_png(path("both.png"));
+  const render::Image recorded = columns(both, 0, 120), simulated = columns(both, 120, 120);
+  EXPECT_GT(std::set(recorded.bytes.begin(), recorded.bytes.end()).size(), 20u);
+  int farthest = 0;
+  for (std::size_t i = 0; i < recorded.bytes.size(); ++i)
+    farthest = std::max(farthest, std::abs(recorded.bytes[i] - simulated.bytes[i]));
+  EXPECT_LE(farthest, 2);  // positions are rounded differently
+
+  const Outcome alone = film({result, "--fps", "10"}, "alone");
+  ASSERT_EQ(alone.status, 0) << alone.messages;
+  EXPECT_EQ(listing("alone").size(), 2u);  // as long as the run
+  EXPECT_THAT(alone.messages, HasSubstr("simulating 2 robots (land)"));
+}
+
+TEST_F(RenderResult, NamesFilesThatLieBesideIt) {
+  ASSERT_EQ(mercury({"new", "voxel", "-o", path("one.json")}).status, 0);
+  const std::string text = read(run("moved", {path("one.json")}));
+  write("moved.json", with(text, path("one.json"), "one.json"));
+  const Outcome outcome = film({"moved.json", "--still", "0.2"}, "one.png");
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.messages, HasSubstr("bit for bit"));
+  write("gone.json", with(text, path("one.json"), "gone/one.json"));
+  const Outcome gone = film({"gone.json"}, "gone.mp4");
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_THAT(gone.messages,
+              HasSubstr("gone.json: /robots/0/file: gone/one.json is not there; a result names its robots"));
+}
+
+TEST_F(RenderResult, ThatEndsElsewhereIsFilmedAndSaidSo) {
+  const std::string text = read(run("walk", {"--random", "voxel:1"}));
+  const std::size_t hash = text.find("\"hash\": \"") + 9;
+  std::string other = text;
+  other[hash] = other[hash] == '0' ? '1' : '0';
+  write("other.json", other);
+  const Outcome outcome = film({"other.json", "--still", "0.2"}, "other.png");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.messages, HasSubstr("1 of 1 robots end elsewhere than in the result"));
+  EXPECT_EQ(render::read_png(path("other.png")).width, 240);
+
+  write("trials.json", with(text, "\"trials\": 1", "\"trials\": 3"));
+  const Outcome trials = film({"trials.json", "--still", "0.2"}, "trials.png");
+  EXPECT_EQ(trials.status, 0) << trials.messages;
+  EXPECT_THAT(trials.messages,
+              HasSubstr("3 trials with jitter 0; the film begins without jitter, and is not compared"));
+}
+
+TEST_F(RenderResult, OfRandomRobotsNeedsTheOptionsOfTheirKind) {
+  const std::string result = run("wide", {"--random", "voxel:1", "--voxels", "3x2x2"});
+  const Outcome without = film({result}, "without.mp4");
+  EXPECT_EQ(without.status, 2);
+  EXPECT_THAT(without.messages, HasSubstr("give the options of its kind that made it"));
+  EXPECT_EQ(film({result, "--voxels", "3x2x2", "--still", "0"}, "with.png").status, 0);
+}
+
+TEST_F(RenderResult, ThatCannotBeUsedIsRefusedInOneLine) {
+  const std::string result = run("walk", {"--random", "voxel:1"});
+  const std::string text = read(result);
+  const auto refused = [&](const std::string& name, const std::string& content, const std::string& message) {
+    write(name, content);
+    const Outcome outcome = film({name}, "a.mp4");
+    EXPECT_EQ(outcome.status, 2) << name;
+    EXPECT_THAT(outcome.messages, HasSubstr(name + ": " + message));
+  };
+  refused("cut.json", text.substr(0, text.size() / 2), "is not a result of mercury run --json");
+  refused("empty.json", with(text, "\"masses\":", "\"no_masses\":"), "/robots: names no robot that was stepped");
+  refused("hash.json", with(text, "\"hash\": \"", "\"hash\": \"x"), "/robots/0/hash: \"x");
+  refused("both.json", with(text, "\"random\": \"", "\"file\": \"a.json\", \"random\": \""), "/robots/0: give either");
+  EXPECT_THAT(film({result, "--random", "voxel:1"}, "a.mp4").messages,
+              HasSubstr("walk.json: a result stands beside recordings, results and runs"));
+  const Outcome as_robot = mercury({"run", path(result)});
+  EXPECT_EQ(as_robot.status, 2);
+  EXPECT_THAT(as_robot.messages, HasSubstr("walk.json: is a result of mercury run; mercury render films it"));
 }
 
 // Three columns of one recording are the same picture three times; a run stands beside a recording.
