@@ -44,8 +44,8 @@ CATSHARK_SOURCE = (
 EVOSORO: dict[str, tuple[list[float], str]] = {
     "hexapus": ([0.3241, 0.3232, 0.3223], ""),
     "flapping_passive_tissue": ([0.2918, 0.2919, 0.2920], ""),
-    "hopper": ([1.5043, 1.5097, 1.5102], "the ground damps the turning of voxels there; without that it gets 5 % farther there, too"),
-    "pusher_land": ([2.4985, 2.4998, 2.5002], ""),
+    "hopper": ([1.5043, 1.5097, 1.5102], ""),
+    "pusher_land": ([2.4985, 2.4998, 2.5002], "the ground damps the turning of voxels there, and it needs that: without, it gets 22 % of its way"),
     "quadruped_land": ([1.3979, 1.4050, 1.4115], "its legs fold, and it walks on contacts between spheres of 1.5 voxels, which Mercury does not have"),
 }
 EVOSORO_SOURCE = (
