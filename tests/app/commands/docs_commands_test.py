@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The commands of a page work: every line of it that begins with `mercury`, in the order of the page, in one folder.
 
-    docs_commands_test.py MERCURY PAGE.md
+    docs_commands_test.py MERCURY FOLDER            makes FOLDER for the pages
+    docs_commands_test.py MERCURY FOLDER PAGE.md    tries a page in a copy of it
 
 The folder holds what a reader would have: the sample robots, the folders my-robots, starts and hunters, scene.toml. Commands are shortened so that
 they take moments: fewer robots, shorter trials, smaller pictures of low quality. Commands that need a scheduler or several hosts are left out. What
@@ -10,6 +11,7 @@ only shows, draws or measures, and stands on an earlier page word for word, is t
 
 import os
 import re
+import shlex
 import shutil
 import stat
 import subprocess
@@ -59,7 +61,7 @@ def shortened(arguments):
     return result + extra
 
 
-def show(program, arguments):
+def show(program, arguments, cwd):
     """Opens a window on a display of its own, and closes it once it is ready."""
     sys.path.insert(0, str(PROJECT / "tests/app/window"))
     from window_driver import Display
@@ -69,7 +71,7 @@ def show(program, arguments):
         environment = dict(os.environ, DISPLAY=display.name, XDG_CONFIG_HOME=scratch, LIBGL_ALWAYS_SOFTWARE="1")
         environment.pop("WAYLAND_DISPLAY", None)
         process = subprocess.Popen([program, *arguments, "--device", "cpu", "--quality", "low", "--size", "320x240",
-                                    "--report", report], env=environment)
+                                    "--report", report], env=environment, cwd=cwd)
         try:
             deadline = time.monotonic() + DEADLINE
             while not (report.exists() and '"ready"' in report.read_text()):
@@ -128,7 +130,8 @@ def is_for_one_host(text):
     return not re.search(r"\.\.\.|\bRUN\b|\bFILE\b|SLURM", text)
 
 
-def make_folder(folder, program, texts):
+def make_folder(folder, program):
+    shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(PROJECT / "robots/library", folder / "robots/library",
                     ignore=lambda _, names: [name for name in names if name != "paper" and not name.endswith((".json", ".cbor"))])
     for robot in (folder / "robots/library/paper").iterdir():
@@ -139,8 +142,7 @@ def make_folder(folder, program, texts):
     (folder / "scene.toml").write_text('format = "mercury-scene"\nversion = 1\nrobots = ["eel.json", "fish.json"]\n')
     subprocess.run([sys.executable, PROJECT / "robots/library/animals/brains.py", "starts"], **run)
     subprocess.run([sys.executable, PROJECT / "robots/library/animals/school.py", "hunter", "3x5", "hunters"], **run)
-    if not any("evolve swim" in text for text in texts):  # a page may look at a run of another page
-        subprocess.run([program, *shortened(["evolve", "swim", "--from", "voxel:2x2x2"])], **run)
+    subprocess.run([program, *shortened(["evolve", "swim", "--from", "voxel:2x2x2"])], **run)
     for name in ["bin", "build/bin"]:
         shim = folder / name / "mercury"
         shim.parent.mkdir(parents=True)
@@ -148,7 +150,24 @@ def make_folder(folder, program, texts):
         shim.chmod(shim.stat().st_mode | stat.S_IXUSR)
 
 
-def test(program, page):
+def run_line(program, text, folder):
+    """The exit status of a command and what it printed to stderr."""
+    words = words_of(text)
+    if not re.search(r"[][|&;<>()$`*?{}~#!\\]", words):  # the shell would only split it
+        return run_command(program, shlex.split(words)[1:], cwd=folder)
+    environment = dict(os.environ, PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
+    done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, capture_output=True, text=True)
+    return done.returncode, done.stderr
+
+
+def run_command(program, arguments, cwd=None):
+    if arguments[:1] == ["view"]:
+        return show(program, arguments, cwd), ""
+    done = subprocess.run([program, *shortened(arguments)], cwd=cwd, capture_output=cwd is not None, text=True)
+    return done.returncode, done.stderr
+
+
+def test(program, made, page):
     before = tried_before(page)
     found = [(line, text) for line, text in commands(page) if is_for_one_host(text) and words_of(text) not in before]
     if not found:
@@ -157,27 +176,28 @@ def test(program, page):
     failures = 0
     with tempfile.TemporaryDirectory(prefix="mercury-docs-") as scratch:
         folder = Path(scratch)
-        make_folder(folder, program, [text for _, text in found])
+        shutil.copytree(made, folder, dirs_exist_ok=True)
+        if any("evolve swim" in text for _, text in found):  # else the page looks at a run of another page
+            shutil.rmtree(folder / "swim")
         write_files_of(page, folder)
-        environment = dict(os.environ, PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
         for line, text in found:
-            done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, capture_output=True, text=True)
+            status, stderr = run_line(program, text, folder)
             # Whether a result holds in a moment is no matter of the page.
             accepted = (0, 1) if text.startswith("mercury check") else (0,)
-            print(f"{'ok    ' if done.returncode in accepted else 'FAILED'} {page.name}:{line}: {text}")
-            if done.returncode not in accepted:
+            print(f"{'ok    ' if status in accepted else 'FAILED'} {page.name}:{line}: {text}")
+            if status not in accepted:
                 failures += 1
-                print(done.stderr, file=sys.stderr)
+                print(stderr, file=sys.stderr)
     return 1 if failures else 0
 
 
 def main():
     if sys.argv[1] == "--as":
-        program, arguments = sys.argv[2], sys.argv[3:]
-        if arguments[:1] == ["view"]:
-            return show(program, arguments)
-        return subprocess.run([program, *shortened(arguments)]).returncode
-    return test(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve())
+        return run_command(sys.argv[2], sys.argv[3:])[0]
+    program, folder = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
+    if len(sys.argv) == 3:
+        return make_folder(folder, program)
+    return test(program, folder, Path(sys.argv[3]).resolve())
 
 
 sys.exit(main())
