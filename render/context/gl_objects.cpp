@@ -141,12 +141,12 @@ Program make_program(std::span<const std::string_view> names, const std::string&
                      log_of(program.get(), true));
 }
 
-void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height) {
+void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height, int level) {
   // While a framebuffer is bound, NVIDIA's driver does not make what was drawn into it visible to compute programs.
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glTextureBarrier();
   glUseProgram(program);
-  glBindImageTexture(0, texture, 0, GL_FALSE, 0, GL_WRITE_ONLY, format);
+  glBindImageTexture(0, texture, level, GL_FALSE, 0, GL_WRITE_ONLY, format);
   glDispatchCompute(GLuint((width + 7) / 8), GLuint((height + 7) / 8), 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }

@@ -129,10 +129,10 @@ inline Program make_program(std::initializer_list<std::string_view> names, const
   return make_program(std::span(names.begin(), names.size()), defines);
 }
 
-// Runs a compute program with groups of 8 x 8 invocations, one invocation per texel of a texture, which is its image 0.
-// Leaves no framebuffer bound. Work that is expensive per pixel is done this way, because GPUs for data centers compute
-// with all of their multiprocessors but draw with few.
-void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height);
+// Runs a compute program with groups of 8 x 8 invocations, one invocation per texel of a level of a texture, which is
+// its image 0. Leaves no framebuffer bound. Work that is expensive per pixel is done this way, because GPUs for data
+// centers compute with all of their multiprocessors but draw with few.
+void compute_texels(GLuint program, GLuint texture, GLenum format, int width, int height, int level = 0);
 
 // Runs the current compute program, with a local size of 64, for at least `count` invocations.
 void dispatch(std::size_t count);

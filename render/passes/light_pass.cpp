@@ -25,13 +25,25 @@ Texture make_tile(GLenum format, int side) {
   return tile;
 }
 
-Texture make_sand() {
+// Fills the coarser levels of a square texture. Mesa compiles the shader of glGenerateTextureMipmap() in each process
+// from scratch, and finds this one in its cache.
+void fill_levels(const Program& halve, GLuint texture, GLenum format, int side) {
+  glBindTextureUnit(binding::source, texture);
+  for (int level = 1; (side >> level) > 0; ++level) {
+    glProgramUniform1i(halve.get(), 0, level - 1);
+    compute_texels(halve.get(), texture, format, side >> level, side >> level, level);
+  }
+}
+
+Texture make_sand(const Program& halve) {
   Texture sand = make_tile(GL_RGBA8, sand_side);
   const Framebuffer framebuffer = make_framebuffer({sand.get()});
   glDisable(GL_BLEND);
+  const bool culls = glIsEnabled(GL_CULL_FACE);
+  glDisable(GL_CULL_FACE);
   Fullscreen("sand.frag").draw_into(framebuffer.get(), sand_side, sand_side);
-  glUseProgram(0);  // whoever restores the current program would find that it is gone
-  glGenerateTextureMipmap(sand.get());
+  if (culls) glEnable(GL_CULL_FACE);
+  fill_levels(halve, sand.get(), GL_RGBA8, sand_side);
   return sand;
 }
 
@@ -65,12 +77,12 @@ Texture comparing_view(GLuint depths) {
 
 LightPass::LightPass(const QualitySettings& settings)
     : settings_(settings), shadow_depths_(make_texture(shadow_format, settings.shadow_side, settings.shadow_side)),
-      caustics_(make_tile(GL_R16F, settings.caustics_side)), sand_(make_sand()),
+      caustics_(make_tile(GL_R16F, settings.caustics_side)),
       ground_light_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
       ground_rough_(make_texture(GL_R16F, settings.ground_side, settings.ground_side)),
       caustics_grid_(make_vertex_array()), caustics_program_(make_program({"caustics.vert", "caustics.frag"})),
       ground_program_(make_program({"ground_light.comp"}, settings.defines())),
-      ground_blur_(make_program({"ground_blur.comp"})) {
+      ground_blur_(make_program({"ground_blur.comp"})), halve_(make_program({"halve.comp"})) {
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(shadow_depths_.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   shadow_ = comparing_view(shadow_depths_.get());
@@ -100,7 +112,7 @@ void LightPass::draw_caustics() const {
   glDisable(GL_BLEND);
   // The finest level is ragged where few rays cross, so sampling starts at the next one.
   glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 0);
-  glGenerateTextureMipmap(caustics_.get());
+  fill_levels(halve_, caustics_.get(), GL_R16F, settings_.caustics_side);
   glTextureParameteri(caustics_.get(), GL_TEXTURE_BASE_LEVEL, 1);
 }
 
@@ -126,6 +138,7 @@ void LightPass::end_shadow() {
 void LightPass::draw_maps(bool under_water, bool with_floor) {
   if (under_water) draw_caustics();
   if (with_floor) {
+    if (!sand_) sand_ = make_sand(halve_);
     const int side = settings_.ground_side;
     compute_texels(ground_program_.get(), ground_rough_.get(), GL_R16F, side, side);
     glBindTextureUnit(binding::source, ground_rough_.get());

@@ -30,11 +30,11 @@ class LightPass {
   void draw_caustics() const;
 
   QualitySettings settings_;
-  Texture shadow_, shadow_depths_, caustics_, sand_, ground_light_, ground_rough_;
+  Texture shadow_, shadow_depths_, caustics_, sand_, ground_light_, ground_rough_;  // sand: made once it is seen
   Framebuffer shadow_framebuffer_, caustics_framebuffer_;
   VertexArray caustics_grid_;
   Buffer caustics_indices_;
-  Program caustics_program_, ground_program_, ground_blur_;
+  Program caustics_program_, ground_program_, ground_blur_, halve_;
 };
 
 }  // namespace mercury::render
