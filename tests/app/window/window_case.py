@@ -33,6 +33,9 @@ class WindowCase(unittest.TestCase):
     def tearDownClass(cls):
         cls.display.close()
 
+    def setUp(self):
+        self.display.release()
+
     def open(self, *arguments, **how):
         """A window in a folder of its own. `how`: as of Window()."""
         self.folder = scratch()

@@ -22,6 +22,7 @@ class Display:
     """An X server without a screen."""
 
     def __init__(self, width=SIZE[0], height=SIZE[1]):
+        self.size = width, height
         read, write = os.pipe()
         self.server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp", "-noreset"],
@@ -31,6 +32,12 @@ class Display:
             self.name = ":" + numbers.readline().strip()
         if self.name == ":":
             raise RuntimeError("Xvfb did not start")
+
+    def release(self):
+        """Leaves mouse and keys as they were at the start, also if a test failed while it held them."""
+        subprocess.run(["xdotool", "keyup", "Control_L", "keyup", "Shift_L", "keyup", "Alt_L", "mouseup", "1", "mouseup", "3",
+                        "mousemove", str(self.size[0] // 2), str(self.size[1] // 2)],
+                       env=dict(os.environ, DISPLAY=self.name), check=True)
 
     def close(self):
         self.server.terminate()
