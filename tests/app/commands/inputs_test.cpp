@@ -236,7 +236,7 @@ TEST_F(Inputs, RobotsThatDoNotFitIntoMemoryAreRefused) {
 
 TEST_F(Inputs, ASweepStopsBeforeTheMemoryIsFull) {
   const Outcome outcome =
-      limited(1'000'000, "bench --sweep --device cpu --threads 2 --least-seconds 0.001 --csv " + path("s.csv"));
+      limited(400'000, "bench --sweep --device cpu --threads 2 --least-seconds 0.001 --csv " + path("s.csv"));
   EXPECT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_THAT(outcome.messages, HasSubstr("the sweep stops before "));
   EXPECT_THAT(read("s.csv"), StartsWith("device,"));

@@ -77,7 +77,9 @@ TEST_F(Journal, CutOffAtAnyByteHoldsTheGenerationsBefore) {
   const std::string journal = read("run/genomes");
   const std::vector<std::size_t> border = borders(journal);
   ASSERT_EQ(border.size(), 5u);
+  // Every byte of the last generation and of the head; of those between, which are read alike, each seventh.
   for (std::size_t size = journal.size() - 1; size > 0; --size) {
+    if (size > border[0] && size < border[3] && size % 7 != 0) continue;
     std::filesystem::resize_file(path("run/genomes"), size);
     if (size < border[0]) {
       EXPECT_TRUE(is_one_line(error_of([&] { history("run"); }))) << size;
@@ -86,7 +88,7 @@ TEST_F(Journal, CutOffAtAnyByteHoldsTheGenerationsBefore) {
     const auto generations = static_cast<std::size_t>(std::ranges::upper_bound(border, size) - border.begin()) - 1;
     ASSERT_EQ(history("run").generations().size(), generations) << size;
     // Not at every byte, since the writer waits for the disk.
-    if (size % 997 != 0) continue;
+    if (size % 1001 != 0) continue;
     std::filesystem::remove_all(path("copy"));
     std::filesystem::copy(path("run"), path("copy"));
     RunFolder run = open("copy");
