@@ -8,11 +8,12 @@
 
 namespace mercury {
 
-// What the InputError says that `call` throws; empty if it throws none.
+// What the Error says that `call` throws; empty if it throws none.
+template <class Error = InputError>
 std::string refusal(const auto& call) {
   try {
     call();
-  } catch (const InputError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "";

@@ -13,6 +13,7 @@
 
 #include "mercury/error.h"
 #include "tests/evolution/vector_genome.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -217,12 +218,8 @@ TEST_P(Pipelined, AnInterruptedGenerationIsMadeAgain) {
 TEST(Pipelined, AlgorithmsThatLearnAreRefused) {
   EvolutionSettings settings = settings_of("cma-es");
   settings.pipelined = true;
-  try {
-    validate(settings);
-    FAIL();
-  } catch (const ParameterError& error) {
-    EXPECT_STREQ(error.what(), "pipelined: cma-es learns from each generation before it makes the next; leave it out");
-  }
+  EXPECT_EQ(refusal<ParameterError>([&] { validate(settings); }),
+            "pipelined: cma-es learns from each generation before it makes the next; leave it out");
 }
 
 TEST_P(AnyEvolution, TheLineageDoesNotDependOnThreads) {

@@ -8,6 +8,7 @@
 #include "mercury/error.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -20,12 +21,7 @@ const Ancestry full{.parents = {"a", "the \"b\" {"},
                     .generation = 12};
 
 std::string refusal_of_origin(const std::string& origin) {
-  try {
-    ancestry_of({.origin = origin});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal([&] { ancestry_of({.origin = origin}); });
 }
 
 TEST(Ancestry, ReadsBackAsItWasWritten) {

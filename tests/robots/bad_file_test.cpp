@@ -6,17 +6,13 @@
 
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
 
 std::string refusal_of_document(std::string_view document, RobotFormat format) {
-  try {
-    parse_robot(document, format);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return refusal([&] { parse_robot(document, format); });
 }
 
 std::string refusal_of_json(std::string_view document) { return refusal_of_document(document, RobotFormat::json); }
@@ -35,12 +31,12 @@ std::string refusal_of(const Parts& parts) {
                          ",\"faces\":" + parts.faces + parts.rest + "}");
 }
 
-TEST(BadRobotFiles, TheValidDocumentIsAccepted) { EXPECT_EQ(refusal_of({}), "no error"); }
+TEST(BadRobotFiles, TheValidDocumentIsAccepted) { EXPECT_EQ(refusal_of({}), ""); }
 
 TEST(BadRobotFiles, NotJson) {
   const std::string sound = R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})"
                             "\n";
-  EXPECT_EQ(refusal_of_json(sound), "no error");
+  EXPECT_EQ(refusal_of_json(sound), "");
   EXPECT_EQ(refusal_of_json(""), "line 1, column 0: not valid JSON: unexpected end of input");
   EXPECT_EQ(refusal_of_json("hello"), "line 1, column 1: not valid JSON: invalid literal");
   EXPECT_EQ(refusal_of_json("{\"format\":\"mercury-robot\",\n\"masses\":[[0,0"),
@@ -131,7 +127,7 @@ TEST(BadRobotFiles, Faces) {
 
 TEST(BadRobotFiles, Mass) {
   const auto mass = [](const std::string& list) { return refusal_of({.rest = ",\"mass\":" + list}); };
-  EXPECT_EQ(mass("[1,0.5,2]"), "no error");
+  EXPECT_EQ(mass("[1,0.5,2]"), "");
   EXPECT_EQ(mass("3"), "/mass: must be an array, not a number");
   EXPECT_EQ(mass("[]"), "/mass: an empty list; leave it out for 1 kg per mass");
   EXPECT_EQ(mass("[1,1]"), "/mass: 2 numbers, the robot has 3 masses");
@@ -152,7 +148,7 @@ TEST(BadRobotFiles, Mass) {
 
 TEST(BadRobotFiles, VelocityAndFixed) {
   const auto velocity = [](const std::string& list) { return refusal_of({.rest = ",\"velocity\":" + list}); };
-  EXPECT_EQ(velocity("[[0,0,0],[0,0,1],[0,0,0]]"), "no error");
+  EXPECT_EQ(velocity("[[0,0,0],[0,0,1],[0,0,0]]"), "");
   EXPECT_EQ(velocity("[]"), "/velocity: an empty list; leave it out for a robot at rest");
   EXPECT_EQ(velocity("[[0,0,0]]"), "/velocity: 1 vectors, the robot has 3 masses");
   EXPECT_EQ(velocity("[[0,0,0],[0,0]]"), "/velocity/1: a velocity has three components [x, y, z]");
@@ -161,8 +157,8 @@ TEST(BadRobotFiles, VelocityAndFixed) {
   EXPECT_EQ(velocity("[[0,0,\"x\"]]"), "/velocity/0: must hold numbers, not a text");
   EXPECT_EQ(velocity("[[0,0,1e39]]"), "/velocity/0: 1e39 is not a finite 32-bit number");
   const auto fixed = [](const std::string& list) { return refusal_of({.rest = ",\"fixed\":" + list}); };
-  EXPECT_EQ(fixed("[]"), "no error");
-  EXPECT_EQ(fixed("[2,0]"), "no error");
+  EXPECT_EQ(fixed("[]"), "");
+  EXPECT_EQ(fixed("[2,0]"), "");
   EXPECT_EQ(fixed("[0,3]"), "/fixed/1: mass 3 is out of range, the robot has 3");
   EXPECT_EQ(fixed("[0,70000]"), "/fixed/1: mass 70000 is out of range, the robot has 3");
   EXPECT_EQ(fixed("[-1]"), "/fixed/0: mass -1 is out of range, the robot has 3");
@@ -174,8 +170,8 @@ TEST(BadRobotFiles, VelocityAndFixed) {
 
 TEST(BadRobotFiles, WhatAFileRequires) {
   const auto refusal = [](const std::string& list) { return refusal_of({.rest = ",\"requires\":" + list}); };
-  EXPECT_EQ(refusal("[]"), "no error");
-  EXPECT_EQ(refusal(R"(["mass","velocity","fixed","relaxation_time"])"), "no error");
+  EXPECT_EQ(refusal("[]"), "");
+  EXPECT_EQ(refusal(R"(["mass","velocity","fixed","relaxation_time"])"), "");
   EXPECT_EQ(refusal(R"(["mass","wings"])"),
             "/requires/1: requires \"wings\", which this version does not know; it knows mass, velocity, fixed, "
             "relaxation_time, modulus, brain, gates");
@@ -192,7 +188,7 @@ TEST(BadRobotFiles, RelaxationTimes) {
   const auto refusal = [](const std::string& value) {
     return refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"stiffness":1,"relaxation_time":)" + value + "}]"});
   };
-  EXPECT_EQ(refusal("0.01"), "no error");
+  EXPECT_EQ(refusal("0.01"), "");
   EXPECT_EQ(refusal("true"), "/materials/1/relaxation_time: must be a number, not true");
   EXPECT_EQ(refusal("\"1\""), "/materials/1/relaxation_time: must be a number, not a text");
   EXPECT_EQ(refusal("-0.01"), "/materials/1: relaxation_time must be a finite number >= 0 s");
@@ -211,7 +207,7 @@ TEST(BadRobotFiles, MaterialsNamesAndOrigin) {
             "/materials/0/name: must be a text, not a number");
   EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"stiffness":-5}])"}),
             "/materials/1: stiffness must be a finite number >= 0 N/m");
-  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"stiffness":1,"half_wave":false}])"}), "no error");
+  EXPECT_EQ(refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"stiffness":1,"half_wave":false}])"}), "");
   const auto half_wave = [](const std::string& value) {
     return refusal_of({.rest = R"(,"materials":[{"stiffness":0},{"half_wave":)" + value + R"(,"stiffness":1}])"});
   };

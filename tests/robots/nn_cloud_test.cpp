@@ -8,18 +8,14 @@
 #include <string>
 
 #include "mercury/error.h"
+#include "tests/refusal.h"
 #include "tests/robots/nn_bodies.h"
 
 namespace mercury {
 namespace {
 
 std::string reason_not_to_grow(const NnGenome& genome) {
-  try {
-    grow(genome);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal([&] { grow(genome); });
 }
 
 TEST(NnCloud, RefusesCloudsThatSpanNoBodyWithTheReason) {

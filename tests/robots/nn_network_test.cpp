@@ -10,6 +10,7 @@
 #include "mercury/network.h"
 #include "mercury/random.h"
 #include "robots/nn/perceptron.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -74,16 +75,6 @@ Change change(const Network& before, const Network& after) {
   return result;
 }
 
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(Network, AgreesWithACalculationInDoublePrecision) {
   for (const std::vector<int>& sizes : {std::vector{3, 64, 64, 25}, {3, 25}, {5, 7, 1, 33, 25}}) {
     const Network network = random_network(sizes, 1);
@@ -125,15 +116,15 @@ TEST(Network, NamesWhatDoesNotFit) {
   Network network = random_network({3, 8, 25}, 7);
   EXPECT_NO_THROW(validate(network));
   EXPECT_EQ(sizes_of(network), (std::vector{3, 8, 25}));
-  EXPECT_EQ(message_of([] { validate(Network{}); }), "network: 1 to 16 layers are accepted");
+  EXPECT_EQ(refusal([] { validate(Network{}); }), "network: 1 to 16 layers are accepted");
   Network wrong = network;
   wrong.layers[1].inputs = 7;
-  EXPECT_EQ(message_of([&] { validate(wrong); }), "network: a layer of 7 inputs follows one of 8 outputs");
+  EXPECT_EQ(refusal([&] { validate(wrong); }), "network: a layer of 7 inputs follows one of 8 outputs");
   wrong = network;
   wrong.layers[0].weights.pop_back();
-  EXPECT_EQ(message_of([&] { validate(wrong); }),
+  EXPECT_EQ(refusal([&] { validate(wrong); }),
             "network: a layer of 3 inputs and 8 outputs has 23 weights and 8 biases");
-  EXPECT_EQ(message_of([] {
+  EXPECT_EQ(refusal([] {
               validate(random_network({3, 24}, 1), "/origin");
             }),
             "/origin: the last layer gives 25 numbers (a place and 22 scores) or 29 (four fields as well), not 24");
@@ -223,7 +214,7 @@ TEST(Crossover, InheritsEveryNeuronWholeFromOneOfItsParents) {
 }
 
 TEST(Crossover, NeedsEqualSizes) {
-  EXPECT_EQ(message_of([] {
+  EXPECT_EQ(refusal([] {
               crossover(random_network({3, 8, 25}, 1), random_network({3, 9, 25}, 1), 1);
             }),
             "crossover: two networks of equal sizes are needed");

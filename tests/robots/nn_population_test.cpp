@@ -11,6 +11,7 @@
 
 #include "mercury/error.h"
 #include "mercury/simulation.h"
+#include "tests/refusal.h"
 #include "tests/robots/nn_bodies.h"
 
 namespace mercury {
@@ -60,12 +61,7 @@ TEST(NnPopulation, AFailureIsReportedAndTheOthersAreGrown) {
 
 TEST(NnPopulation, OptionsOutOfRangeAreNamed) {
   const auto message = [](const NnOptions& options) -> std::string {
-    try {
-      random_nn_robots(options, 1, 1);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal([&] { random_nn_robots(options, 1, 1); });
   };
   EXPECT_EQ(message({.hidden = {64, 3}}), "hidden: 3 is not accepted; give 6 to 4096");
   EXPECT_EQ(message({.hidden = std::vector<int>(16, 8)}), "hidden: 16 numbers are not accepted; give at most 15");

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mercury/error.h"
+#include "tests/refusal.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {
@@ -145,14 +146,7 @@ TEST(RandomVoxels, DefaultsAreSoundBodiesOverManySeeds) {
 }
 
 TEST(RandomVoxels, RefusesOptionsThatCannotBeUsed) {
-  const auto message = [](RandomVoxelOptions options) {
-    try {
-      random_voxel_robots(options, 1, 2);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto message = [](RandomVoxelOptions options) { return refusal([&] { random_voxel_robots(options, 1, 2); }); };
   EXPECT_EQ(message({.smallest = {0, 1, 1}}), "voxels: 0 is not accepted; give 1 voxels or more");
   EXPECT_EQ(message({.smallest = {3, 3, 3}, .largest = {2, 3, 3}}),
             "voxels: 3 to 2 is not accepted; the first size must not be above the second");

@@ -16,6 +16,7 @@
 #include "mercury/origin.h"
 #include "mercury/robot_file.h"
 #include "mercury/voxel.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -253,14 +254,9 @@ TEST(RealBody, AFileOfModuliThatBreaksARuleIsRefused) {
   const auto refusal = [&](const std::string& materials, const std::string& rest = "") -> std::string {
     std::string changed = text;
     changed.insert(changed.find("\"masses\""), rest + "\"materials\":[{\"stiffness\":0}," + materials + "],");
-    try {
-      parse_robot(changed, RobotFormat::json);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return mercury::refusal([&] { parse_robot(changed, RobotFormat::json); });
   };
-  EXPECT_EQ(refusal(R"({"modulus":1e5,"density":1000})"), "no error");
+  EXPECT_EQ(refusal(R"({"modulus":1e5,"density":1000})"), "");
   EXPECT_EQ(refusal(R"({"modulus":1e5})"), "/materials/1: modulus and density come together; give both or neither");
   EXPECT_EQ(refusal(R"({"stiffness":5,"density":1000})"),
             "/materials/1: modulus and density come together; give both or neither");

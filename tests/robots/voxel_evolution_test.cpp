@@ -8,6 +8,7 @@
 
 #include "mercury/error.h"
 #include "mercury/origin.h"
+#include "tests/refusal.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {
@@ -178,21 +179,13 @@ TEST(VoxelEvolution, ManyGenerationsStaySound) {
 }
 
 TEST(VoxelEvolution, RefusesWhatItCannotUse) {
-  const auto message = [](auto&& action) {
-    try {
-      action();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
   const auto mutation = [&](const VoxelMutation& options) {
-    return message([&] { mutate(parent_of(1), options, 1); });
+    return refusal([&] { mutate(parent_of(1), options, 1); });
   };
   EXPECT_EQ(mutation({.flip = 1.5}), "flip: give a chance between 0 and 1");
   EXPECT_EQ(mutation({.patch = 0}), "patch: give at least 1 voxel");
   EXPECT_EQ(mutation({.materials = {0}}), "materials: 0 is not a base material; give 1 to 22");
-  EXPECT_EQ(message([] {
+  EXPECT_EQ(refusal([] {
               mutate_voxel_robot(Robot{.name = "blob", .masses = {{0, 0, 0}}}, {}, 1, "x");
             }),
             "robot blob: not a voxel robot, its origin holds no grid");

@@ -12,6 +12,7 @@
 
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "tests/refusal.h"
 #include "tests/robots/surface.h"
 
 namespace mercury {
@@ -192,20 +193,11 @@ TEST(VoxelRobot, GivesItsGridBack) {
   EXPECT_EQ(voxel_grid_of(Robot{.origin = R"({"kind":"nn"})"}), std::nullopt);
 }
 
-std::string message_of(auto&& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(VoxelRobot, RefusesGridsThatBreakARule) {
-  const auto make = [](const VoxelGrid& grid) { return message_of([&] { make_voxel_robot(grid); }); };
-  EXPECT_EQ(message_of([] { VoxelGrid(0, 4, 4); }),
+  const auto make = [](const VoxelGrid& grid) { return refusal([&] { make_voxel_robot(grid); }); };
+  EXPECT_EQ(refusal([] { VoxelGrid(0, 4, 4); }),
             "voxel grid: size 0x4x4 is not accepted; give at least 1 voxel each way");
-  EXPECT_EQ(message_of([] { VoxelGrid(2000000000, 2000000000, 2000000000); }),
+  EXPECT_EQ(refusal([] { VoxelGrid(2000000000, 2000000000, 2000000000); }),
             "voxel grid: size 2000000000x2000000000x2000000000 is not accepted; give at most 67108864 voxels");
   EXPECT_EQ(make(VoxelGrid(2, 2, 2)), "voxel grid: all voxels are air, a robot needs at least one that is not");
   EXPECT_EQ(make(VoxelGrid(2, 2, 2, 23)),
@@ -223,7 +215,7 @@ TEST(VoxelRobot, RefusesGridsThatBreakARule) {
 }
 
 TEST(VoxelRobot, RefusesAnOriginThatHoldsNoGrid) {
-  const auto read = [](const char* origin) { return message_of([&] { voxel_grid_of(Robot{.origin = origin}); }); };
+  const auto read = [](const char* origin) { return refusal([&] { voxel_grid_of(Robot{.origin = origin}); }); };
   EXPECT_EQ(read("nonsense"), "/origin: must be a JSON object");
   EXPECT_EQ(read(R"({"kind":"voxel"})"), "/origin: size must be three whole numbers of at least 1");
   EXPECT_EQ(read(R"({"kind":"voxel","size":[1,1,1],"edge":0.1,"cells":[99]})"),

@@ -12,6 +12,7 @@
 #include "mercury/error.h"
 #include "plain_backend.h"
 #include "same_telemetry.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -294,12 +295,8 @@ TEST(SharedRobots, TheFirstOfSeveralBadRobotsIsNamed) {
   std::vector<Robot> robots(50, bodies::random_voxels({.x = 1, .y = 1, .z = 1}, 1));
   for (const std::size_t i : {20, 37, 44}) robots[i] = bad;
   Simulation simulation;
-  try {
-    simulation.add(robots);
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "robot 20 (random voxels): /springs/4: mass 900 is out of range, the robot has 8");
-  }
+  EXPECT_EQ(refusal([&] { simulation.add(robots); }),
+            "robot 20 (random voxels): /springs/4: mass 900 is out of range, the robot has 8");
   EXPECT_EQ(simulation.size(), 0u);
 }
 

@@ -9,6 +9,7 @@
 #include "bodies.h"
 #include "mercury/error.h"
 #include "reference.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -167,12 +168,8 @@ TEST_P(Control, ABadRobotIsNamedWithItsPlaceInTheBatch) {
   std::vector<Robot> robots = {bodies::pair({50, 0, 0, 0}), bodies::pair({50, 0, 0, 0})};
   robots[1].name = "eel";
   robots[1].springs[0].b = 9;
-  try {
-    Simulation simulation(configuration(), robots);
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "robot 1 (eel): /springs/0: mass 9 is out of range, the robot has 2");
-  }
+  EXPECT_EQ(refusal([&] { Simulation simulation(configuration(), robots); }),
+            "robot 1 (eel): /springs/0: mass 9 is out of range, the robot has 2");
 }
 
 TEST_P(Control, AnEmptyBatchCanGrow) {

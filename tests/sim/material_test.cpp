@@ -8,6 +8,7 @@
 #include <set>
 
 #include "mercury/error.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -91,14 +92,7 @@ TEST(Materials, IdsThatAreNotBaseMaterialsCannotBeCombined) {
 }
 
 TEST(Materials, ValidationNamesThePlaceAndTheRule) {
-  const auto message = [](const Material& material) {
-    try {
-      validate(material, "/materials/3");
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
+  const auto message = [](const Material& material) { return refusal([&] { validate(material, "/materials/3"); }); };
   EXPECT_EQ(message({50, 0.14f, 1, 0}), "");
   EXPECT_EQ(message({-1, 0, 0, 0}), "/materials/3: stiffness must be a finite number >= 0 N/m");
   EXPECT_EQ(message({50, 1, 0, 0}), "/materials/3: amplitude must lie between -1 and 1");

@@ -11,6 +11,7 @@
 
 #include "bodies.h"
 #include "mercury/error.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -24,12 +25,7 @@ Robot sound() { return bodies::voxels({.x = 2, .y = 1, .z = 1}, {50, 0.1f, 1, 0}
 std::string message_after(const std::function<void(Robot&)>& spoil) {
   Robot robot = sound();
   spoil(robot);
-  try {
-    validate(robot);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal([&] { validate(robot); });
 }
 
 TEST(RobotRules, AValidRobotPasses) {

@@ -12,6 +12,7 @@
 #include "mercury/robot_file.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
+#include "tests/refusal.h"
 #include "tests/same_bits.h"
 
 namespace mercury {
@@ -46,12 +47,7 @@ class Attachments : public test::FolderTest {
   // Why something is not accepted.
   template <class Read>
   static std::string refusal(const Read& read) {
-    try {
-      read();
-      return "accepted";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return mercury::refusal(read);
   }
   // A scene file with these lines after the first two.
   std::string scene_with(const std::string& lines) const {

@@ -11,6 +11,7 @@
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -102,12 +103,7 @@ TEST(VoxelEdit, WhatCannotBeEditedIsRefusedWithAReason) {
   const Robot one = block(1, 1, 1);
   const VoxelSide side = side_towards(one, {1, 0, 0});
   const auto problem = [&](const Robot& robot, const VoxelEdit& edit) {
-    try {
-      with_voxel(robot, side, edit);
-      return std::string("accepted");
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
+    return refusal([&] { with_voxel(robot, side, edit); });
   };
   EXPECT_EQ(problem(one, {.tool = VoxelTool::remove}), "block: would have no voxel left");
   EXPECT_THAT(problem(one, {.tool = VoxelTool::paint, .material = 40}), testing::HasSubstr("give 1 to 22"));

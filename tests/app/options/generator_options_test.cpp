@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "mercury/error.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -55,12 +56,7 @@ TEST(GeneratorOptions, ListValuesThatDifferFromTheDefaults) {
 
 TEST(GeneratorOptions, RefuseTextsOfAnotherKind) {
   const auto refusal = [](const GeneratorParameter& one, const std::string& text) -> std::string {
-    try {
-      parameter_value_from(one, "--" + one.name, text);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return mercury::refusal([&] { parameter_value_from(one, "--" + one.name, text); });
   };
   EXPECT_EQ(refusal(parameter("voxel", "air"), "thin"), "--air: \"thin\" is not accepted; give a number");
   EXPECT_EQ(refusal(parameter("voxel", "patch"), "1.5"), "--patch: \"1.5\" is not accepted; give a whole number");

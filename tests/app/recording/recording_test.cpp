@@ -12,6 +12,7 @@
 #include "mercury/error.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
+#include "tests/refusal.h"
 #include "tests/same_bits.h"
 
 namespace mercury::test {
@@ -466,12 +467,7 @@ TEST_F(Recording, PlaybackMarksARobotWhenItExploded) {
 }
 
 std::string refusal(const std::string& path) {
-  try {
-    TrajectoryReader reader(path);
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
+  return mercury::refusal([&] { TrajectoryReader reader(path); });
 }
 
 TEST_F(Recording, OtherFilesAreRefused) {

@@ -5,6 +5,7 @@
 
 #include "mercury/error.h"
 #include "tests/app/program.h"
+#include "tests/refusal.h"
 
 namespace mercury::test {
 namespace {
@@ -43,12 +44,7 @@ TEST_F(CameraFile, MissingMembersHaveDefaults) {
 TEST_F(CameraFile, ErrorsNameTheMember) {
   const auto message = [&](const std::string& text) -> std::string {
     write("a.json", text);
-    try {
-      load_camera(path("a.json"));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return refusal([&] { load_camera(path("a.json")); });
   };
   const std::string file = path("a.json");
   const std::string start = R"({"format": "mercury-camera", "version": 1, )";

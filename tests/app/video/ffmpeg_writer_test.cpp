@@ -10,6 +10,7 @@
 #include "mercury/error.h"
 #include "render/png.h"
 #include "tests/app/program.h"
+#include "tests/refusal.h"
 
 namespace mercury::test {
 namespace {
@@ -254,15 +255,12 @@ class FailingVideo : public VideoTest {
  protected:
   template <class Error>
   void expect_failure(const VideoSettings& settings, const std::string& message) {
-    try {
-      const auto writer = open_frame_writer(path("a.mp4"), settings);
-      for (std::uint32_t i = 0; i < 60; ++i) writer->write(noise(VideoKind::mp4, settings.size, i));
-      writer->finish();
-      FAIL() << "no error";
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), HasSubstr(message));
-      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    }
+    EXPECT_THAT(refusal<Error>([&] {
+                  const auto writer = open_frame_writer(path("a.mp4"), settings);
+                  for (std::uint32_t i = 0; i < 60; ++i) writer->write(noise(VideoKind::mp4, settings.size, i));
+                  writer->finish();
+                }),
+                testing::AllOf(HasSubstr(message), testing::Not(HasSubstr("\n"))));
     EXPECT_FALSE(std::filesystem::exists(path("a.mp4")));
     for (const std::string& name : listing()) EXPECT_EQ(name.find(".part"), std::string::npos) << name;
   }

@@ -7,17 +7,13 @@
 #include <string>
 
 #include "mercury/error.h"
+#include "tests/refusal.h"
 
 namespace mercury::test {
 namespace {
 
 std::string refusal(PictureSize size, bool software, std::size_t usable) {
-  try {
-    require_memory_for_pictures(size, software, usable);
-  } catch (const ParameterError& error) {
-    return error.what();
-  }
-  return "";
+  return mercury::refusal<ParameterError>([&] { require_memory_for_pictures(size, software, usable); });
 }
 
 TEST(PictureMemoryTest, TheSizeThatIsOfferedFits) {

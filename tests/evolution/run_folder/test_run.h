@@ -21,6 +21,7 @@
 #include "mercury/run_folder.h"
 #include "mercury/voxel.h"
 #include "robots/file/whole_file.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 
@@ -153,12 +154,7 @@ inline void evolve(RunFolder& run, int most = 1'000'000) {
 // What an error says; "" if there is none.
 template <class Action>
 std::string error_of(const Action& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return refusal<std::exception>(action);
 }
 
 inline bool is_one_line(const std::string& message) {

@@ -14,6 +14,7 @@
 #include "mercury/error.h"
 #include "mercury/evolution.h"
 #include "tests/evolution/vector_genome.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -284,12 +285,7 @@ TEST(Islands, SettingsThatDoNotGoTogetherAreRefused) {
     EvolutionSettings settings;
     settings.algorithm = std::move(algorithm);
     settings.children = children;
-    try {
-      validate(settings);
-      return "";
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
+    return mercury::refusal<ParameterError>([&] { validate(settings); });
   };
   const std::vector<MapAxis> axes{{.quantity = "size"}};
   EXPECT_EQ(refusal({.name = "cma-es", .islands = 2}),
