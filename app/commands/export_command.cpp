@@ -18,6 +18,7 @@
 #include "app/options/command.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
+#include "app/options/result_file.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 
@@ -367,6 +368,21 @@ int export_run(const ExportOptions& options, const fs::path& folder) {
                           clip.robots, targets, seconds, notes);
 }
 
+// What a result of mercury run names, simulated again.
+int export_result(const ExportOptions& options, const fs::path& file) {
+  if (const std::string option = options.for_recordings(); !option.empty())
+    throw InputError(option, "chooses frames of a recording (.h5), and " + file.string() + " is a result");
+  const RunResult result = read_result(file);
+  const std::vector<std::shared_ptr<const Robot>> robots = robots_of(result, options.robots);
+  const Targets targets(options, names_of_robots(robots));
+  const Configuration configuration = options.simulation.configuration_over(result.configuration);
+  const int status =
+      export_simulated(options, configuration, robots, targets, options.simulation.seconds(result.seconds),
+                       {.title = {}, .command = options.command, .captions = {}});
+  if (status != 0 || options.output.dry_run()) return status;
+  return check_again(result, robots, configuration.device) ? 0 : 1;
+}
+
 int export_all(const ExportOptions& options) {
   if (options.path.empty()) throw InputError("-o", "give a file or a folder");
   if (!options.format.empty()) export_format(options.format);
@@ -376,11 +392,15 @@ int export_all(const ExportOptions& options) {
   // Poses of a run are those of its champions' files.
   const bool are_chosen = !options.robots.chosen_of_runs().empty();
   if (are_chosen && !chosen.empty()) throw InputError("--robot", "not together with " + chosen);
-  if (!are_chosen && (!chosen.empty() || options.for_seconds || (format && format->motions)))
+  const bool moves = options.for_seconds || (format && format->motions);
+  if (!are_chosen && (!chosen.empty() || moves))
     if (const auto run = options.robots.alone(is_run_folder, "a run is exported alone; give it without other robots"))
       return export_run(options, *run);
   if (!chosen.empty()) throw InputError(chosen, "chooses robots of a run of mercury evolve; give its folder");
   if (const auto recording = options.robots.recording()) return export_recording(options, *recording);
+  if (moves)
+    if (const auto result = options.robots.alone(is_result, "a result is exported alone; give it without other robots"))
+      return export_result(options, *result);
   return export_robots(options);
 }
 
@@ -422,7 +442,7 @@ void add_export_command(const Command& program, const Choose& choose) {
   const Command command = program.add_command("export", "Write robots and motions as files of other programs");
   options->robots.add_to(command);
   command.find_option("ROBOTS")->with_help(
-      "Robot files (.json, .cbor), folders, samples (sample:eel), or a recording (.h5) for motions");
+      "Robot files, folders, samples (sample:eel), a recording (.h5), a result (run --json)");
   add_text(command, "-o,--output", options->path,
            "A file, whose extension says the format, or a folder for one file per robot", "FILE|FOLDER")
       .required();

@@ -62,7 +62,9 @@ std::vector<Robot> robots_in(const fs::path& file) {
       return {load_robot(file)};
     } catch (const InputError&) {
       if (is_result(file))
-        throw InputError(file.string(), "is a result of mercury run; mercury render films it, here give robots");
+        throw InputError(
+            file.string(),
+            "is a result of mercury run; mercury render films it, export writes its motion, here give robots");
       throw;
     }
   Import import = import_file(file, *format);

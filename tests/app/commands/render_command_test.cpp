@@ -370,6 +370,21 @@ TEST_F(RenderResult, IsSimulatedAgainBesideARecordingOfTheSameRun) {
   EXPECT_THAT(alone.messages, HasSubstr("simulating 2 robots (land)"));
 }
 
+TEST_F(RenderResult, ItsMotionIsExported) {
+  const std::string result = path(run("walk", {"--random", "voxel:2:7"}));
+  const Outcome outcome = mercury({"export", result, "-o", path("walk.html"), "--device", "cpu"});
+  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  EXPECT_THAT(outcome.messages, HasSubstr("all final states are those of the result, bit for bit"));
+  EXPECT_THAT(read("walk.html"), HasSubstr("walk.json"));
+  // A pose needs no result: it is that of the robot's file.
+  const Outcome pose = mercury({"export", result, "-o", path("walk.obj")});
+  EXPECT_EQ(pose.status, 2);
+  EXPECT_THAT(pose.messages, HasSubstr("walk.json: is a result of mercury run"));
+  const Outcome frames = mercury({"export", result, "-o", path("walk.glb"), "--from", "0.1"});
+  EXPECT_EQ(frames.status, 2);
+  EXPECT_THAT(frames.messages, HasSubstr("walk.json is a result"));
+}
+
 TEST_F(RenderResult, NamesFilesThatLieBesideIt) {
   ASSERT_EQ(mercury({"new", "voxel", "-o", path("one.json")}).status, 0);
   const std::string text = read(run("moved", {path("one.json")}));
