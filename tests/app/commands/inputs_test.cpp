@@ -125,12 +125,12 @@ TEST_F(Inputs, AProgramWithoutMemorySaysWhatTheLimitIs) {
   EXPECT_EQ(file.status, 1);
   EXPECT_EQ(file.messages, "mercury: not enough memory: more is needed than the limit, 32 MiB (ulimit -d)\n");
   const Outcome threads =
-      limited("-s 16384 && ulimit -d 40960", "run --random voxel --seconds 0.01 --device cpu --threads 8");
+      limited("-s 16384 && ulimit -d 24576", "run --random voxel --seconds 0.01 --device cpu --threads 8");
   EXPECT_EQ(threads.status, 1);
   // If the first thread had begun before the second one failed, TBB warns of that first.
   EXPECT_THAT(threads.messages,
               testing::EndsWith("mercury: no thread could be started: each needs 16384 KiB of stack (ulimit -s), the "
-                                "limit is 40 MiB (ulimit -d); give more, or fewer --threads\n"));
+                                "limit is 24 MiB (ulimit -d); give more, or fewer --threads\n"));
 }
 
 TEST_F(Inputs, TheProgramSaysHowMuchStackItNeeds) {

@@ -125,18 +125,21 @@ class PanelsTest(WindowCase):
         window = self.small("--paused", "--color", "strain")
         window.key("f")
         window.frame(lambda frame: len(frame["where"]) == 2)
-        x, y = map(round, window.standing()["where"][1])
         aside = window.place("play.play") if "play.play" in window.items else (SIZE[0] // 2, SIZE[1] - 5)
-        window.do("mousemove", *aside)
-        window.frame()
-        before = window.screenshot()
+
+        def picture():
+            """The window, and where the middle of the robot is: the message of a picture that is saved takes room."""
+            window.do("mousemove", *aside)
+            x, y = map(round, window.standing()["where"][1])
+            return window.screenshot(), x, y
+
+        before, x, y = picture()
+        was = before[y - 5:y + 6, x - 5:x + 6]
         window.click("robot.1")  # a click in the picture would mark a mass, too
         window.frame(lambda frame: frame["selected"] == 1)
-        window.do("mousemove", *aside)
-        window.frame()
-        after = window.screenshot()
+        after, x, y = picture()
         changed = numpy.abs(after - before).max(axis=2) > 0.02
-        self.assertFalse(changed[y - 5:y + 6, x - 5:x + 6].any(), "the middle of the robot is as before")
+        self.assertLessEqual(numpy.abs(after[y - 5:y + 6, x - 5:x + 6] - was).max(), 0.02, "the middle of the robot is as before")
         red, green, blue = numpy.moveaxis(after, 2, 0)
         line = changed & (red > 0.85) & (green > 0.75) & (blue < 0.75) & (red - blue > 0.2)
         near = line[max(0, y - 200):y + 200, max(0, x - 250):x + 250]
