@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -26,14 +27,17 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::string text_in(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 std::string text_of(const Json& row, const char* member) {
   const auto found = row.find(member);
   return found != row.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+// A number of steps, masses or trials.
+std::int64_t count_of(const Json& object, const char* member, const std::string& place) {
+  const Json& value = object.at(member);
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::uint64_t{1} << 62)
+    throw InputError(fmt::format("{}/{}", place, member), "give a whole number of 0 or more");
+  return value.get<std::int64_t>();
 }
 
 RobotOfResult robot_of(const Json& row, const std::string& place) {
@@ -41,8 +45,8 @@ RobotOfResult robot_of(const Json& row, const std::string& place) {
                       .name = text_of(row, "name"),
                       .file = text_of(row, "file"),
                       .random = text_of(row, "random"),
-                      .masses = row.at("masses").get<std::size_t>(),
-                      .springs = row.at("springs").get<std::size_t>(),
+                      .masses = static_cast<std::size_t>(count_of(row, "masses", place)),
+                      .springs = static_cast<std::size_t>(count_of(row, "springs", place)),
                       .physics = text_of(row, "physics")};
   const std::string hash = text_of(row, "hash");
   const auto [end, error] = std::from_chars(hash.data(), hash.data() + hash.size(), robot.hash, 16);
@@ -57,12 +61,11 @@ RunResult result_of(const Json& json) {
   RunResult result{.program = text_of(json, "program"),
                    .device = text_of(json, "device"),
                    .configuration = configuration_from(json.at("configuration")),
-                   .steps = json.at("steps").get<std::int64_t>(),
+                   .steps = count_of(json, "steps", ""),
                    .seconds = json.at("seconds").get<double>(),
-                   .trials = json.value("trials", 1),
+                   .trials = json.contains("trials") ? count_of(json, "trials", "") : 1,
                    .jitter = json.value("jitter", 0.0)};
-  if (!(result.seconds >= 0 && result.seconds < 1e15 && result.steps >= 0))
-    throw InputError("/seconds", "give a time of 0 or more");
+  if (!(result.seconds >= 0 && result.seconds < 1e15)) throw InputError("/seconds", "give a time of 0 or more");
   const Json& rows = json.at("robots");
   if (!rows.is_array()) throw InputError("/robots", "give a list");
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -110,8 +113,10 @@ bool is_result(const fs::path& path) {
 }
 
 RunResult read_result(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path.string(), std::strerror(errno));
   try {
-    RunResult result = result_of(Json::parse(text_in(path)));
+    RunResult result = result_of(Json::parse(file));
     result.path = path;
     return result;
   } catch (const Json::exception&) {
@@ -149,7 +154,7 @@ bool check_again(const RunResult& result, const std::vector<std::shared_ptr<cons
                  const Device& device) {
   const std::string name = result.path.string();
   if (result.trials > 1 || result.jitter > 0) {
-    say(fmt::format("{}: {} trials with jitter {:g}; the film begins without jitter, and is not compared", name,
+    say(fmt::format("{}: {} trials with jitter {:g}; here robots begin without jitter, and are not compared", name,
                     result.trials, result.jitter));
     return true;
   }

@@ -34,7 +34,7 @@ struct RunResult {
   Configuration configuration;
   std::int64_t steps = 0;
   double seconds = 0;  // simulated
-  int trials = 1;
+  std::int64_t trials = 1;
   double jitter = 0;
   std::vector<RobotOfResult> robots;  // those that were stepped
 };

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Configuration files, camera files, scenes, keys, and what the window remembers.
+// Configuration files, camera files, scenes, results, keys, and what the window remembers.
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "app/live/scene_text.h"
 #include "app/live/session_settings.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
+#include "app/options/result_file.h"
 #include "app/options/scene_file.h"
 #include "app/options/simulation_options.h"
+#include "app/recording/configuration_json.h"
 #include "app/scene/camera_plan.h"
 #include "app/window/toolkit/key_map.h"
 #include "mercury/error.h"
@@ -117,6 +120,26 @@ void check_scene(std::string_view input) {
   scratch_file(written, "first.toml");
   require(written_scene(first, SceneFile(scratch_folder() + "/first.toml")) == written,
           "the scene does not read back as it was written");
+}
+
+void check_result(std::string_view input) {
+  const RunResult result = read_result(scratch_file(input, "result.json"));
+  validate(result.configuration);
+  require(result.steps >= 0 && result.seconds >= 0 && result.trials >= 0, "a result of less than no time");
+  require(!result.robots.empty(), "a result without robots");
+  for (const RobotOfResult& robot : result.robots)
+    require(robot.file.empty() != robot.random.empty(), "a robot from nowhere, or from two places");
+}
+
+std::vector<std::string> result_seeds() {
+  const std::string of_all = R"({"program": "mercury 0.2.0", "device": "CPU, 1 thread", "steps": 200, "seconds": 0.2,)";
+  Configuration configuration;
+  configuration.environment = Land{};
+  const std::string settings = R"( "configuration": )" + json_of(configuration).dump() + R"(, "robots": [)";
+  const std::string hash = R"("masses": 12, "springs": 40, "physics": "paper", "hash": "0123456789abcdef"})";
+  return {of_all + settings + R"({"name": "a", "random": "voxel:1:7", )" + hash + "]}",
+          of_all + R"( "trials": 3, "jitter": 0.001,)" + settings + R"({"name": "b", "file": "b.json", )" + hash +
+              R"(, {"name": "c", "failure": "no masses"}]})"};
 }
 
 std::vector<std::string> scene_seeds() {

@@ -83,6 +83,7 @@ std::span<const Target> targets() {
                                   Target{"npz", "history", npz_seeds, check_npz},
                                   Target{"history", "history", history_seeds, check_history},
                                   Target{"scene", "toml", scene_seeds, check_scene},
+                                  Target{"result", "repro", result_seeds, check_result},
                                   Target{"keys", "keys", keys_seeds, check_keys}};
   return all;
 }

@@ -58,6 +58,7 @@ void check_evogym(std::string_view input);
 void check_npz(std::string_view input);
 void check_history(std::string_view input);
 void check_scene(std::string_view input);
+void check_result(std::string_view input);
 void check_keys(std::string_view input);
 
 std::vector<std::string> robot_json_seeds();
@@ -79,6 +80,7 @@ std::vector<std::string> evogym_seeds();
 std::vector<std::string> npz_seeds();
 std::vector<std::string> history_seeds();
 std::vector<std::string> scene_seeds();
+std::vector<std::string> result_seeds();
 std::vector<std::string> keys_seeds();
 
 }  // namespace mercury::fuzz

@@ -414,7 +414,7 @@ TEST_F(RenderResult, ThatEndsElsewhereIsFilmedAndSaidSo) {
   const Outcome trials = film({"trials.json", "--still", "0.2"}, "trials.png");
   EXPECT_EQ(trials.status, 0) << trials.messages;
   EXPECT_THAT(trials.messages,
-              HasSubstr("3 trials with jitter 0; the film begins without jitter, and is not compared"));
+              HasSubstr("3 trials with jitter 0; here robots begin without jitter, and are not compared"));
 }
 
 TEST_F(RenderResult, OfRandomRobotsNeedsTheOptionsOfTheirKind) {
@@ -436,6 +436,7 @@ TEST_F(RenderResult, ThatCannotBeUsedIsRefusedInOneLine) {
   };
   refused("cut.json", text.substr(0, text.size() / 2), "is not a result of mercury run --json");
   refused("empty.json", with(text, "\"masses\":", "\"no_masses\":"), "/robots: names no robot that was stepped");
+  refused("many.json", with(text, "\"steps\": ", "\"steps\": -"), "/steps: give a whole number of 0 or more");
   refused("hash.json", with(text, "\"hash\": \"", "\"hash\": \"x"), "/robots/0/hash: \"x");
   refused("both.json", with(text, "\"random\": \"", "\"file\": \"a.json\", \"random\": \""), "/robots/0: give either");
   EXPECT_THAT(film({result, "--random", "voxel:1"}, "a.mp4").messages,
