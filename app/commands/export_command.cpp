@@ -392,13 +392,12 @@ int export_all(const ExportOptions& options) {
   // Poses of a run are those of its champions' files.
   const bool are_chosen = !options.robots.chosen_of_runs().empty();
   if (are_chosen && !chosen.empty()) throw InputError("--robot", "not together with " + chosen);
-  const bool moves = options.for_seconds || (format && format->motions);
-  if (!are_chosen && (!chosen.empty() || moves))
+  if (!are_chosen && (!chosen.empty() || options.for_seconds || (format && format->motions)))
     if (const auto run = options.robots.alone(is_run_folder, "a run is exported alone; give it without other robots"))
       return export_run(options, *run);
   if (!chosen.empty()) throw InputError(chosen, "chooses robots of a run of mercury evolve; give its folder");
   if (const auto recording = options.robots.recording()) return export_recording(options, *recording);
-  if (moves)
+  if (options.for_seconds || (format && holds_simulated_motion(*format)))
     if (const auto result = options.robots.alone(is_result, "a result is exported alone; give it without other robots"))
       return export_result(options, *result);
   return export_robots(options);

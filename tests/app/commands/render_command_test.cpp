@@ -376,6 +376,9 @@ TEST_F(RenderResult, ItsMotionIsExported) {
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_THAT(outcome.messages, HasSubstr("all final states are those of the result, bit for bit"));
   EXPECT_THAT(read("walk.html"), HasSubstr("walk.json"));
+  const Outcome table = mercury({"export", result, "-o", path("walk.csv"), "--robot", "1", "--device", "cpu"});
+  EXPECT_EQ(table.status, 0) << table.messages;
+  EXPECT_THAT(table.messages, HasSubstr("bit for bit"));
   // A pose needs no result: it is that of the robot's file.
   const Outcome pose = mercury({"export", result, "-o", path("walk.obj")});
   EXPECT_EQ(pose.status, 2);
