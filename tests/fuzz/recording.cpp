@@ -97,6 +97,7 @@ void check_recording(std::string_view input) {
     reader.velocities(i);
     reader.senses(i);
     reader.neurons(i);
+    reader.state(i);
   }
   TrajectoryReader again(written_again(reader, frames));
   require(again.configuration() == reader.configuration(), "the configuration does not read back as it was written");

@@ -4,6 +4,7 @@
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
+#include "mercury/voxel.h"
 #include "robots/file/document.h"
 #include "tests/fuzz/target.h"
 
@@ -21,6 +22,7 @@ void check_robot(std::string_view input, RobotFormat format) {
   }
   require(parse_robot(written, format) == robot, "the robot does not read back as it was written");
   require(serialize_robot(parse_robot(written, format), format) == written, "the same robot is written in two ways");
+  voxel_grid_of(robot);
 }
 
 Robot small_robot() {

@@ -56,7 +56,8 @@ void check_configuration_file(std::string_view input) {
 std::vector<std::string> configuration_file_seeds() {
   return {"dt = 0.001\n[run]\ntext = \"a\"\nflag = true\nseveral = [\"a\", \"b\"]\nflow = [1, 0.5, -2]\n",
           "# all\nenvironment = \"land\"\nfriction = 0.5\nno-self-collision = true\n[new.voxel]\ntext = 'b'\n",
-          "[run]\nsolver = \"xpbd\"\ndevice = \"cpu\"\nthreads = 2\ndamping = 1e-3\n"};
+          "[run]\nsolver = \"xpbd\"\ndevice = \"\"\"cpu\"\"\"\nthreads = 2\ndamping = 1e-3\ndensity = 1_000.5\ngravity "
+          "= 0x10\n"};
 }
 
 void check_camera(std::string_view input) {

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -64,27 +65,28 @@ std::string unquoted(const std::string& message) {
 }  // namespace
 
 std::span<const Target> targets() {
-  static constexpr std::array all{Target{"robot_json", "robot", robot_json_seeds, check_robot_json},
-                                  Target{"robot_cbor", "robot", robot_cbor_seeds, check_robot_cbor},
-                                  Target{"origin", "robot", origin_seeds, check_origin},
-                                  Target{"repro", "repro", repro_seeds, check_repro},
-                                  Target{"recording", "recording", recording_seeds, check_recording},
-                                  Target{"checkpoint", "recording", checkpoint_seeds, check_checkpoint},
-                                  Target{"run_file", "run_file", run_file_seeds, check_run_file},
-                                  Target{"journal", "journal", journal_seeds, check_journal},
-                                  Target{"genome", "journal", genome_seeds, check_genome},
-                                  Target{"configuration", "toml", configuration_file_seeds, check_configuration_file},
-                                  Target{"camera", "camera", camera_seeds, check_camera},
-                                  Target{"session", "toml", session_seeds, check_session},
-                                  Target{"vxa", "vxa", vxa_seeds, check_vxa},
-                                  Target{"vxd", "vxa", vxd_seeds, check_vxd},
-                                  Target{"rsc", "vxa", rsc_seeds, check_rsc},
-                                  Target{"evogym", "robot", evogym_seeds, check_evogym},
-                                  Target{"npz", "history", npz_seeds, check_npz},
-                                  Target{"history", "history", history_seeds, check_history},
-                                  Target{"scene", "toml", scene_seeds, check_scene},
-                                  Target{"result", "repro", result_seeds, check_result},
-                                  Target{"keys", "keys", keys_seeds, check_keys}};
+  static constexpr std::array all{
+      Target{"robot_json", "robot", robot_json_seeds, check_robot_json},
+      Target{"robot_cbor", "robot", robot_cbor_seeds, check_robot_cbor},
+      Target{"origin", "robot", origin_seeds, check_origin},
+      Target{"repro", "repro", repro_seeds, check_repro},
+      Target{"recording", "recording", recording_seeds, check_recording},
+      Target{"checkpoint", "recording", checkpoint_seeds, check_checkpoint},
+      Target{"run_file", "run_file", run_file_seeds, check_run_file},
+      Target{"journal", "journal", journal_seeds, check_journal},
+      Target{"genome", "journal", genome_seeds, check_genome},
+      Target{"configuration", "toml", configuration_file_seeds, check_configuration_file, true},
+      Target{"camera", "camera", camera_seeds, check_camera},
+      Target{"session", "toml", session_seeds, check_session},
+      Target{"vxa", "vxa", vxa_seeds, check_vxa},
+      Target{"vxd", "vxa", vxd_seeds, check_vxd},
+      Target{"rsc", "vxa", rsc_seeds, check_rsc},
+      Target{"evogym", "robot", evogym_seeds, check_evogym},
+      Target{"npz", "history", npz_seeds, check_npz, true},
+      Target{"history", "history", history_seeds, check_history},
+      Target{"scene", "toml", scene_seeds, check_scene},
+      Target{"result", "repro", result_seeds, check_result},
+      Target{"keys", "keys", keys_seeds, check_keys}};
   return all;
 }
 
@@ -101,6 +103,10 @@ std::string run(const Target& target, std::string_view input) {
   } catch (const InputError& error) {
     const std::string message = error.what();
     require(!message.empty(), "an empty message");
+    require(message.size() < 1000, "a long message: " + message.substr(0, 500));
+    require(target.quotes ||
+                std::ranges::none_of(unquoted(message), [](char letter) { return letter >= 0 && letter < ' '; }),
+            "a message of more than one line: " + message.substr(0, 500));
     for (const char* word : foreign_words)
       require(!names(unquoted(message), word) || input.find(word) != std::string::npos,
               "a message with words of a library: " + message.substr(0, 500));

@@ -17,6 +17,7 @@ struct Target {
   // Reads the input. Throws InputError if the reader refuses it; calls fail() if the reader breaks a promise, such as
   // that what is read can be written and reads back the same. Any other exception is a failure too.
   void (*check)(std::string_view input);
+  bool quotes = false;  // messages may hold line ends of the input, which the program escapes
 };
 
 std::span<const Target> targets();

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "mercury/error.h"
+#include "mercury/random.h"
 #include "mercury/robot_file.h"
 #include "tests/refusal.h"
 
@@ -277,6 +277,16 @@ TEST(BadRobotFiles, CborThatAnnouncesMoreThanItHolds) {
   EXPECT_EQ(refusal_of_cbor("\xa1\x64name\x7b\x00\x00\x00\xff\xff\xff\xff\xff"s),
             "byte 6: the CBOR document breaks off");
   EXPECT_EQ(refusal_of_cbor("\xbb\x7f\xff\xff\xff\xff\xff\xff\xff"s), "byte 0: the CBOR document breaks off");
+}
+
+TEST(BadRobotFiles, Noise) {
+  for (const RobotFormat format : {RobotFormat::json, RobotFormat::cbor})
+    for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+      Random random(seed);
+      std::string noise(random.below(200), '\0');
+      for (char& c : noise) c = static_cast<char>(random.below(256));
+      ASSERT_NE(refusal_of_document(noise, format), "") << "seed " << seed;
+    }
 }
 
 TEST(BadRobotFiles, CborThatNestsDeeply) {

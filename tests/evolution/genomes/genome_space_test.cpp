@@ -19,6 +19,7 @@
 #include "mercury/voxel.h"
 #include "robots/brain_genes.h"
 #include "robots/bytes.h"
+#include "tests/fuzz/mutation.h"
 #include "tests/refusal.h"
 
 namespace mercury {
@@ -201,26 +202,8 @@ TEST_P(EveryGenome, DamagedBytesGiveAGenomeOrALine) {
   int used = 0, refused = 0;
   for (std::uint64_t seed = 0; seed < 5000; ++seed) {
     Random random(seed);
-    std::string bytes = sound;
-    const std::size_t range = random.chance(0.5) ? std::min<std::size_t>(bytes.size(), 64) : bytes.size();
-    for (std::uint64_t edits = 1 + random.below(4); edits > 0; --edits) {
-      const auto at = static_cast<std::size_t>(random.below(range));
-      switch (random.below(4)) {
-        case 0:
-          bytes[at] = static_cast<char>(random.below(256));
-          break;
-        case 1:
-          bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
-          break;
-        case 2:
-          bytes[at] = random.chance(0.5) ? '\xff' : '\0';
-          break;
-        default:
-          if (random.chance(0.1)) bytes.erase(at, random.below(9));
-          break;
-      }
-      if (bytes.size() < range) break;
-    }
+    const std::size_t begin = random.chance(0.5) ? std::min<std::size_t>(sound.size(), 64) : sound.size();
+    const std::string bytes = fuzz::mutated(sound.substr(0, begin), sound, random) + sound.substr(begin);
     try {
       const GenomePointer genome = space_->decode(bytes);
       ASSERT_EQ(genome->encode(), bytes) << seed;

@@ -134,41 +134,6 @@ TEST_F(Journal, DamageBeforeTheLastRecordIsAnErrorAndNothingIsRemoved) {
   }
 }
 
-TEST_F(Journal, SurvivesFuzzing) {
-  make_run("run", test_settings(2));
-  const std::string journal = read("run/genomes");
-  int opened = 0, refused = 0;
-  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
-    Random random(seed);
-    std::string damaged = journal;
-    for (auto edits = 1 + random.below(3); edits > 0; --edits) {
-      const std::size_t at = random.below(damaged.size());
-      switch (random.below(4)) {
-        case 0:
-          damaged[at] = static_cast<char>(random.below(256));
-          break;
-        case 1:
-          damaged.erase(at, random.below(40));
-          break;
-        case 2:
-          damaged.insert(at, journal.substr(random.below(journal.size()), random.below(200)));
-          break;
-        default:
-          damaged.resize(std::max<std::size_t>(at, 1));
-      }
-    }
-    write("run/genomes", damaged);
-    const std::string error = error_of([&] {
-      const RunHistory read = history("run");
-      for (std::size_t id = 0; id < read.individuals().size(); ++id) read.genome(id);
-    });
-    ASSERT_TRUE(error.empty() || is_one_line(error)) << "seed " << seed << ": " << error;
-    ++(error.empty() ? opened : refused);
-  }
-  EXPECT_GT(opened, 100);
-  EXPECT_GT(refused, 100);
-}
-
 // Bytes that pass all checksums and lie.
 TEST_F(Journal, CountsThatTheBytesDoNotBackAreRefused) {
   const GenerationRecord record{.generation = {.number = 0, .born = {{}}, .living = {0}}, .genomes = {{.size = 3}}};

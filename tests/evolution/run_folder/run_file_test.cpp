@@ -209,42 +209,5 @@ TEST(RunFile, ErrorsNameFileAndLine) {
   EXPECT_THAT(error_with("founders", "founders = [\"../../etc/passwd\"]"), EndsWith("is not the name of a file"));
 }
 
-TEST(RunFile, DamagedOnesGiveSettingsOrALine) {
-  const RunFileTexts sound = run_file_texts(odd_settings());
-  constexpr std::string_view pieces[] = {"[",    "]",   "\"",   "=",   "\n",  "[[algorithm.axes]]\n", "inf", "nan",
-                                         "-1",   "1e9", "{",    "}",   "\\u", "9999999999999999999",  "0x",  "#",
-                                         "true", ".",   "\xff", "'''", ","};
-  int read = 0, refused = 0;
-  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
-    Random random(seed);
-    RunFileTexts damaged = sound;
-    std::string& text = damaged.run;
-    for (auto edits = 1 + random.below(3); edits > 0 && !text.empty(); --edits) {
-      const std::size_t at = random.below(text.size());
-      switch (random.below(5)) {
-        case 0:
-          text[at] = static_cast<char>(random.below(256));
-          break;
-        case 1:
-          text.erase(at, random.below(30));
-          break;
-        case 2:
-          text.insert(at, pieces[random.below(std::size(pieces))]);
-          break;
-        case 3:
-          text.insert(at, sound.run.substr(random.below(sound.run.size()), random.below(60)));
-          break;
-        default:
-          if (random.chance(0.2)) text.resize(at);
-      }
-    }
-    const std::string error = error_of([&] { parse_run_file("RUN", damaged); });
-    ASSERT_TRUE(error.empty() || is_one_line(error)) << "seed " << seed << ": " << error;
-    ++(error.empty() ? read : refused);
-  }
-  EXPECT_GT(read, 50);
-  EXPECT_GT(refused, 1000);
-}
-
 }  // namespace
 }  // namespace mercury
