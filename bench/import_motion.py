@@ -207,7 +207,7 @@ def row(name: str, there: list[Way], here: Way, spread: float, dt: float) -> str
     turn = math.degrees(math.acos(max(-1, min(1, along))))
     verdict = "holds" if turn < 45 and abs(share - 1) <= 0.3 else "**fails**"
     if not has_direction(there):
-        verdict = "no direction"
+        verdict = "no direction there: not counted"
     return (f"| {name} | {length(way):.3f} | {largest_difference(there):.3f} | {length(here):.3f} | {spread:.3f} | {1e6 * dt:.0f} | "
             f"{100 * share:.0f} % | {turn:.0f}\N{DEGREE SIGN} | {verdict} |")  # fmt: skip
 
