@@ -447,10 +447,8 @@ bool Viewer::draw_picture(double dt) {
   const auto share = [](float covered, float whole) { return std::clamp(covered / std::max(1.0f, whole), 0.0f, 0.4f); };
   const Box &legend = context_.legend, &steps = context_.first_steps;
   camera_.free.right = legend.high.x > legend.low.x ? share(area_.high.x - legend.low.x, area_.width()) : 0;
-  // A message of one line has its place above the robots; longer ones make room when they come.
-  float messages = area_.low.y + Toasts::line_height();
-  for (const auto& [low, high] : context_.toasts.places()) messages = std::max(messages, high.y);
-  camera_.free.top = share(messages - area_.low.y, area_.height());
+  // A caption or a message has its place above the robots.
+  camera_.free.top = share(std::max(Toasts::line_height(), context_.message.high.y - area_.low.y), area_.height());
   camera_.free.bottom = steps.high.y > steps.low.y ? share(area_.high.y - steps.low.y, area_.height()) : 0;
   const render::Camera camera = camera_.at(live.camera_boxes(), area_.aspect(), dt);
   if (drawn_ == 0 && expects_robots_ && live.bounds().empty() && since(run_begin_) < longest_blank) return false;

@@ -70,8 +70,7 @@ void ExplosionCard::update(PanelContext& context, const ViewportArea& area, cons
   const ExplodedRobot* const robot = chosen();
   marks_.clear();
   if (!robot || !(context.scene.is_selected(robot->robot) || high_.x > low_.x)) return;
-  std::vector<Box> covered{box(), context.legend, context.first_steps};
-  for (const auto& [low, high] : context.toasts.places()) covered.push_back({low, high});
+  const std::vector<Box> covered{box(), context.legend, context.first_steps, context.message};
   marks_ = draw_explosion_mark(*robot, covered, context.log, area, camera);
 }
 

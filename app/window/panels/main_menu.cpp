@@ -28,19 +28,22 @@ void Panels::draw_menu() {
     ImGui::EndMenu();
   }
   context_.log.item("menu.Help");
-  draw_menu_hint();
+  const ImVec2 left = ImGui::GetCursorScreenPos();
+  const float right = draw_menu_hint();
+  context_.toasts.draw({left.x, left.y + ImGui::GetStyle().FramePadding.y}, right, context_.log);
   ImGui::EndMainMenuBar();
 }
 
-// At the right end, if there is room.
-void Panels::draw_menu_hint() {
+// At the right end, if there is room. Returns where it begins [pixels].
+float Panels::draw_menu_hint() {
   const std::string keys = context_.keys.keys_of(Action::help), text = keys.substr(0, keys.find(' ')) + ": all keys";
   const float left = ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text.c_str()).x - ImGui::GetFontSize();
-  if (keys.empty() || left < ImGui::GetCursorPosX()) return;
+  if (keys.empty() || left < ImGui::GetCursorPosX()) return ImGui::GetIO().DisplaySize.x;
   ImGui::SameLine(left);
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopStyleColor();
+  return left;
 }
 
 // The settings file of keys, which lists all commands until the user changes it.

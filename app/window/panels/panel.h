@@ -100,10 +100,10 @@ struct PanelContext {
   std::optional<Hit> new_probe = {};   // to be plotted over time
   std::vector<RobotId> to_frame = {};  // robots that the camera shows as soon as they are drawn
   UsedGestures gestures = {};          // of this session
-  Box legend = {}, caption = {}, first_steps = {};  // over the viewport, in the last frame
-  std::vector<Box> covered = {};                    // by what panels draw over the viewport, in this frame
-  float aspect = 16.0f / 9;                         // width / height of the viewport in this frame
-  bool screenshot_requested = false;                // set it to take one at the end of the frame
+  Box legend = {}, caption = {}, first_steps = {}, message = {};  // over the viewport, in the last frame
+  std::vector<Box> covered = {};      // by what panels draw over the viewport, in this frame
+  float aspect = 16.0f / 9;           // width / height of the viewport in this frame
+  bool screenshot_requested = false;  // set it to take one at the end of the frame
 };
 
 class Panel {

@@ -15,17 +15,6 @@
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
-namespace {
-
-// The upper edge of messages, which are in the middle of the view.
-float below_caption(const Box& caption, const ViewportArea& area) {
-  const float text = ImGui::GetFontSize(), middle = (area.low.x + area.high.x) / 2;
-  const float half = std::min(area.width() / 2, 19 * text);
-  return caption.high.x > middle - half ? std::max(area.low.y, caption.high.y - 0.4f * text) : area.low.y;
-}
-
-}  // namespace
-
 PanelColumn::PanelColumn(Side side, PanelContext& context)
     : id_(side == Side::left ? "##left" : "##right"), right_(side == Side::right) {
   for (const PanelEntry& entry : panel_table())
@@ -203,21 +192,40 @@ void Panels::draw_over(const ViewportArea& area, const render::Camera& camera, d
   draw_body_editor(context_, area);
   draw_robot_menu(context_, [this](Action action) { execute(action); });
   if (help_open_) draw_help(help_open_, context_.keys, context_.log);
-  // Messages leave the legend at the right edge free, if there is room.
-  constexpr float least = 20;  // [letters]
-  ViewportArea messages = area;
-  const Box& legend = context_.legend;
-  if (legend.high.x > legend.low.x) context_.log.item("legend", legend.low, legend.high);
-  if (legend.high.x > legend.low.x && legend.low.x - area.low.x > least * ImGui::GetFontSize())
-    messages.high.x = legend.low.x;
-  context_.toasts.draw({area.low.x, below_caption(context_.caption, messages)}, messages.high, dt, context_.log);
-  context_.covered = {axes, context_.legend, explosions_.box(), context_.first_steps};
+  if (!context_.legend.empty()) context_.log.item("legend", context_.legend.low, context_.legend.high);
+  draw_messages(area);
+  context_.covered = {axes, context_.legend, explosions_.box(), context_.first_steps, context_.message};
   context_.covered.insert(context_.covered.end(), explosions_.marks().begin(), explosions_.marks().end());
-  for (const auto& [low, high] : context_.toasts.places()) context_.covered.push_back({low, high});
-  std::erase_if(context_.covered, [](const Box& box) { return box.high.x <= box.low.x; });
+  std::erase_if(context_.covered, [](const Box& box) { return box.empty(); });
   if (context_.dialogs.open()) palette_.close();
   palette_.draw(context_);
   if (context_.toasts.take_click()) show("Messages");
+}
+
+// While the menu bar is hidden, messages have a line at the top of the view, between caption and legend or below the
+// caption. Its room is reserved, with a message or without.
+void Panels::draw_messages(const ViewportArea& area) {
+  context_.message = {};
+  if (context_.preferences.panels) return;
+  constexpr float least = 20;  // [letters]
+  const float text = ImGui::GetFontSize();
+  const Box &caption = context_.caption, &legend = context_.legend;
+  Box room{area.low, {legend.empty() ? area.high.x : legend.low.x, area.low.y + Toasts::line_height()}};
+  if (!caption.empty() && room.high.x - caption.high.x > least * text) {
+    room.low.x = caption.high.x + text;
+  } else if (!caption.empty()) {
+    room.low.y = caption.high.y;
+    room.high.y = room.low.y + Toasts::line_height();
+  }
+  context_.message = room;
+  if (context_.toasts.empty()) return;
+  ImGui::SetNextWindowPos(room.low);
+  ImGui::SetNextWindowSize({room.high.x - room.low.x, room.high.y - room.low.y});
+  ImGui::Begin("##messages", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
+  context_.toasts.draw({room.low.x, (room.low.y + room.high.y - text) / 2}, room.high.x, context_.log);
+  ImGui::End();
 }
 
 // Dear ImGui requires that no window outside a modal appears after it in the frame in which the modal opens.

@@ -87,7 +87,8 @@ class Panels {
 
  private:
   void draw_menu();
-  void draw_menu_hint();
+  float draw_menu_hint();
+  void draw_messages(const ViewportArea& area);
   void open_palette();
   std::vector<PaletteEntry> palette_entries();
   void show_keys_file();

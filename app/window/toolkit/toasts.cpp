@@ -82,43 +82,43 @@ void Toasts::show(Tone tone, std::string text) {
 
 float Toasts::line_height() { return 1.5f * ImGui::GetFontSize() + 2 * ImGui::GetStyle().WindowPadding.y; }
 
-void Toasts::draw(ImVec2 low, ImVec2 high, double dt, EventLog& log) {
-  const float line = ImGui::GetFontSize();
-  float y = low.y + 0.5f * line;
-  int number = 0;
-  places_.clear();
-  for (Toast& toast : toasts_) {
-    if (!toast.logged) log.write("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
-    toast.logged = true;
-    const float width = std::min(high.x - low.x - 2 * line, 34 * line);
-    const std::string text = brief(toast.text, longest) + (toast.count > 1 ? fmt::format("  (x{})", toast.count) : "");
-    const float needed = ImGui::CalcTextSize(text.c_str(), nullptr, false, width).x + 2.4f * line;
-    ImGui::SetNextWindowPos({(low.x + high.x) / 2, y}, ImGuiCond_Always, {0.5f, 0});
-    ImGui::SetNextWindowSize({std::min(needed, width + 2.4f * line), 0});
-    ImGui::SetNextWindowBgAlpha(0.94f * static_cast<float>(std::clamp(toast.seconds_left * 2, 0.0, 1.0)));
-    ImGui::Begin(fmt::format("##toast{}", number++).c_str(), nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoMove);
-    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.PushClipRect(corner, {corner.x + size.x, corner.y + size.y});  // contents are clipped to the padding
-    list.AddRectFilled(corner, {corner.x + 0.3f * line, corner.y + size.y}, color_of(toast.tone),
-                       ImGui::GetStyle().WindowRounding, ImDrawFlags_RoundCornersLeft);
-    list.PopClipRect();
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    const bool hovered = ImGui::IsWindowHovered();
-    if (hovered && (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1))) {
-      clicked_ = clicked_ || ImGui::IsMouseClicked(0);
-      toast.seconds_left = 0;
-    }
-    log.item(fmt::format("toast.{}", number - 1), corner, {corner.x + size.x, corner.y + size.y});
-    places_.emplace_back(corner, ImVec2{corner.x + size.x, corner.y + size.y});
-    y += size.y + 0.4f * line;
-    ImGui::End();
-    toast.seconds_left -= dt;
+void Toasts::draw(ImVec2 left, float right, EventLog& log) {
+  for (Toast& toast : toasts_)
+    if (!std::exchange(toast.logged, true)) log.write("message", {{"tone", name_of(toast.tone)}, {"text", toast.text}});
+  if (toasts_.empty()) return;
+  const Toast& newest = toasts_.back();
+  const float line = ImGui::GetFontSize(), side = 0.8f * line, above = 0.25f * line;
+  std::string more = newest.count > 1 ? fmt::format("  (x{})", newest.count) : "";
+  if (toasts_.size() > 1) more += fmt::format("  ({} more)", toasts_.size() - 1);
+  std::string text = brief(newest.text, longest);
+  std::ranges::replace(text, '\n', ' ');
+  text = shortened(text, right - left.x - 2 * side - ImGui::CalcTextSize(more.c_str()).x) + more;
+  const float width = ImGui::CalcTextSize(text.c_str()).x;
+  const float x = std::max(left.x + side, std::round((left.x + right - width) / 2));
+  const ImVec2 low{x - side, left.y - above}, high{x + width + side, left.y + line + above};
+  ImGui::SetCursorScreenPos(low);
+  ImGui::InvisibleButton("##message", {high.x - low.x, high.y - low.y},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+  const bool hovered = ImGui::IsItemHovered(), clicked = ImGui::IsItemClicked(0);
+  const bool dismissed = clicked || ImGui::IsItemClicked(1);
+  clicked_ = clicked_ || clicked;
+  log.item("toast", low, high);
+  ImGui::PushStyleVar(ImGuiStyleVar_Alpha, static_cast<float>(std::clamp(newest.seconds_left * 2, 0.0, 1.0)));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg), 0.3f * line);
+  list.AddRectFilled(low, {low.x + 0.3f * line, high.y}, ImGui::GetColorU32(color_of(newest.tone)), 0.3f * line,
+                     ImDrawFlags_RoundCornersLeft);
+  list.AddText({x, left.y}, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+  ImGui::PopStyleVar();
+  if (hovered) {
+    std::string all;
+    for (const Toast& toast : toasts_) all += (all.empty() ? "" : "\n\n") + brief(toast.text, longest);
+    tooltip_now(all);
   }
+  // A message that is being read stays.
+  const double spent = hovered ? 0 : std::min(0.5, static_cast<double>(ImGui::GetIO().DeltaTime));
+  for (Toast& toast : toasts_) toast.seconds_left -= spent;
+  if (dismissed) toasts_.pop_back();
   std::erase_if(toasts_, [](const Toast& toast) { return toast.seconds_left <= 0; });
 }
 

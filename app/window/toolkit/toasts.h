@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Short messages that appear over the view and disappear after some seconds, and the history of all of them.
+// Short messages that disappear after some seconds, and the history of all of them.
+//
+// They have one line, whose room is reserved: in the menu bar, or at the top of the view while the bar is hidden. So
+// they cover nothing, and the view does not move when they come and go. The line shows the newest message; its tooltip
+// has all words of all current ones.
 #pragma once
 
 #include <chrono>
@@ -31,13 +35,12 @@ std::string clock_text(std::chrono::system_clock::time_point time);
 class Toasts {
  public:
   void show(Tone tone, std::string text);
-  // The height at the top of a rectangle that a message of one line takes, with space around it [pixels].
+  // The height at the top of the view that a line takes, with space around it [pixels].
   static float line_height();
-  // Draws the messages at the top center of a rectangle. `dt`: time since the last frame [s].
-  void draw(ImVec2 low, ImVec2 high, double dt, EventLog& log);
+  // Draws the newest message into the current ImGui window, in the middle of a line that begins at `left` and ends at
+  // x = `right` [pixels of the screen]; what does not fit is left out.
+  void draw(ImVec2 left, float right, EventLog& log);
   bool empty() const { return toasts_.empty(); }
-  // Where the last draw() drew them: upper left and lower right corners.
-  const std::vector<std::pair<ImVec2, ImVec2>>& places() const { return places_; }
   // The last 1,000 messages, the newest last.
   const std::deque<PastMessage>& history() const { return history_; }
   // Whether a message was clicked since the last call, which asks for the history. A right click only dismisses it.
@@ -55,7 +58,6 @@ class Toasts {
 
   std::deque<Toast> toasts_;
   std::deque<PastMessage> history_;
-  std::vector<std::pair<ImVec2, ImVec2>> places_;
   bool clicked_ = false;
 };
 

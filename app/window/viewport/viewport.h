@@ -30,6 +30,7 @@ ImVec2 on_screen(const ViewportArea& area, const render::Camera& camera, const r
 // A part of it that something is drawn over; empty = nothing.
 struct Box {
   ImVec2 low{0, 0}, high{0, 0};
+  bool empty() const { return high.x <= low.x || high.y <= low.y; }
   bool meets(const Box& other) const {
     return low.x < other.high.x && other.low.x < high.x && low.y < other.high.y && other.low.y < high.y;
   }

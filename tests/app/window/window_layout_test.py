@@ -118,28 +118,48 @@ class LayoutTest(WindowCase):
         window = self.open("--random", "voxel:12", "--show", "skin,labels", "--paused")
         window.frame(lambda frame: len(frame["where"]) == 12)
         window.key("c")
-        window.place("toast.0")
+        window.place("toast")
         labels = self.labels(window)
         self.assertGreaterEqual(len(labels), 4)
-        over = [item for name, item in window.items.items() if name.startswith(("toast.", "gesture.", "axes."))]
+        over = [item for name, item in window.items.items() if name.startswith(("toast", "gesture.", "axes."))]
         self.assertGreaterEqual(len(over), 5)
         for label in labels:
             for item in over:
                 self.assertFalse(self.meet(label, item), (label, item))
         self.finish(window)
 
-    def test_messages_cover_no_robot_and_leave_the_legend_free(self):
+    def test_messages_cover_nothing_and_move_nothing(self):
         window = self.open(*(str(SAMPLES / f"{name}.json") for name in ("eel", "fish", "squid")), "--camera", "group", "--paused")
         window.frame(lambda frame: len(frame["where"]) == 3)
-        window.key("2", "3")  # colors by activation, then by strain
-        window.place("toast.1")
+        bad = self.folder / ("a-name-that-takes-several-lines-" * 7 + ".json")
+        bad.write_text("{}")
+        window.key("3")  # colors by strain: the legend shows
         window.place("legend")
-        window.standing()
-        toasts = [window.items[f"toast.{i}"] for i in (0, 1)]
-        for toast in toasts:
-            self.assertFalse(self.meet(toast, window.items["legend"]))
-        lowest = max(toast["y"] + toast["height"] / 2 for toast in toasts)
-        self.assertLess(lowest + 15, min(y for x, y in window.frame()["where"]), "15 pixels: half the height of an eel")
+        before = window.standing()
+
+        def messages():
+            """A short message and a long one, until both have gone. Returns where they were and what they could cover."""
+            since = window.mark()
+            window.key("F5")  # a camera bookmark that is not set
+            window.drop(bad)
+            window.wait("message", since, lambda event: event["tone"] == "error")
+            window.place("toast")
+            shown = dict(window.items["toast"]), dict(window.items["view"]), dict(window.items["legend"])
+            while "toast" in window.items:
+                window.click("toast", 3)
+            return shown, [event for event in window.events[since:] if event["event"] == "frame"]
+
+        (toast, view, legend), frames = messages()
+        self.assertLessEqual(toast["y"] + toast["height"] / 2, view["y"] - view["height"] / 2, "it is in the menu bar")
+        self.assertEqual({tuple(frame["eye"]) for frame in frames}, {tuple(before["eye"])})
+
+        window.key("h")  # without the menu bar, they are over the view
+        before = window.standing()
+        (toast, view, legend), frames = messages()
+        self.assertLess(abs(toast["y"] - toast["height"]), toast["height"], "it is at the top of the view")
+        self.assertFalse(self.meet(toast, legend))
+        self.assertLess(toast["y"] + toast["height"] / 2 + 15, min(y for x, y in before["where"]), "15 pixels: half an eel's height")
+        self.assertEqual({tuple(frame["eye"]) for frame in frames}, {tuple(before["eye"])})
         self.finish(window)
 
     def labels(self, window):
