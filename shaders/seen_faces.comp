@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the pixels of a face need, for each face that is drawn, in the order of drawing: pixels then read one record each
 // and need not follow indices.
+#include "frame.glsl"
 #include "bodies.glsl"
 #include "seen_face.glsl"
 layout(local_size_x = 64) in;
@@ -28,7 +29,11 @@ void main() {
   // The dual basis of u, v in their plane.
   vec3 along_u = cross(v, twice_area) / squared, along_v = cross(twice_area, u) / squared;
   uvec4 around = record.neighbors;
+  float size = 1.0 / sqrt(max(dot(along_u, along_u), dot(along_v, along_v)));
+  float range = distance(a + placements[mass_bodies[faces[3u * face]]].offset, frame.eye.xyz);
+  float pixels = 0.5 * frame.screen.y / frame.depth.w * size / max(range, 1e-6);
   seen[i] = SeenFace(vec4(along_u, -dot(along_u, a)), vec4(along_v, -dot(along_v, a)),
                      uvec4(normal_of(around.x), normal_of(around.y), normal_of(around.z), normal_of(around.w)),
-                     face_normals[face], record.material, record.shape, face >> finer);
+                     face_normals[face], record.material, packHalf2x16(vec2(float(record.shape), min(pixels, 6e4))),
+                     face >> finer);
 }
