@@ -2,6 +2,7 @@
 // Runs the real program as a child process, and gives each test a folder of its own.
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -21,11 +22,35 @@
 
 namespace mercury::test {
 
+using Arguments = std::vector<std::string>;
+
+inline Arguments joined(Arguments first, const Arguments& second, const Arguments& third = {}) {
+  for (const Arguments* more : {&second, &third}) first.insert(first.end(), more->begin(), more->end());
+  return first;
+}
+
 struct Outcome {
   int status = -1;       // exit status; 128 + n when killed by signal n
   std::string output;    // standard output
   std::string messages;  // standard error
 };
+
+inline void PrintTo(const Outcome& outcome, std::ostream* out) {
+  *out << "status " << outcome.status << "\n" << outcome.output << outcome.messages;
+}
+
+// A program that ends with this status and one line of messages: "mercury: " and `line`, a text or a matcher. What
+// refuses its input (status 2) prints nothing else.
+MATCHER_P2(Ends, status, line,
+           "ends with status " + testing::PrintToString(status) + " and a line that " +
+               testing::DescribeMatcher<std::string>(line)) {
+  const std::string begin = "mercury: ";
+  const auto& messages = arg.messages;
+  return arg.status == status && (status != 2 || arg.output.empty()) && messages.starts_with(begin) &&
+         messages.find('\n') + 1 == messages.size() &&
+         testing::ExplainMatchResult(line, messages.substr(begin.size(), messages.size() - begin.size() - 1),
+                                     result_listener);
+}
 
 inline Outcome outcome_of(ChildProcess& child) {
   const int status = child.finish();

@@ -10,27 +10,20 @@ namespace mercury::test {
 namespace {
 
 using testing::HasSubstr;
-using Arguments = std::vector<std::string>;
-
 class CheckCommand : public FolderTest {};
 
 const Arguments robots{"--random", "voxel:3", "--seed", "2", "--seconds", "0.5", "--environment", "land"};
 
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 // Medians and quartiles are those of `run` with as many trials at each time step.
 TEST_F(CheckCommand, ReportsTheMediansOfRunAtEachTimeStep) {
-  const Outcome outcome = mercury(Arguments{"check", "--json"} + robots);
+  const Outcome outcome = mercury(joined({"check", "--json"}, robots));
   const auto report = nlohmann::json::parse(outcome.output);
   ASSERT_EQ(report["robots"].size(), 3u);
   EXPECT_EQ(outcome.status, report["confirmed"] == 3 ? 0 : 1);
   for (std::size_t k = 0; k < 3; ++k) {
     const double dt = 1e-3 / (1 << k);
     const auto run = nlohmann::json::parse(
-        mercury(Arguments{"run", "--json", "--trials", "5", "--dt", std::to_string(dt)} + robots).output);
+        mercury(joined({"run", "--json", "--trials", "5", "--dt", std::to_string(dt)}, robots)).output);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto& robot = report["robots"][i];
       EXPECT_EQ(robot["name"], run["robots"][i]["name"]);
@@ -44,27 +37,26 @@ TEST_F(CheckCommand, ReportsTheMediansOfRunAtEachTimeStep) {
 }
 
 TEST_F(CheckCommand, WritesALinePerRobot) {
-  const Outcome outcome = mercury(Arguments{"check", "--csv", path("a.csv")} + robots);
+  const Outcome outcome = mercury(joined({"check", "--csv", path("a.csv")}, robots));
   EXPECT_THAT(outcome.output, HasSubstr("voxel-2-1"));
   EXPECT_THAT(outcome.output, HasSubstr(" of 3 confirmed\n"));
   const std::string csv = read("a.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4);
   EXPECT_THAT(csv,
               testing::StartsWith("index,name,file,random,environment,verdict,reason,objective,fate_dt,median_dt,"));
-  EXPECT_EQ(mercury(Arguments{"check", "--csv", "-"} + robots).output, csv);
+  EXPECT_EQ(mercury(joined({"check", "--csv", "-"}, robots)).output, csv);
 }
 
 TEST_F(CheckCommand, NamesAnObjectiveThatIsNotANumber) {
-  const Outcome outcome = mercury(Arguments{"check", "--csv", path("a.csv"), "--objective", "log(-1)"} + robots);
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.messages, HasSubstr("the objective \"log(-1)\" is not a finite number for 3 of 3 robots"));
+  EXPECT_THAT(mercury(joined({"check", "--csv", path("a.csv"), "--objective", "log(-1)"}, robots)),
+              Ends(1, HasSubstr("the objective \"log(-1)\" is not a finite number for 3 of 3 robots")));
   EXPECT_THAT(read("a.csv"),
               HasSubstr("not sound,the objective is not a finite number at dt 0.001 s,log(-1),undefined,"));
 }
 
 TEST_F(CheckCommand, RefusesWhatMeansNothing) {
   const auto refusal = [](const Arguments& more) {
-    const Outcome outcome = mercury(Arguments{"check", "--random", "voxel:1"} + more);
+    const Outcome outcome = mercury(joined({"check", "--random", "voxel:1"}, more));
     EXPECT_EQ(outcome.status, 2);
     return outcome.messages;
   };
@@ -79,7 +71,7 @@ TEST_F(CheckCommand, TriesEachRobotInItsOwnEnvironment) {
   const Arguments mixed{"sample:paper/strider", "sample:paper/eel", "--random", "voxel:1", "sample:paper/inchworm"},
       short_json{"--json", "--seconds", "0.5", "--trials", "2"};
   const auto report_of = [&](const Arguments& arguments) {
-    const Outcome outcome = mercury(Arguments{"check"} + arguments + short_json);
+    const Outcome outcome = mercury(joined({"check"}, arguments, short_json));
     EXPECT_EQ(outcome.messages, "");
     return nlohmann::json::parse(outcome.output);
   };
@@ -96,11 +88,10 @@ TEST_F(CheckCommand, TriesEachRobotInItsOwnEnvironment) {
     expected["robots"][0]["index"] = i;
     EXPECT_EQ(together["robots"][i], expected["robots"][0]);
   }
-  EXPECT_THAT(mercury(Arguments{"check"} + mixed + Arguments{"--seconds", "0.1"}).output,
+  EXPECT_THAT(mercury(joined({"check"}, mixed, {"--seconds", "0.1"})).output,
               AllOf(HasSubstr(", land and ocean, "), HasSubstr("strider    land  "), HasSubstr("eel        ocean ")));
-  const Outcome refusal = mercury(Arguments{"check"} + mixed + Arguments{"--friction", "0.5"});
-  EXPECT_EQ(refusal.status, 2);
-  EXPECT_THAT(refusal.messages, HasSubstr("--friction: ocean has no such parameter"));
+  EXPECT_THAT(mercury(joined({"check"}, mixed, {"--friction", "0.5"})),
+              Ends(2, HasSubstr("--friction: ocean has no such parameter")));
 }
 
 // A robot that is made for no environment goes where the others live; --environment holds for all.
@@ -109,14 +100,14 @@ TEST_F(CheckCommand, PutsAllIntoOneEnvironmentWhereNoneObjects) {
        {Arguments{"sample:paper/strider", "--random", "voxel:1"},
         Arguments{"sample:paper/strider", "sample:paper/eel", "--environment", "land"}}) {
     const auto report = nlohmann::json::parse(
-        mercury(Arguments{"check", "--json", "--seconds", "0.2", "--trials", "1"} + robots_there).output);
+        mercury(joined({"check", "--json", "--seconds", "0.2", "--trials", "1"}, robots_there)).output);
     EXPECT_TRUE(report.contains("configuration"));
     for (const auto& robot : report["robots"]) EXPECT_EQ(robot["environment"], "land");
   }
 }
 
 TEST_F(CheckCommand, ADryRunChangesNothing) {
-  const Outcome outcome = mercury(Arguments{"check", "--dry-run", "--csv", path("a.csv")} + robots);
+  const Outcome outcome = mercury(joined({"check", "--dry-run", "--csv", path("a.csv")}, robots));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.output, HasSubstr("also at dt/2 and dt/4"));
   EXPECT_TRUE(listing("").empty());

@@ -19,13 +19,6 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 json robots_of(const Outcome& outcome) {
   EXPECT_EQ(outcome.status, 0) << outcome.messages;
   return json::parse(outcome.output, nullptr, false)["robots"];
@@ -38,8 +31,7 @@ class Checkpoint : public FolderTest {
                        "--quiet", "--threads", "1",       "--environment", "land"};
   // The same run, killed as soon as it has saved a checkpoint.
   void kill(const Arguments& more) {
-    Arguments arguments = run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"} + more;
-    ChildProcess child(MERCURY_PROGRAM, arguments);
+    ChildProcess child(MERCURY_PROGRAM, joined(run_, {"--checkpoint", path("c.h5"), "--checkpoint-every", "0"}, more));
     while (!std::filesystem::exists(path("c.h5")) && child.running()) nap();
     child.kill();
   }
@@ -78,7 +70,7 @@ TEST_F(Checkpoint, ARunThatWasKilledEndsAsOneThatWasNot) {
 
 TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
   const json whole = robots_of(mercury(run_));
-  EXPECT_EQ(robots_of(mercury(run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"})), whole);
+  EXPECT_EQ(robots_of(mercury(joined(run_, {"--checkpoint", path("c.h5"), "--checkpoint-every", "0"}))), whole);
   EXPECT_EQ(robots_of(mercury(resume_)), whole);
   EXPECT_EQ(TrajectoryReader(path("c.h5")).step(0), 1230);
   EXPECT_THAT(listing(), SizeIs(1));
@@ -88,12 +80,12 @@ TEST_F(Checkpoint, ItChangesNoResultAndTheLastOneHoldsTheEnd) {
 TEST_F(Checkpoint, ATargetAndAPushArePartOfTheRun) {
   const Arguments more{"--target-radius", "0.3",         "--target-spread", "0.9", "--turned", "--reach", "0.1",
                        "--push",          "0.3,0.1,0.2", "--push-at",       "0.6", "--upright"};
-  const json whole = robots_of(mercury(run_ + more));
+  const json whole = robots_of(mercury(joined(run_, more)));
   EXPECT_NE(whole, robots_of(mercury(run_)));
   for (const json& robot : whole) EXPECT_TRUE(robot["reached"] == 0 || robot["reached"] == 1) << robot["reached"];
   kill(more);
   EXPECT_EQ(robots_of(mercury(resume_)), whole);
-  ASSERT_EQ(mercury(run_ + more + Arguments{"--record", path("r.h5")}).status, 0);
+  ASSERT_EQ(mercury(joined(run_, more, {"--record", path("r.h5")})).status, 0);
   EXPECT_EQ(mercury({"verify", path("r.h5"), "--quiet"}).status, 0);
 }
 
@@ -101,8 +93,8 @@ TEST_F(Checkpoint, ItCanGoOnForLonger) {
   Arguments longer = run_;
   *(std::ranges::find(longer, "1.23")) = "1.5";
   const json whole = robots_of(mercury(longer));
-  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
-  EXPECT_EQ(robots_of(mercury(resume_ + Arguments{"--seconds", "1.5"})), whole);
+  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
+  EXPECT_EQ(robots_of(mercury(joined(resume_, {"--seconds", "1.5"}))), whole);
 }
 
 // Its throughput is that of the steps that it made itself, not of those before the checkpoint.
@@ -115,15 +107,15 @@ TEST_F(Checkpoint, ThroughputIsOfTheStepsOfThisSession) {
     for (const auto& robot : report["robots"]) springs += robot["springs"].get<double>();
     return report["springs_per_second"].get<double>() * report["wall_seconds"].get<double>() / springs;
   };
-  EXPECT_NEAR(steps_of(run_ + Arguments{"--checkpoint", path("c.h5")}), 1230, 0.01);
-  EXPECT_NEAR(steps_of(resume_ + Arguments{"--seconds", "1.5"}), 270, 0.01);
+  EXPECT_NEAR(steps_of(joined(run_, {"--checkpoint", path("c.h5")})), 1230, 0.01);
+  EXPECT_NEAR(steps_of(joined(resume_, {"--seconds", "1.5"})), 270, 0.01);
 }
 
 TEST_F(Checkpoint, ASignalSavesTheLastStepAndTheRunGoesOnFromThere) {
   const json whole = robots_of(mercury(run_));
   for (const int signal : {SIGINT, SIGTERM}) {
     std::filesystem::remove(path("c.h5"));
-    ChildProcess child(MERCURY_PROGRAM, run_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
+    ChildProcess child(MERCURY_PROGRAM, joined(run_, {"--checkpoint", path("c.h5"), "--checkpoint-every", "0"}));
     while (!std::filesystem::exists(path("c.h5")) && child.running()) nap();
     child.signal(signal);
     const Outcome outcome = outcome_of(child);
@@ -137,7 +129,7 @@ TEST_F(Checkpoint, ASignalSavesTheLastStepAndTheRunGoesOnFromThere) {
 TEST_F(Checkpoint, ARunThatWasStoppedTwiceGoesOn) {
   const json whole = robots_of(mercury(run_));
   kill({});
-  ChildProcess child(MERCURY_PROGRAM, resume_ + Arguments{"--checkpoint", path("c.h5"), "--checkpoint-every", "0"});
+  ChildProcess child(MERCURY_PROGRAM, joined(resume_, {"--checkpoint", path("c.h5"), "--checkpoint-every", "0"}));
   const auto first = std::filesystem::last_write_time(path("c.h5"));
   while (std::filesystem::last_write_time(path("c.h5")) == first && child.running()) nap();
   child.kill();
@@ -146,28 +138,28 @@ TEST_F(Checkpoint, ARunThatWasStoppedTwiceGoesOn) {
 
 TEST_F(Checkpoint, ARecordingIsContinued) {
   const Arguments record{"--record", path("a.h5"), "--every", "7"};
-  robots_of(mercury(run_ + Arguments{"--record", path("whole.h5"), "--every", "7"}));
+  robots_of(mercury(joined(run_, {"--record", path("whole.h5"), "--every", "7"})));
   kill(record);
-  robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
+  robots_of(mercury(joined(resume_, {"--record", path("a.h5")})));
   expect_same(path("a.h5"), path("whole.h5"));
 }
 
 TEST_F(Checkpoint, ARecordingBetweenStepsIsContinued) {
   const Arguments rate{"--fps", "700"};  // most frames are between steps
-  robots_of(mercury(run_ + Arguments{"--record", path("whole.h5")} + rate));
-  kill(Arguments{"--record", path("a.h5")} + rate);
-  robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
+  robots_of(mercury(joined(run_, {"--record", path("whole.h5")}, rate)));
+  kill(joined({"--record", path("a.h5")}, rate));
+  robots_of(mercury(joined(resume_, {"--record", path("a.h5")})));
   expect_same(path("a.h5"), path("whole.h5"));
   EXPECT_EQ(TrajectoryReader(path("a.h5")).frame_rate(), 700);
 }
 
 TEST_F(Checkpoint, ARecordingWithBrainsIsContinued) {
   const Arguments brains{"sample:hunter", "--target", "1,2,0", "--physics", "real", "--brains", "--every", "7"};
-  robots_of(mercury(run_ + Arguments{"--record", path("whole.h5")} + brains));
-  kill(Arguments{"--record", path("a.h5")} + brains);
-  EXPECT_THAT(refused(resume_ + Arguments{"--record", path("a.h5"), "--brains"}).messages,
+  robots_of(mercury(joined(run_, {"--record", path("whole.h5")}, brains)));
+  kill(joined({"--record", path("a.h5")}, brains));
+  EXPECT_THAT(refused(joined(resume_, {"--record", path("a.h5"), "--brains"})).messages,
               HasSubstr("--brains: is that of " + path("c.h5") + " in a resumed run; leave it out"));
-  robots_of(mercury(resume_ + Arguments{"--record", path("a.h5")}));
+  robots_of(mercury(joined(resume_, {"--record", path("a.h5")})));
   expect_same(path("a.h5"), path("whole.h5"));
   EXPECT_TRUE(TrajectoryReader(path("a.h5")).has_brains());
   EXPECT_EQ(mercury({"verify", path("a.h5"), "--quiet"}).status, 0);
@@ -177,20 +169,20 @@ TEST_F(Checkpoint, ARecordingThatIsNotThereIsReported) {
   kill({"--record", path("a.h5")});
   for (const std::string& name : listing())
     if (name.ends_with(".part")) std::filesystem::remove(path(name));
-  EXPECT_THAT(refused(resume_ + Arguments{"--record", path("a.h5")}).messages, HasSubstr("cannot be continued"));
+  EXPECT_THAT(refused(joined(resume_, {"--record", path("a.h5")})).messages, HasSubstr("cannot be continued"));
   const Outcome without = mercury(resume_);
   EXPECT_EQ(without.status, 0);
   EXPECT_THAT(without.messages, HasSubstr("is not continued"));
 }
 
 TEST_F(Checkpoint, OptionsThatItHasAreRefused) {
-  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
-  EXPECT_THAT(refused(resume_ + Arguments{"--random", "voxel:2"}).messages, HasSubstr("give no others"));
-  EXPECT_THAT(refused(resume_ + Arguments{"--dt", "0.01"}).messages, HasSubstr("its own configuration"));
-  EXPECT_THAT(refused(resume_ + Arguments{"--seconds", "0.5"}).messages, HasSubstr("has come to 1.23 s"));
-  EXPECT_THAT(refused(resume_ + Arguments{"--record", path("a.h5")}).messages, HasSubstr("without a recording"));
-  EXPECT_THAT(refused(run_ + Arguments{"--checkpoint-every", "5"}).messages, HasSubstr("goes with --checkpoint"));
-  EXPECT_THAT(refused(run_ + Arguments{"--checkpoint", path("c.h5")}).messages, HasSubstr("exists"));
+  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
+  EXPECT_THAT(refused(joined(resume_, {"--random", "voxel:2"})).messages, HasSubstr("give no others"));
+  EXPECT_THAT(refused(joined(resume_, {"--dt", "0.01"})).messages, HasSubstr("its own configuration"));
+  EXPECT_THAT(refused(joined(resume_, {"--seconds", "0.5"})).messages, HasSubstr("has come to 1.23 s"));
+  EXPECT_THAT(refused(joined(resume_, {"--record", path("a.h5")})).messages, HasSubstr("without a recording"));
+  EXPECT_THAT(refused(joined(run_, {"--checkpoint-every", "5"})).messages, HasSubstr("goes with --checkpoint"));
+  EXPECT_THAT(refused(joined(run_, {"--checkpoint", path("c.h5")})).messages, HasSubstr("exists"));
 }
 
 TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
@@ -198,10 +190,10 @@ TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", "--resume"}).messages, HasSubstr("goes on from the file of --checkpoint"));
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("text.h5")}).messages, HasSubstr("is not an HDF5 file"));
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("missing.h5")}).messages, HasSubstr("missing.h5"));
-  ASSERT_EQ(mercury(run_ + Arguments{"--record", path("r.h5")}).status, 0);
+  ASSERT_EQ(mercury(joined(run_, {"--record", path("r.h5")})).status, 0);
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("r.h5")}).messages,
               HasSubstr("is a recording, not a checkpoint"));
-  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
+  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
   const std::string whole = read("c.h5");
   write("half.h5", whole.substr(0, whole.size() / 2));
   refused({"run", "--resume", "--checkpoint", path("half.h5")});
@@ -220,7 +212,7 @@ TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
 }
 
 TEST_F(Checkpoint, LinksOutOfItAreNotFollowed) {
-  ASSERT_EQ(mercury(run_ + Arguments{"--checkpoint", path("c.h5")}).status, 0);
+  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);  // whoever opens it waits
   std::filesystem::create_symlink(path("pipe"), path("link.h5"));
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("link.h5")}).messages,
@@ -251,7 +243,7 @@ TEST_F(Checkpoint, LinksOutOfItAreNotFollowed) {
 class Verify : public Checkpoint {
  protected:
   void record(const Arguments& more = {}) {
-    ASSERT_EQ(mercury(run_ + Arguments{"--record", path("r.h5")} + more).status, 0);
+    ASSERT_EQ(mercury(joined(run_, {"--record", path("r.h5")}, more)).status, 0);
   }
 };
 

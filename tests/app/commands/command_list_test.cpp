@@ -39,10 +39,9 @@ nlohmann::json option_named(const std::string& of, const std::string& name) {
 }
 
 // Options in the help of a command: words that begin with a dash, at the beginning of a line or after ", ".
-std::set<std::string> options_in_help(const std::vector<std::string>& words) {
+std::set<std::string> options_in_help(const Arguments& words) {
   std::vector<std::string> arguments(words);
-  arguments.emplace_back("--help");
-  std::istringstream lines(mercury(arguments).output);
+  std::istringstream lines(mercury(joined(arguments, {"--help"})).output);
   std::set<std::string> found;
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("  -")) continue;
@@ -76,8 +75,7 @@ TEST(CommandList, ShortHelpOfEveryCommandIsOneScreen) {
   for (const auto& command : commands()) {
     std::vector<std::string> arguments = command["words"].get<std::vector<std::string>>();
     const std::string name = arguments.empty() ? "mercury" : "mercury " + command_name(command);
-    arguments.emplace_back("-h");
-    const Outcome outcome = mercury(arguments);
+    const Outcome outcome = mercury(joined(arguments, {"-h"}));
     EXPECT_EQ(outcome.status, 0) << name;
     std::size_t count = 0;
     std::string last;

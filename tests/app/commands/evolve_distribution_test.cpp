@@ -56,10 +56,8 @@ TEST_F(EvolveCommand, ShardsEndInTheSameLineage) {
   }
   EXPECT_EQ(lineage("run"), expected_lineage("2"));
   EXPECT_THAT(listing("run"), testing::Not(testing::Contains("shards")));
-  const Outcome over = evolve("run", {"--merge"});
-  EXPECT_EQ(over.status, 2);
-  EXPECT_EQ(over.messages, "mercury: " + path("run") + ": has all its 2 generations; mercury evolve " + path("run") +
-                               " --merge --generations N raises their number\n");
+  EXPECT_THAT(evolve("run", {"--merge"}), Ends(2, path("run") + ": has all its 2 generations; mercury evolve " +
+                                                      path("run") + " --merge --generations N raises their number"));
   ASSERT_EQ(evolve("run", {"--merge", "--generations", "3"}).status, 0);
   ASSERT_EQ(evolve("run", {"--shard", "1/1", "--quiet"}).status, 0);
   ASSERT_EQ(evolve("run", {"--merge"}).status, 0);

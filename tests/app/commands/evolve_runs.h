@@ -16,13 +16,6 @@
 
 namespace mercury::test {
 
-using Arguments = std::vector<std::string>;
-
-inline Arguments joined(Arguments first, const Arguments& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
 class EvolveCommand : public FolderTest {
  protected:
   // Small robots, short trials.

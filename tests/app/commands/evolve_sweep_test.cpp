@@ -67,16 +67,13 @@ TEST(RankTest, TheNormalDistributionAgreesWithTheExactOne) {
 
 class EvolveSweep : public FolderTest {
  protected:
-  Outcome evolve(const std::string& name, const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"evolve", path(name)};
-    words.insert(words.end(), more.begin(), more.end());
-    return mercury(words);
+  Outcome evolve(const std::string& name, const Arguments& more) const {
+    return mercury(joined({"evolve", path(name)}, more));
   }
-  static std::vector<std::string> small(const std::vector<std::string>& more) {
-    std::vector<std::string> words{"--from", "voxel:3x2x2", "--population", "6",  "--generations", "2", "--seconds",
-                                   "0.2",    "--quiet",     "--device",     "cpu"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+  static std::vector<std::string> small(const Arguments& more) {
+    return joined({"--from", "voxel:3x2x2", "--population", "6", "--generations", "2", "--seconds", "0.2", "--quiet",
+                   "--device", "cpu"},
+                  more);
   }
 };
 

@@ -55,7 +55,7 @@ class HostileInput : public FolderTest {
     write("run/run.toml", "x = [");
   }
 
-  void expect_one_line(const std::vector<std::string>& arguments) const {
+  void expect_one_line(const Arguments& arguments) const {
     const Outcome outcome = mercury(arguments);
     std::string shown;
     for (const std::string& argument : arguments) shown.append(printable(argument, 100)).append(" ");
@@ -160,7 +160,7 @@ TEST_F(HostileInput, InTheNameOfARobotDoesNotReachTheTerminal) {
       {"info", path("named.h5")},
       {"run", path("named.json"), "--seconds", "0.01", "--device", "cpu"},
       {"mutate", path("named.json"), "-o", path("child.json"), "--dry-run"}};
-  for (const std::vector<std::string>& arguments : commands) {
+  for (const Arguments& arguments : commands) {
     SCOPED_TRACE(arguments[0] + " " + arguments[1]);
     const std::string expected = output(plain, arguments), shown = output(hostile, arguments);
     EXPECT_EQ(std::count(shown.begin(), shown.end(), '\n'), std::count(expected.begin(), expected.end(), '\n'))
@@ -175,9 +175,8 @@ TEST_F(HostileInput, InTheNameOfARobotStaysOneValue) {
   nlohmann::json robot = nlohmann::json::parse(read("good.json"));
   robot["name"] = "\x1b[31mred\nline\"quoted\",\xe2\x80\xae";
   write("named.json", robot.dump());
-  const auto run = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"run", path("named.json"), "--seconds", "0.01", "--device", "cpu"});
-    return mercury(more).output;
+  const auto run = [&](const Arguments& more) {
+    return mercury(joined({"run", path("named.json"), "--seconds", "0.01", "--device", "cpu"}, more)).output;
   };
   const auto json = nlohmann::json::parse(run({"--json"}), nullptr, false);
   EXPECT_EQ(json["robots"][0]["name"].get<std::string>(), robot["name"].get<std::string>());
@@ -191,7 +190,7 @@ TEST_F(HostileInput, InTheLengthOfANameTakesOneLine) {
   write("named.json", robot.dump());
   robot["format"] = robot["name"];
   write("bad.json", robot.dump());
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+  for (const Arguments& arguments : std::vector<std::vector<std::string>>{
            {"info", path("named.json")},
            {"run", path("named.json"), "--seconds", "0.01", "--device", "cpu"},
            {"run", path("bad.json")},

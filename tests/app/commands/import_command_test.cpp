@@ -21,10 +21,8 @@ using testing::HasSubstr;
 class ImportCommand : public FolderTest {
  protected:
   ImportCommand() { write("crawler.vxa", VxaParts{}.text()); }
-  static void refuses(const std::vector<std::string>& arguments, const std::string& message) {
-    std::vector<std::string> all{"import"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const Outcome outcome = mercury(all);
+  static void refuses(const Arguments& arguments, const std::string& message) {
+    const Outcome outcome = mercury(joined({"import"}, arguments));
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.output, "");
     EXPECT_EQ(outcome.messages, fmt::format("mercury: {}\n", message));
@@ -128,12 +126,10 @@ TEST_F(ImportCommand, TerrainAloneIsReported) {
 
 TEST_F(ImportCommand, KeepGoingLeavesBadFilesOut) {
   write("bad.vxa", "<VXA/>");
-  const std::vector<std::string> arguments{"import", path("bad.vxa"), path("crawler.vxa"), "-o", path("robots")};
+  const Arguments arguments{"import", path("bad.vxa"), path("crawler.vxa"), "-o", path("robots")};
   EXPECT_EQ(mercury(arguments).status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("robots")));
-  std::vector<std::string> going = arguments;
-  going.emplace_back("--keep-going");
-  EXPECT_EQ(mercury(going).status, 1);
+  EXPECT_EQ(mercury(joined(arguments, {"--keep-going"})).status, 1);
   EXPECT_THAT(listing("robots"), ElementsAre("crawler.json", "crawler.toml"));
 }
 

@@ -67,9 +67,8 @@ TEST_F(InfoCommand, SaysTheMassAndTheVibrationsOfABody) {
   EXPECT_NEAR(robot["largest_dt"], 0.02, 1e-6);
   EXPECT_EQ(robot["materials"][0]["relaxation_time"], 0.03);
   write("future.json", R"({"format":"mercury-robot","version":1,"requires":["wings"],"masses":[],"springs":[]})");
-  const Outcome refused = mercury({"info", path("future.json")});
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.messages, HasSubstr("/requires/0: requires \"wings\", which this version does not know"));
+  EXPECT_THAT(mercury({"info", path("future.json")}),
+              Ends(2, HasSubstr("/requires/0: requires \"wings\", which this version does not know")));
 }
 
 TEST_F(InfoCommand, WithoutAFileDescribesTheMachine) {
@@ -87,9 +86,8 @@ TEST_F(InfoCommand, AdvisesOnAMissingEncoder) {
   EXPECT_THAT(outcome.output, HasSubstr("apt install ffmpeg"));
 }
 
-nlohmann::json info_json(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), {"info", "--json"});
-  const Outcome outcome = mercury(arguments);
+nlohmann::json info_json(const Arguments& arguments) {
+  const Outcome outcome = mercury(joined({"info", "--json"}, arguments));
   EXPECT_EQ(outcome.status, 0) << outcome.messages;
   return nlohmann::json::parse(outcome.output, nullptr, false);
 }
@@ -163,9 +161,7 @@ TEST_F(InfoCommand, JsonOfTheMachineAndOfARun) {
 
 TEST_F(InfoCommand, BadFileIsBadInput) {
   write("a.json", "{}");
-  const Outcome outcome = mercury({"info", path("a.json")});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + path("a.json") + ": "));
+  EXPECT_THAT(mercury({"info", path("a.json")}), Ends(2, testing::StartsWith(path("a.json") + ": ")));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class Inputs : public FolderTest {
     for (const auto& robot : json["robots"]) names.push_back(robot["name"]);
     return names;
   }
-  static Outcome with_input(const std::vector<std::string>& arguments, const std::string& input) {
+  static Outcome with_input(const Arguments& arguments, const std::string& input) {
     ChildProcess child(MERCURY_PROGRAM, arguments);
     child.write(std::span(reinterpret_cast<const std::uint8_t*>(input.data()), input.size()));
     return outcome_of(child);
@@ -44,14 +44,9 @@ class Inputs : public FolderTest {
     return limited("-v " + std::to_string(kilobytes), arguments);
   }
   const std::vector<std::string> brief_{"--device", "cpu", "--seconds", "0.01"};
-  std::vector<std::string> run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "run");
-    arguments.insert(arguments.end(), brief_.begin(), brief_.end());
-    return arguments;
-  }
+  std::vector<std::string> run(std::vector<std::string> arguments) const { return joined({"run"}, arguments, brief_); }
   std::vector<std::string> run_json(std::vector<std::string> arguments) const {
-    arguments.emplace_back("--json");
-    return run(std::move(arguments));
+    return run(std::move(joined(arguments, {"--json"})));
   }
 };
 
@@ -65,12 +60,8 @@ TEST_F(Inputs, StandardInputHoldsRobots) {
   const std::string json = read("r/0.JSON") + read("r/1.JSON"), cbor = read("r/inner/2.cbor");
   EXPECT_THAT(names_in(with_input(run_json({"-"}), json)), ElementsAre("voxel-7-0", "voxel-7-1"));
   EXPECT_THAT(names_in(with_input(run_json({"-", path("r/0.JSON")}), cbor)), ElementsAre("voxel-7-2", "voxel-7-0"));
-  const Outcome none = with_input(run({"-"}), "\n");
-  EXPECT_EQ(none.status, 2);
-  EXPECT_EQ(none.messages, "mercury: standard input: holds no robot\n");
-  const Outcome bad = with_input(run({"-"}), json + "{}");
-  EXPECT_EQ(bad.status, 2);
-  EXPECT_THAT(bad.messages, StartsWith("mercury: standard input: document 3: "));
+  EXPECT_THAT(with_input(run({"-"}), "\n"), Ends(2, "standard input: holds no robot"));
+  EXPECT_THAT(with_input(run({"-"}), json + "{}"), Ends(2, StartsWith("standard input: document 3: ")));
   EXPECT_EQ(with_input({"grow", "-", "-o", path("grown")}, json).status, 0);
   EXPECT_THAT(listing("grown"), ElementsAre("voxel-7-0.json", "voxel-7-1.json"));
 }
@@ -82,7 +73,7 @@ TEST_F(Inputs, SamplesHaveNames) {
   EXPECT_EQ(mercury({"evolve", path("run"), "--from", "sample:squid", "--dry-run"}).status, 0);
   write("a.toml", "format = \"mercury-scene\"\nversion = 1\nrobots = [\"sample:eel\"]\n");
   EXPECT_THAT(names_in(mercury(run_json({path("a.toml")}))), ElementsAre("eel"));
-  for (const std::vector<std::string>& command :
+  for (const Arguments& command :
        {std::vector<std::string>{"run", "sample:ell"}, {"info", "sample:ell"}, {"view", "sample:ell"}}) {
     const Outcome unknown = mercury(command);
     EXPECT_EQ(unknown.status, 2);
@@ -93,25 +84,20 @@ TEST_F(Inputs, SamplesHaveNames) {
 }
 
 TEST_F(Inputs, DrawingSaysHowMuchAddressSpaceItNeeds) {
-  const Outcome outcome = limited(400'000, "render --random voxel --still 0 --gl osmesa --quiet -o " + path("a.png"));
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.messages, HasSubstr("needs 1024 MiB of address space, the limit is 390 MiB (ulimit -v)"));
+  EXPECT_THAT(limited(400'000, "render --random voxel --still 0 --gl osmesa --quiet -o " + path("a.png")),
+              Ends(1, HasSubstr("needs 1024 MiB of address space, the limit is 390 MiB (ulimit -v)")));
   EXPECT_FALSE(std::filesystem::exists(path("a.png")));
-  const Outcome window = limited(400'000, "view --random voxel --quiet");
-  EXPECT_EQ(window.status, 1);
-  EXPECT_EQ(window.messages,
-            "mercury: drawing on the processor needs 1024 MiB of address space, the limit is 390 MiB (ulimit -v)\n");
+  EXPECT_THAT(limited(400'000, "view --random voxel --quiet"),
+              Ends(1, "drawing on the processor needs 1024 MiB of address space, the limit is 390 MiB (ulimit -v)"));
 }
 
 // Mesa ends by SIGSEGV where threads leave it too little.
 TEST_F(Inputs, DrawingSaysHowMuchDataItNeeds) {
   for (const int megabytes : {60, 130, 170, 190}) {
-    const Outcome outcome = limited("-d " + std::to_string(megabytes * 1000),
-                                    "render --random voxel --still 0 --gl osmesa --quiet -o " + path("a.png"));
-    EXPECT_EQ(outcome.status, 1);
-    EXPECT_THAT(outcome.messages,
-                testing::MatchesRegex("mercury: drawing on the processor needs [0-9]+ MiB of data and stacks, the "
-                                      "limit is [0-9]+ MiB \\(ulimit -d\\)\n"));
+    EXPECT_THAT(limited("-d " + std::to_string(megabytes * 1000),
+                        "render --random voxel --still 0 --gl osmesa --quiet -o " + path("a.png")),
+                Ends(1, testing::MatchesRegex("drawing on the processor needs [0-9]+ MiB of data and stacks, the "
+                                              "limit is [0-9]+ MiB \\(ulimit -d\\)")));
   }
 }
 
@@ -121,9 +107,8 @@ TEST_F(Inputs, AProgramWithoutMemorySaysWhatTheLimitIs) {
   write("large.json", R"({"format": "mercury-robot", "version": 1, "masses": [[0,0,0], [1,0,0], [0,1,0]],)"
                       R"("springs": [[0,1,1]], "faces": [)" +
                           faces + "[0,1,2]]}");
-  const Outcome file = limited("-d 32768", "info " + path("large.json"));
-  EXPECT_EQ(file.status, 1);
-  EXPECT_EQ(file.messages, "mercury: not enough memory: more is needed than the limit, 32 MiB (ulimit -d)\n");
+  EXPECT_THAT(limited("-d 32768", "info " + path("large.json")),
+              Ends(1, "not enough memory: more is needed than the limit, 32 MiB (ulimit -d)"));
   const Outcome threads =
       limited("-s 16384 && ulimit -d 24576", "run --random voxel --seconds 0.01 --device cpu --threads 8");
   EXPECT_EQ(threads.status, 1);
@@ -140,10 +125,9 @@ TEST_F(Inputs, TheProgramSaysHowMuchStackItNeeds) {
                                      "new nn --count 2 --quiet -o " + robots,
                                      "evolve " + run + " --population 4 --generations 1 --seconds 0.01 --quiet"}) {
     for (const std::string kilobytes : {"64", "128"}) {
-      const Outcome refused = limited("-s " + kilobytes, command);
-      EXPECT_EQ(refused.status, 1) << command;
-      EXPECT_EQ(refused.messages,
-                "mercury: the program needs 256 KiB of stack, the limit is " + kilobytes + " KiB (ulimit -s)\n");
+      EXPECT_THAT(limited("-s " + kilobytes, command),
+                  Ends(1, "the program needs 256 KiB of stack, the limit is " + kilobytes + " KiB (ulimit -s)"))
+          << command;
     }
     EXPECT_THAT(listing(), testing::Not(testing::Contains(testing::AnyOf("a.png", "run", "new"))));
     EXPECT_EQ(limited("-s 256", command).status, 0) << command;
@@ -169,20 +153,15 @@ TEST_F(Inputs, DrawingSaysHowManyThreadsItNeeds) {
 TEST_F(Inputs, BadFilesAreLeftOutWithKeepGoing) {
   write("r/1.JSON", "{}");
   const std::string bad = path("r/1.JSON");
-  for (const std::vector<std::string>& command : {run({path("r")}),
-                                                  {"info", path("r")},
-                                                  {"grow", path("r"), "-o", path("grown")},
-                                                  {"mutate", path("r"), "-o", path("mutants")},
-                                                  {"evolve", path("run"), "--from", path("r"), "--population", "4",
-                                                   "--generations", "1", "--seconds", "0.01", "--device", "cpu"}}) {
-    const Outcome stopped = mercury(command);
-    EXPECT_EQ(stopped.status, 2) << command[0];
-    EXPECT_THAT(stopped.messages, StartsWith("mercury: " + bad + ": ")) << command[0];
-    std::vector<std::string> going = command;
-    going.emplace_back("--keep-going");
-    const Outcome kept = mercury(going);
-    EXPECT_EQ(kept.status, 1) << command[0] << kept.messages;
-    EXPECT_THAT(kept.messages, HasSubstr("mercury: left out: " + bad + ": ")) << command[0];
+  for (const Arguments& command : {run({path("r")}),
+                                   {"info", path("r")},
+                                   {"grow", path("r"), "-o", path("grown")},
+                                   {"mutate", path("r"), "-o", path("mutants")},
+                                   {"evolve", path("run"), "--from", path("r"), "--population", "4", "--generations",
+                                    "1", "--seconds", "0.01", "--device", "cpu"}}) {
+    EXPECT_THAT(mercury(command), Ends(2, StartsWith(bad + ": "))) << command[0];
+    EXPECT_THAT(mercury(joined(command, {"--keep-going"})), Ends(1, HasSubstr("left out: " + bad + ": ")))
+        << command[0];
   }
   EXPECT_THAT(listing("grown"), ElementsAre("voxel-7-0.json"));
   const Outcome none = mercury(run({bad, "--keep-going"}));
@@ -194,9 +173,7 @@ TEST_F(Inputs, PipesAreRefusedWithoutWaiting) {
   for (const char* name : {"p.json", "p.h5", "p.repro"}) {
     ASSERT_EQ(::mkfifo(path(name).c_str(), 0600), 0);
     for (const char* command : {"info", "run"}) {
-      const Outcome outcome = mercury({command, path(name)});
-      EXPECT_EQ(outcome.status, 2) << command << name;
-      EXPECT_THAT(outcome.messages, StartsWith("mercury: " + path(name) + ": "));
+      EXPECT_THAT(mercury({command, path(name)}), Ends(2, StartsWith(path(name) + ": "))) << command << name;
     }
   }
   const Outcome render = mercury({"render", path("p.h5"), "-o", path("a.png"), "--still", "0"});
@@ -212,24 +189,22 @@ TEST_F(Inputs, NumbersOfThreadsThatMakeNoSenseAreRefused) {
       std::vector<std::string> arguments{command, "--threads", threads, "--device", "cpu"};
       if (command == "run") arguments.push_back(path("r"));
       if (command == "verify") arguments.push_back(path("r.h5"));
-      const Outcome outcome = mercury(arguments);
-      EXPECT_EQ(outcome.status, 2) << command;
-      EXPECT_THAT(outcome.messages,
-                  StartsWith("mercury: --threads: " + std::string(threads) + " is not accepted; give 0"));
+      EXPECT_THAT(mercury(arguments),
+                  Ends(2, StartsWith("--threads: " + std::string(threads) + " is not accepted; give 0")))
+          << command;
     }
   write("t.toml", "threads = 100000\n");
-  const Outcome file = mercury(run({path("r"), "--config", path("t.toml")}));
-  EXPECT_EQ(file.status, 2);
-  EXPECT_THAT(file.messages, HasSubstr("threads: 100000 is not accepted; give 0"));
+  EXPECT_THAT(mercury(run({path("r"), "--config", path("t.toml")})),
+              Ends(2, HasSubstr("threads: 100000 is not accepted; give 0")));
 }
 
 #ifndef MERCURY_SANITIZED  // sanitizers map more address space than any limit leaves
 TEST_F(Inputs, RobotsThatDoNotFitIntoMemoryAreRefused) {
   for (const std::string command : {"run --record r.h5", "render -o a.png --still 0"}) {
-    const Outcome outcome = limited(4'000'000, command + " --device cpu --random voxel:200000");
-    EXPECT_EQ(outcome.status, 2) << command;
-    EXPECT_THAT(outcome.messages, testing::MatchesRegex("mercury: --random: about [0-9.]+ GB of memory are needed, "
-                                                        "[0-9.]+ .B can be used; give up to [0-9]+ robots\n"));
+    EXPECT_THAT(limited(4'000'000, command + " --device cpu --random voxel:200000"),
+                Ends(2, testing::MatchesRegex("--random: about [0-9.]+ GB of memory are needed, "
+                                              "[0-9.]+ .B can be used; give up to [0-9]+ robots")))
+        << command;
   }
   EXPECT_EQ(limited(4'000'000, "bench --device cpu --count 100000").status, 2);
 }

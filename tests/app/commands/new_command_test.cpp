@@ -42,15 +42,11 @@ TEST_F(NewCommand, FolderTakesTheChosenFormat) {
 
 TEST_F(NewCommand, ExistingFilesAreReplacedOnlyWithForce) {
   write("a.json", "mine");
-  const std::vector<std::string> command{"new", "voxel", "-o", path("a.json")};
-  const Outcome refused = mercury(command);
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_EQ(refused.messages,
-            "mercury: -o: " + path("a.json") + " exists already; use --force to replace it, or give another name\n");
+  const Arguments command{"new", "voxel", "-o", path("a.json")};
+  EXPECT_THAT(mercury(command),
+              Ends(2, "-o: " + path("a.json") + " exists already; use --force to replace it, or give another name"));
   EXPECT_EQ(read("a.json"), "mine");
-  std::vector<std::string> forced = command;
-  forced.push_back("--force");
-  EXPECT_EQ(mercury(forced).status, 0);
+  EXPECT_EQ(mercury(joined(command, {"--force"})).status, 0);
   EXPECT_EQ(load_robot(path("a.json")), random_voxel_robot({}, 1));
 }
 
@@ -171,9 +167,8 @@ TEST_F(NewCommand, RobotsNameTheEnvironmentOfTheirTrial) {
 
 TEST_F(NewCommand, InvalidInputIsReported) {
   write("file", "");
-  const auto message = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"new", "voxel"});
-    const Outcome outcome = mercury(arguments);
+  const auto message = [&](const Arguments& arguments) {
+    const Outcome outcome = mercury(joined({"new", "voxel"}, arguments));
     EXPECT_EQ(outcome.status, 2);
     return outcome.messages;
   };

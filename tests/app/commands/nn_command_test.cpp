@@ -83,9 +83,8 @@ TEST_F(NnCommand, RunLeavesOutRobotsThatCannotBeMade) {
 }
 
 TEST_F(NnCommand, InvalidInputIsReported) {
-  const auto message = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"run", "--random", "nn:2", "--seconds", "0"});
-    const Outcome outcome = mercury(arguments);
+  const auto message = [&](const Arguments& arguments) {
+    const Outcome outcome = mercury(joined({"run", "--random", "nn:2", "--seconds", "0"}, arguments));
     EXPECT_EQ(outcome.status, 2);
     return outcome.messages;
   };

@@ -21,13 +21,11 @@ class Outputs : public FolderTest {
  protected:
   Outputs() { save_robot(path("eel.json"), eel_); }
 
-  std::vector<std::string> run(std::vector<std::string> more) const {
-    std::vector<std::string> arguments{"run", path("eel.json"), "--seconds", "0.01"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+  std::vector<std::string> run(const Arguments& more) const {
+    return joined({"run", path("eel.json"), "--seconds", "0.01"}, more);
   }
   // A refused command would compute for days.
-  std::string refusal(const std::vector<std::string>& arguments) const {
+  std::string refusal(const Arguments& arguments) const {
     const Outcome outcome = mercury(arguments);
     EXPECT_EQ(outcome.status, 2) << outcome.messages;
     EXPECT_EQ(outcome.output, "");
@@ -63,7 +61,7 @@ TEST_F(Outputs, CsvGoesIntoADeviceWhichStays) {
 }
 
 TEST_F(Outputs, FullDeviceIsAFailureInOneLine) {
-  for (const std::vector<std::string>& command :
+  for (const Arguments& command :
        {run({"--csv", "/dev/full"}),
         {"bench", "--size", "1x1x1", "--count", "1", "--least-seconds", "0.001", "--csv", "/dev/full"}}) {
     const Outcome outcome = mercury(command);
@@ -116,7 +114,7 @@ TEST_F(Outputs, ExistingFilesStayUnlessForced) {
   for (const char* name : {"mine.mp4", "mine.png", "m-eel.mp4", "mine.h5", "mine.json", "folder/voxel-1-400000.json",
                            "folder/eel-m999999.json", "folder/eel-x999999.json"})
     write(name, "mine");
-  for (const std::vector<std::string>& command : commands)
+  for (const Arguments& command : commands)
     EXPECT_THAT(refusal(command), HasSubstr("exists already; use --force to replace it")) << command[0];
   EXPECT_EQ(read("mine"), "mine");
   EXPECT_EQ(listing("folder").size(), 3u);
@@ -182,7 +180,7 @@ TEST_F(Outputs, RobotsInAFolderAreNotWrittenThroughLinksOutOfIt) {
   std::filesystem::create_directory(path("folder"));
   write("mine", "mine");
   std::filesystem::create_symlink(path("mine"), path("folder/voxel-1-0.json"));
-  const std::vector<std::string> command{"new", "voxel", "--count", "1", "--force", "-o", path("folder")};
+  const Arguments command{"new", "voxel", "--count", "1", "--force", "-o", path("folder")};
   EXPECT_THAT(refusal(command), HasSubstr("voxel-1-0.json: is a link out of " + path("folder")));
   EXPECT_EQ(read("mine"), "mine");
 }
@@ -279,9 +277,7 @@ TEST_F(Outputs, DryRunsSayWhatWouldBeDoneAndWriteNothing) {
       {{"evolve", path("swim"), "--population", "10", "--generations", "4", "--seconds", "5"},
        {"50: 10 at first, then 10 in each of 4 generations", "5000 steps", "the folder " + path("swim")}}};
   for (const auto& [command, texts] : commands) {
-    std::vector<std::string> arguments = command;
-    arguments.push_back("--dry-run");
-    const Outcome outcome = mercury(arguments);
+    const Outcome outcome = mercury(joined(command, {"--dry-run"}));
     EXPECT_EQ(outcome.status, 0) << outcome.messages;
     EXPECT_EQ(outcome.messages, "");
     EXPECT_THAT(outcome.output, testing::StartsWith("dry run of mercury " + command[0]));

@@ -22,19 +22,12 @@ void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
 class BadInputTest : public testing::TestWithParam<BadInput> {};
 
 TEST_P(BadInputTest, IsReportedInOneLineWithStatus2) {
-  const Outcome outcome = mercury(GetParam().arguments);
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.output, "");
-  EXPECT_EQ(outcome.messages, "mercury: " + GetParam().message + "\n");
+  EXPECT_THAT(mercury(GetParam().arguments), Ends(2, GetParam().message));
 }
 
 const std::vector<std::string> one{"run", "--random", "voxel:1", "--seconds", "0.01"};
 
-std::vector<std::string> with(std::vector<std::string> more) {
-  std::vector<std::string> all = one;
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
-}
+std::vector<std::string> with(const Arguments& more) { return joined(one, more); }
 
 INSTANTIATE_TEST_SUITE_P(
     CommandLine, BadInputTest,
@@ -228,7 +221,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(Program, PrintsItsVersion) {
-  for (const std::vector<std::string>& arguments :
+  for (const Arguments& arguments :
        std::vector<std::vector<std::string>>{{"--version"}, {"-V"}, {"run", "-V"}, {"-V", "new", "voxel"}}) {
     const Outcome outcome = mercury(arguments);
     EXPECT_EQ(outcome.status, 0);
@@ -265,7 +258,7 @@ TEST(Program, ShortHelpLeavesOutWhatFewNeed) {
 
 // Errors of a command with --json are for programs. They are on standard error, where they mix with no result.
 TEST(Program, ErrorsAreJsonWithJson) {
-  const auto error_of = [](const std::vector<std::string>& arguments) {
+  const auto error_of = [](const Arguments& arguments) {
     const Outcome outcome = mercury(arguments);
     EXPECT_EQ(outcome.output, "");
     EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
@@ -304,7 +297,7 @@ TEST(Program, OptionsMayStandBeforeTheCommand) {
   const std::vector<std::string> usual{"run", "--random", "voxel:2", "--seed", "4", "--seconds", "0.01", "--csv", "-"};
   const Outcome expected = mercury(usual);
   ASSERT_EQ(expected.status, 0);
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+  for (const Arguments& arguments : std::vector<std::vector<std::string>>{
            {"--seconds", "0.01", "run", "--random", "voxel:2", "--seed", "4", "--csv", "-"},
            {"--random", "voxel:2", "--seed=4", "-q", "--seconds", "0.01", "--csv", "-", "run"}})
     EXPECT_EQ(mercury(arguments).output, expected.output);
@@ -332,14 +325,13 @@ TEST(Program, OutputThatCannotBeWrittenIsAnError) {
 
 class ConfigFileTest : public FolderTest {
  protected:
-  Outcome run_with(const std::string& toml, std::vector<std::string> more = {}, bool json = true) {
+  Outcome run_with(const std::string& toml, const Arguments& more = {}, bool json = true) {
     write("a.toml", toml);
     std::vector<std::string> arguments{"run", "--random", "voxel", "--seconds", "0.01", "--config", path("a.toml")};
     if (json) arguments.emplace_back("--json");
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return mercury(arguments);
+    return mercury(joined(arguments, more));
   }
-  nlohmann::json configuration_with(const std::string& toml, std::vector<std::string> more = {}) {
+  nlohmann::json configuration_with(const std::string& toml, const Arguments& more = {}) {
     return nlohmann::json::parse(run_with(toml, more).output, nullptr, false)["configuration"];
   }
 };
@@ -368,9 +360,7 @@ TEST_F(ConfigFileTest, SwitchesAreTrueOrFalse) {
 TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
   const std::string file = path("a.toml");
   const auto expect_error = [&](const std::string& toml, const std::string& message) {
-    const Outcome outcome = run_with(toml, {}, false);
-    EXPECT_EQ(outcome.status, 2) << toml;
-    EXPECT_EQ(outcome.messages, "mercury: " + file + message + "\n");
+    EXPECT_THAT(run_with(toml, {}, false), Ends(2, file + message)) << toml;
   };
   expect_error("dt = 0.002\ndensity = -5\n", ":2: --density: -5 is not accepted; give a finite number >= 0 kg/m3");
   expect_error("\n\nsolver = \"euler\"\n", ":3: --solver: \"euler\" is not a solver; give force or xpbd");
@@ -387,9 +377,7 @@ TEST_F(ConfigFileTest, ErrorsNameFileLineAndOption) {
 TEST_F(ConfigFileTest, TyposInTablesOfOtherCommandsAreReported) {
   const std::string file = path("a.toml");
   const auto expect_error = [&](const std::string& toml, const std::string& message) {
-    const Outcome outcome = run_with(toml, {}, false);
-    EXPECT_EQ(outcome.status, 2) << toml;
-    EXPECT_EQ(outcome.messages, "mercury: " + file + message + "\n");
+    EXPECT_THAT(run_with(toml, {}, false), Ends(2, file + message)) << toml;
   };
   expect_error("[new.voxl]\nair = 0.2\n", ":1: [voxl] is not a command of mercury new; did you mean voxel?");
   expect_error("[new.voxel]\nedge = 0.2\nair = 0.3\nsymetry = \"x\"\n",
@@ -415,23 +403,18 @@ TEST_F(ConfigFileTest, TablesOfKindsOverrideThoseOfTheirCommand) {
 TEST_F(ConfigFileTest, MustBeARegularFile) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   for (const std::string& file : {path("pipe"), folder_.string(), std::string("/dev/zero")}) {
-    const Outcome outcome = mercury({"run", "--random", "voxel", "--config", file});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.messages, "mercury: --config: " + file + " is not a file; give a TOML file\n");
+    EXPECT_THAT(mercury({"run", "--random", "voxel", "--config", file}),
+                Ends(2, "--config: " + file + " is not a file; give a TOML file"));
   }
 }
 
 TEST_F(ConfigFileTest, InvalidTomlIsReportedWithItsLine) {
-  const Outcome outcome = run_with("dt = 0.001\nthis is no toml\n", {}, false);
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.messages, StartsWith("mercury: " + path("a.toml") + ":2: "));
+  EXPECT_THAT(run_with("dt = 0.001\nthis is no toml\n", {}, false), Ends(2, StartsWith(path("a.toml") + ":2: ")));
 }
 
 TEST_F(ConfigFileTest, FileMustExist) {
-  const Outcome outcome = mercury({"run", "--random", "voxel", "--config", path("none.toml")});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.messages,
-            "mercury: --config: " + path("none.toml") + " cannot be read: No such file or directory\n");
+  EXPECT_THAT(mercury({"run", "--random", "voxel", "--config", path("none.toml")}),
+              Ends(2, "--config: " + path("none.toml") + " cannot be read: No such file or directory"));
 }
 
 }  // namespace

@@ -33,10 +33,7 @@ render::Image columns(const render::Image& picture, int first, int width) {
 class RenderCommand : public FolderTest {
  protected:
   std::vector<std::string> command(const std::string& output, std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments{"render", "--random",  "voxel:2", "--size",
-                                       "160x90", "--faceted", "-o",      path(output)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return joined({"render", "--random", "voxel:2", "--size", "160x90", "--faceted", "-o", path(output)}, more);
   }
 };
 
@@ -65,10 +62,9 @@ TEST_F(RenderCommand, HeroShowsOneRobotAndCopiesBehindIt) {
 
 TEST_F(RenderCommand, FootprintsOfAStillAreThoseOfTheFilm) {
   const auto drawn = [&](const std::string& output, std::vector<std::string> more) {
-    std::vector<std::string> arguments{"render", "sample:dog", "--size", "160x90", "--quality",
-                                       "medium", "--camera",   "still",  "-o",     path(output)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = mercury(arguments);
+    const Outcome outcome = mercury(joined(
+        {"render", "sample:dog", "--size", "160x90", "--quality", "medium", "--camera", "still", "-o", path(output)},
+        more));
     EXPECT_EQ(outcome.status, 0) << outcome.messages;
     return output.ends_with("/") ? render::Image{} : render::read_png(path(output));
   };
@@ -82,7 +78,7 @@ TEST_F(RenderCommand, FootprintsOfAStillAreThoseOfTheFilm) {
 }
 
 TEST_F(RenderCommand, ALensIsOfAPicture) {
-  for (const std::vector<std::string>& options :
+  for (const Arguments& options :
        {std::vector<std::string>{"--style", "hero"}, std::vector<std::string>{"--aperture", "0.1"}}) {
     const Outcome outcome = mercury(command("a.mp4", options));
     EXPECT_EQ(outcome.status, 2);
@@ -154,8 +150,7 @@ TEST_F(RenderCommand, FiguresShowRobotsAndTheirShadowsAlone) {
   EXPECT_GT(nothing, 160 * 90 / 4);
   EXPECT_GT(solid, 160 * 90 / 50);
   EXPECT_GT(shadow, 50);
-  std::vector<std::string> tight = figure;
-  tight.insert(tight.end(), {"--tight", "--dpi", "300"});
+  const Arguments tight = joined(figure, {"--tight", "--dpi", "300"});
   ASSERT_EQ(mercury(command("b.png", tight)).status, 0);
   EXPECT_LT(render::read_png(path("b.png")).width, 160);
   EXPECT_NE(read("b.png").find("pHYs"), std::string::npos);
@@ -180,9 +175,8 @@ TEST_F(RenderCommand, FiguresShowRobotsAndTheirShadowsAlone) {
 std::string decoded(const std::string& film, const std::string& decoder = {}) {
   std::vector<std::string> arguments{"-loglevel", "error"};
   if (!decoder.empty()) arguments.insert(arguments.end(), {"-c:v", decoder});
-  arguments.insert(arguments.end(),
-                   {"-i", film, "-vsync", "passthrough", "-f", "rawvideo", "-pix_fmt", "rgba", "-y", film + ".raw"});
-  ChildProcess child("ffmpeg", arguments);
+  ChildProcess child("ffmpeg", joined(arguments, {"-i", film, "-vsync", "passthrough", "-f", "rawvideo", "-pix_fmt",
+                                                  "rgba", "-y", film + ".raw"}));
   EXPECT_EQ(outcome_of(child).status, 0);
   std::ifstream frames(film + ".raw", std::ios::binary);
   return {std::istreambuf_iterator<char>(frames), {}};
@@ -224,12 +218,9 @@ TEST_F(RenderCommand, ContactSheetHasTheRequestedWidth) {
 TEST_F(RenderCommand, RecordingGivesThePicturesOfTheSimulation) {
   const std::vector<std::string> simulate{"--random",      "voxel:2", "--seconds", "1",
                                           "--environment", "land",    "--dt",      "0.002"};
-  std::vector<std::string> record{"run", "--record", path("a.h5"), "--every", "1"};
-  record.insert(record.end(), simulate.begin(), simulate.end());
-  ASSERT_EQ(mercury(record).status, 0);
+  ASSERT_EQ(mercury(joined({"run", "--record", path("a.h5"), "--every", "1"}, simulate)).status, 0);
   ASSERT_EQ(mercury({"render", path("a.h5"), "-o", path("played"), "--fps", "2", "--size", "160x90"}).status, 0);
-  std::vector<std::string> direct{"render", "-o", path("direct"), "--fps", "2", "--size", "160x90"};
-  direct.insert(direct.end(), simulate.begin(), simulate.end());
+  const Arguments direct = joined({"render", "-o", path("direct"), "--fps", "2", "--size", "160x90"}, simulate);
   ASSERT_EQ(mercury(direct).status, 0);
   EXPECT_EQ(listing("played"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
   for (const std::string& frame : listing("direct"))
@@ -237,9 +228,9 @@ TEST_F(RenderCommand, RecordingGivesThePicturesOfTheSimulation) {
 }
 
 TEST_F(RenderCommand, RobotsBeginWhereTheFirstTrialOfARunDoes) {
-  const std::vector<std::string> robots{"--random", "voxel:2", "--seconds", "0.5", "--seed", "3", "--dt", "0.002"};
+  const Arguments robots{"--random", "voxel:2", "--seconds", "0.5", "--seed", "3", "--dt", "0.002"};
   const std::vector<std::string> start{"--target", "0.3,0.2,0", "--target-radius", "0.6", "--turned"};
-  const auto made = [&](std::vector<std::string> words, const std::vector<std::string>& more) {
+  const auto made = [&](std::vector<std::string> words, const Arguments& more) {
     for (const auto* part : {&robots, &more}) words.insert(words.end(), part->begin(), part->end());
     ASSERT_EQ(mercury(words).status, 0);
   };
@@ -252,26 +243,20 @@ TEST_F(RenderCommand, RobotsBeginWhereTheFirstTrialOfARunDoes) {
   made(picture("elsewhere"), {"--target", "0.3,0.2,0"});
   EXPECT_EQ(read("direct/frame-00000.png"), read("played/frame-00000.png"));
   EXPECT_NE(read("direct/frame-00000.png"), read("elsewhere/frame-00000.png"));
-  const Outcome recorded = mercury({"render", path("a.h5"), "--target-radius", "1", "-o", path("b")});
-  EXPECT_EQ(recorded.status, 2);
-  EXPECT_EQ(recorded.messages, "mercury: --target-radius: a recording has its own start; give robots to simulate\n");
+  EXPECT_THAT(mercury({"render", path("a.h5"), "--target-radius", "1", "-o", path("b")}),
+              Ends(2, "--target-radius: a recording has its own start; give robots to simulate"));
 }
 
 // Steps of 1 ms do not fit into 30 frames/s: film, recording and the film of the recording show the same moments.
 TEST_F(RenderCommand, FilmsAndRecordingsHaveExactlyTheirRate) {
   const std::vector<std::string> simulate{"--random", "voxel:1", "--seconds", "1", "--device", "cpu"};
-  const auto with = [&](std::vector<std::string> command) {
-    command.insert(command.end(), simulate.begin(), simulate.end());
-    return mercury(command).status;
-  };
+  const auto with = [&](const Arguments& command) { return mercury(joined(command, simulate)).status; };
   ASSERT_EQ(with({"run", "--record", path("a.h5"), "--fps", "30"}), 0);
   const auto film_of = [&](const std::string& name) {
     return std::vector<std::string>{"render", "-o", path(name), "--size", "64x36", "--quality", "low", "--faceted"};
   };
   ASSERT_EQ(with(film_of("a.mp4")), 0);
-  std::vector<std::string> of_recording = film_of("b.mp4");
-  of_recording.push_back(path("a.h5"));
-  ASSERT_EQ(mercury(of_recording).status, 0);
+  ASSERT_EQ(mercury(joined(film_of("b.mp4"), {path("a.h5")})).status, 0);
   for (const char* film : {"a.mp4", "b.mp4"}) {
     const auto stream = probe(path(film));
     EXPECT_EQ(stream["r_frame_rate"], "30/1");
@@ -303,9 +288,7 @@ TEST_F(RenderCommand, TwoRecordingsPlaySideBySide) {
   ASSERT_EQ(record("one.h5", "voxel:1", "0.2"), 0);
   ASSERT_EQ(record("other.h5", "voxel:2:7", "0.4"), 0);
   const std::vector<std::string> sides{"render", path("one.h5"), path("other.h5"), "--size", "320x120", "--fps", "10"};
-  std::vector<std::string> frames = sides;
-  frames.insert(frames.end(), {"-o", path("sides")});
-  const Outcome outcome = mercury(frames);
+  const Outcome outcome = mercury(joined(sides, {"-o", path("sides")}));
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(listing("sides").size(), 4u);  // as long as the longer one
   const render::Image first = render::read_png(path("sides/frame-00000.png")),
@@ -328,11 +311,10 @@ TEST_F(RenderCommand, TwoRecordingsPlaySideBySide) {
 class RenderResult : public RenderCommand {
  protected:
   // The same run as a recording (.h5) and a result (.json).
-  std::string run(const std::string& name, std::vector<std::string> robots) const {
-    robots.insert(robots.begin(), "run");
-    robots.insert(robots.end(), {"--seconds", "0.2", "--environment", "land", "--friction", "0.3", "--device", "cpu",
-                                 "--json", "--record", path(name + ".h5")});
-    const Outcome outcome = mercury(robots);
+  std::string run(const std::string& name, const Arguments& robots) const {
+    const Outcome outcome = mercury(joined({"run"}, robots,
+                                           {"--seconds", "0.2", "--environment", "land", "--friction", "0.3",
+                                            "--device", "cpu", "--json", "--record", path(name + ".h5")}));
     EXPECT_EQ(outcome.status, 0) << outcome.messages;
     write(name + ".json", outcome.output);
     return name + ".json";
@@ -340,9 +322,8 @@ class RenderResult : public RenderCommand {
   Outcome film(std::vector<std::string> inputs, const std::string& output) const {
     for (std::string& input : inputs)
       if (input.ends_with(".json") || input.ends_with(".h5")) input = path(input);
-    inputs.insert(inputs.begin(), "render");
-    inputs.insert(inputs.end(), {"--device", "cpu", "--size", "240x90", "--show", "skin", "-o", path(output)});
-    return mercury(inputs);
+    return mercury(
+        joined({"render"}, inputs, {"--device", "cpu", "--size", "240x90", "--show", "skin", "-o", path(output)}));
   }
   static std::string with(std::string text, const std::string& what, const std::string& instead) {
     const std::size_t at = text.find(what);
@@ -380,12 +361,10 @@ TEST_F(RenderResult, ItsMotionIsExported) {
   EXPECT_EQ(table.status, 0) << table.messages;
   EXPECT_THAT(table.messages, HasSubstr("bit for bit"));
   // A pose needs no result: it is that of the robot's file.
-  const Outcome pose = mercury({"export", result, "-o", path("walk.obj")});
-  EXPECT_EQ(pose.status, 2);
-  EXPECT_THAT(pose.messages, HasSubstr("walk.json: is a result of mercury run"));
-  const Outcome frames = mercury({"export", result, "-o", path("walk.glb"), "--from", "0.1"});
-  EXPECT_EQ(frames.status, 2);
-  EXPECT_THAT(frames.messages, HasSubstr("walk.json is a result"));
+  EXPECT_THAT(mercury({"export", result, "-o", path("walk.obj")}),
+              Ends(2, HasSubstr("walk.json: is a result of mercury run")));
+  EXPECT_THAT(mercury({"export", result, "-o", path("walk.glb"), "--from", "0.1"}),
+              Ends(2, HasSubstr("walk.json is a result")));
 }
 
 TEST_F(RenderResult, NamesFilesThatLieBesideIt) {
@@ -396,10 +375,8 @@ TEST_F(RenderResult, NamesFilesThatLieBesideIt) {
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_THAT(outcome.messages, HasSubstr("bit for bit"));
   write("gone.json", with(text, path("one.json"), "gone/one.json"));
-  const Outcome gone = film({"gone.json"}, "gone.mp4");
-  EXPECT_EQ(gone.status, 2);
-  EXPECT_THAT(gone.messages,
-              HasSubstr("gone.json: /robots/0/file: gone/one.json is not there; a result names its robots"));
+  EXPECT_THAT(film({"gone.json"}, "gone.mp4"),
+              Ends(2, HasSubstr("gone.json: /robots/0/file: gone/one.json is not there; a result names its robots")));
 }
 
 TEST_F(RenderResult, ThatEndsElsewhereIsFilmedAndSaidSo) {
@@ -422,9 +399,7 @@ TEST_F(RenderResult, ThatEndsElsewhereIsFilmedAndSaidSo) {
 
 TEST_F(RenderResult, OfRandomRobotsNeedsTheOptionsOfTheirKind) {
   const std::string result = run("wide", {"--random", "voxel:1", "--voxels", "3x2x2"});
-  const Outcome without = film({result}, "without.mp4");
-  EXPECT_EQ(without.status, 2);
-  EXPECT_THAT(without.messages, HasSubstr("give the options of its kind that made it"));
+  EXPECT_THAT(film({result}, "without.mp4"), Ends(2, HasSubstr("give the options of its kind that made it")));
   EXPECT_EQ(film({result, "--voxels", "3x2x2", "--still", "0"}, "with.png").status, 0);
 }
 
@@ -433,9 +408,7 @@ TEST_F(RenderResult, ThatCannotBeUsedIsRefusedInOneLine) {
   const std::string text = read(result);
   const auto refused = [&](const std::string& name, const std::string& content, const std::string& message) {
     write(name, content);
-    const Outcome outcome = film({name}, "a.mp4");
-    EXPECT_EQ(outcome.status, 2) << name;
-    EXPECT_THAT(outcome.messages, HasSubstr(name + ": " + message));
+    EXPECT_THAT(film({name}, "a.mp4"), Ends(2, HasSubstr(name + ": " + message))) << name;
   };
   refused("cut.json", text.substr(0, text.size() / 2), "is not a result of mercury run --json");
   refused("empty.json", with(text, "\"masses\":", "\"no_masses\":"), "/robots: names no robot that was stepped");
@@ -444,9 +417,8 @@ TEST_F(RenderResult, ThatCannotBeUsedIsRefusedInOneLine) {
   refused("both.json", with(text, "\"random\": \"", "\"file\": \"a.json\", \"random\": \""), "/robots/0: give either");
   EXPECT_THAT(film({result, "--random", "voxel:1"}, "a.mp4").messages,
               HasSubstr("walk.json: a result stands beside recordings, results and runs"));
-  const Outcome as_robot = mercury({"run", path(result)});
-  EXPECT_EQ(as_robot.status, 2);
-  EXPECT_THAT(as_robot.messages, HasSubstr("walk.json: is a result of mercury run; mercury render films it"));
+  EXPECT_THAT(mercury({"run", path(result)}),
+              Ends(2, HasSubstr("walk.json: is a result of mercury run; mercury render films it")));
 }
 
 // Three columns of one recording are the same picture three times; a run stands beside a recording.
@@ -465,11 +437,8 @@ TEST_F(RenderCommand, RecordingsAndRunsStandSideBySide) {
   make_run(path("run"), small_run(), 2);
   const std::vector<std::string> sides{"render", path("run"),    one,     "--size", "320x90", "--seconds",
                                        "0.1",    "--background", "white", "--show", "skin"};
-  std::vector<std::string> still = sides, film = sides;
-  still.insert(still.end(), {"--still", "0.1", "-o", path("both.png")});
-  film.insert(film.end(), {"-o", path("both.mp4")});
-  for (const auto& command : {still, film}) {
-    const Outcome outcome = mercury(command);
+  for (const Arguments& film : {Arguments{"--still", "0.1", "-o", path("both.png")}, {"-o", path("both.mp4")}}) {
+    const Outcome outcome = mercury(joined(sides, film));
     ASSERT_EQ(outcome.status, 0) << outcome.messages;
   }
   const render::Image both = render::read_png(path("both.png"));
@@ -485,10 +454,8 @@ TEST_F(RenderCommand, RecordingsAndRunsStandSideBySide) {
 
 TEST_F(RenderCommand, RecordingDoesNotMixWithRobots) {
   write("a.h5", "");
-  const Outcome outcome = mercury(command("a.mp4", {path("a.h5")}));
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.messages,
-            "mercury: " + path("a.h5") + ": a recording is played alone; give it without other robots\n");
+  EXPECT_THAT(mercury(command("a.mp4", {path("a.h5")})),
+              Ends(2, path("a.h5") + ": a recording is played alone; give it without other robots"));
 }
 
 TEST_F(RenderCommand, EachRobotGetsAVideo) {
@@ -524,10 +491,8 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
                                                        {"--camera", "top"},
                                                        {"--follow", "--azimuth", "30"}};
   std::set<std::string> pictures;
-  for (const std::vector<std::string>& variant : variants) {
-    std::vector<std::string> more{"--still", "0.5", "--force"};
-    more.insert(more.end(), variant.begin(), variant.end());
-    const Outcome outcome = mercury(command("a.png", more));
+  for (const Arguments& variant : variants) {
+    const Outcome outcome = mercury(command("a.png", joined({"--still", "0.5", "--force"}, variant)));
     ASSERT_EQ(outcome.status, 0) << outcome.messages;
     EXPECT_TRUE(pictures.insert(read("a.png")).second) << testing::PrintToString(variant);
   }
@@ -536,9 +501,9 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
 // A camera that stays where the start put it, when both sides are alike, is the same for one side and for two.
 TEST_F(RenderCommand, EachSideOfAComparisonIsThePictureOfItsSettings) {
   const auto picture = [this](const std::string& name, const std::string& size, std::vector<std::string> more) {
-    more.insert(more.end(), {"--size", size, "--fps", "2", "--seconds", "1", "--camera", "still", "--color", "strain",
-                             "--scale", "-0.2,0.2", "--show", "skin", "--dt", "0.0005"});
-    const Outcome outcome = mercury(command(name, more));
+    const Outcome outcome = mercury(
+        command(name, joined(more, {"--size", size, "--fps", "2", "--seconds", "1", "--camera", "still", "--color",
+                                    "strain", "--scale", "-0.2,0.2", "--show", "skin", "--dt", "0.0005"})));
     EXPECT_EQ(outcome.status, 0) << outcome.messages;
     return render::read_png(path(name + "/frame-00001.png"));
   };
@@ -569,30 +534,26 @@ TEST_F(RenderCommand, SidesOfAFilmShareCameraAndScale) {
 
 TEST_F(RenderCommand, DyingEncoderEndsTheProgramWithOneLine) {
   write("dying", "#!/bin/sh\necho 'out of ink' >&2\nexit 4\n", true);
-  const Outcome outcome = mercury(command("a.mp4", {"--quiet", "--seconds", "1", "--ffmpeg", path("dying")}));
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages,
-            "mercury: " + path("a.mp4") + ": the encoder " + path("dying") + " ended with status 4: out of ink\n");
+  EXPECT_THAT(mercury(command("a.mp4", {"--quiet", "--seconds", "1", "--ffmpeg", path("dying")})),
+              Ends(1, path("a.mp4") + ": the encoder " + path("dying") + " ended with status 4: out of ink"));
   EXPECT_EQ(listing(), std::vector<std::string>{"dying"});
 }
 
 TEST_F(RenderCommand, MissingEncoderIsReportedBeforeDrawing) {
-  const Outcome outcome = run_program(
-      "sh", {"-c", "PATH=/nowhere exec \"$0\" render --random voxel -o \"$1\"", MERCURY_PROGRAM, path("a.mp4")});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages,
-            "mercury: ffmpeg was not found: install the package ffmpeg (apt install ffmpeg), name the program with "
-            "--ffmpeg, or write PNG pictures into a folder (-o FOLDER)\n");
+  EXPECT_THAT(run_program("sh", {"-c", "PATH=/nowhere exec \"$0\" render --random voxel -o \"$1\"", MERCURY_PROGRAM,
+                                 path("a.mp4")}),
+              Ends(1,
+                   "ffmpeg was not found: install the package ffmpeg (apt install ffmpeg), name the program with "
+                   "--ffmpeg, or write PNG pictures into a folder (-o FOLDER)"));
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
 TEST_F(RenderCommand, FileBeyondTheSizeLimitIsReported) {
-  const Outcome outcome = run_program(
-      "sh", {"-c", "ulimit -f 1; exec \"$0\" render --random voxel:2 --size 160x90 --seconds 0.2 --quiet -o \"$1\"",
-             MERCURY_PROGRAM, path("a.mp4")});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.messages, "mercury: " + path("a.mp4") +
-                                  ": the file grew beyond the size allowed here (ulimit -f); nothing was kept\n");
+  EXPECT_THAT(
+      run_program(
+          "sh", {"-c", "ulimit -f 1; exec \"$0\" render --random voxel:2 --size 160x90 --seconds 0.2 --quiet -o \"$1\"",
+                 MERCURY_PROGRAM, path("a.mp4")}),
+      Ends(1, path("a.mp4") + ": the file grew beyond the size allowed here (ulimit -f); nothing was kept"));
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
@@ -669,9 +630,7 @@ TEST_F(RefusedVideo, FolderThatHoldsSomethingIsFilledOnlyWithForce) {
   EXPECT_EQ(read("frames/frame-00002.png"), last);
   for (const char* name : {"frames/note", "frames/frame-1.png", "frames/frame-00007.jpg"}) write(name, "mine");
   write("frames/frame-00005.png", "of an earlier film, after a gap");
-  std::vector<std::string> forced = shorter;
-  forced.push_back("--force");
-  ASSERT_EQ(mercury(command("frames", forced)).status, 0);
+  ASSERT_EQ(mercury(command("frames", joined(shorter, {"--force"}))).status, 0);
   EXPECT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00007.jpg", "frame-1.png", "note"}));
 }
 
@@ -741,14 +700,10 @@ TEST_F(RefusedVideo, WhatARecordingDoesNotHaveIsRefused) {
   const auto still = [&](const std::string& moment, const std::string& name) {
     return mercury({"render", path("a.h5"), "--still", moment, "--size", "160x90", "-o", path(name)});
   };
-  const Outcome beyond = still("0.6", "b.png");
-  EXPECT_EQ(beyond.status, 2);
-  EXPECT_EQ(beyond.messages, "mercury: --still: 0.6 is not accepted; the recording has 0.495 s\n");
+  EXPECT_THAT(still("0.6", "b.png"), Ends(2, "--still: 0.6 is not accepted; the recording has 0.495 s"));
   EXPECT_EQ(still("0.5", "end.png").status, 0);
-  const Outcome sides = mercury({"render", path("a.h5"), "--compare", "solver=xpbd", "-o", path("c.mp4")});
-  EXPECT_EQ(sides.status, 2);
-  EXPECT_EQ(sides.messages,
-            "mercury: --compare: not together with a recording, which has one side; give its robots' files\n");
+  EXPECT_THAT(mercury({"render", path("a.h5"), "--compare", "solver=xpbd", "-o", path("c.mp4")}),
+              Ends(2, "--compare: not together with a recording, which has one side; give its robots' files"));
   EXPECT_EQ(listing(), (std::vector<std::string>{"a.h5", "end.png"}));
 }
 

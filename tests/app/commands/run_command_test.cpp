@@ -16,9 +16,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 json run_json(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "run");
-  arguments.push_back("--json");
-  const Outcome outcome = mercury(arguments);
+  const Outcome outcome = mercury(joined({"run"}, arguments, {"--json"}));
   EXPECT_EQ(outcome.status, 0) << outcome.messages;
   return json::parse(outcome.output, nullptr, false);
 }
@@ -72,10 +70,8 @@ TEST_F(RunCommand, ShareOfStrainedSpringsGoesWithTheLargestStrain) {
 TEST_F(RunCommand, FoldingIsMeasuredWhereItIsAskedFor) {
   const std::vector<std::string> plain{"--random", "voxel:2", "--seconds", "0.2"};
   const json without = run_json(plain);
-  for (const std::vector<std::string>& asks : {std::vector<std::string>{"--folding"}, {"--overlap-limit", "0.5"}}) {
-    std::vector<std::string> arguments = plain;
-    arguments.insert(arguments.end(), asks.begin(), asks.end());
-    const json with = run_json(arguments);
+  for (const Arguments& asks : {std::vector<std::string>{"--folding"}, {"--overlap-limit", "0.5"}}) {
+    const json with = run_json(joined(plain, asks));
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_TRUE(without["robots"][i]["inverted"].is_null());
       EXPECT_EQ(with["robots"][i]["inverted"], 0.0);
@@ -88,9 +84,7 @@ TEST_F(RunCommand, FoldingIsMeasuredWhereItIsAskedFor) {
 TEST_F(RunCommand, UprightIsMeasuredWhereItIsAskedFor) {
   const std::vector<std::string> plain{"--random", "voxel:2", "--seconds", "0.2"};
   const json without = run_json(plain);
-  std::vector<std::string> arguments = plain;
-  arguments.push_back("--upright");
-  const json with = run_json(arguments);
+  const json with = run_json(joined(plain, {"--upright"}));
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_TRUE(without["robots"][i]["upright"].is_null());
     EXPECT_GT(with["robots"][i]["upright"], 0.9) << "in water, without time to turn";
@@ -102,9 +96,7 @@ TEST_F(RunCommand, UprightIsMeasuredWhereItIsAskedFor) {
 // The usual limits ask for it, and others need not.
 TEST_F(RunCommand, FoldingOfRealBodiesIsMeasured) {
   const std::vector<std::string> real{"--random", "voxel:2", "--physics", "real", "--seconds", "0.2"};
-  std::vector<std::string> unlimited = real;
-  unlimited.insert(unlimited.end(), {"--inverted-limit", "1"});
-  const json with = run_json(real), without = run_json(unlimited);
+  const json with = run_json(real), without = run_json(joined(real, {"--inverted-limit", "1"}));
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(with["robots"][i]["inverted"], 0.0);
     EXPECT_TRUE(without["robots"][i]["inverted"].is_null());
@@ -121,20 +113,16 @@ TEST_F(RunCommand, ResultsNameThePhysics) {
 }
 
 TEST_F(RunCommand, ATimeStepThatIsTooLongIsNamed) {
-  const std::vector<std::string> run{"run", "--random", "voxel:1", "--physics", "real", "--seconds", "0.1"};
+  const Arguments run{"run", "--random", "voxel:1", "--physics", "real", "--seconds", "0.1"};
   EXPECT_THAT(mercury(run).messages, testing::Not(HasSubstr("too fast")));
-  std::vector<std::string> coarse = run;
-  coarse.insert(coarse.end(), {"--dt", "0.02"});
-  EXPECT_THAT(mercury(coarse).messages,
+  EXPECT_THAT(mercury(joined(run, {"--dt", "0.02"})).messages,
               testing::ContainsRegex("vibrates too fast for this time step, 0.02 s: the force solver is stable up to "
                                      "0.00[0-9]+ s; give a shorter one, or --substeps [0-9]+"));
 }
 
 TEST_F(RunCommand, HashesAreReproducibleWithAnyNumberOfThreads) {
-  const std::vector<std::string> arguments{"--random",  "voxel:16", "--seed",   "1",
-                                           "--seconds", "0.3",      "--device", "cpu"};
-  std::vector<std::string> one_thread = arguments;
-  one_thread.insert(one_thread.end(), {"--threads", "1"});
+  const Arguments arguments{"--random", "voxel:16", "--seed", "1", "--seconds", "0.3", "--device", "cpu"};
+  const Arguments one_thread = joined(arguments, {"--threads", "1"});
   const auto first = hashes(run_json(arguments));
   EXPECT_EQ(first.size(), 16u);
   EXPECT_EQ(hashes(run_json(arguments)), first);
@@ -153,10 +141,8 @@ TEST_F(RunCommand, RobotAloneEndsAsInTheGroup) {
 
 // A recording needs all robots in one simulation, and other runs do not.
 TEST_F(RunCommand, ARecordingChangesNoResult) {
-  const std::vector<std::string> robots{"--random", "voxel:5", "--seconds", "0.25", "--environment", "land"};
-  std::vector<std::string> recorded = robots;
-  recorded.insert(recorded.end(), {"--record", path("a.h5")});
-  EXPECT_EQ(run_json(recorded)["robots"], run_json(robots)["robots"]);
+  const Arguments robots{"--random", "voxel:5", "--seconds", "0.25", "--environment", "land"};
+  EXPECT_EQ(run_json(joined(robots, {"--record", path("a.h5")}))["robots"], run_json(robots)["robots"]);
 }
 
 TEST_F(RunCommand, DifferentRunsHaveDifferentHashes) {
@@ -193,11 +179,8 @@ TEST_F(RunCommand, AFallOnLandIsNoDistance) {
 }
 
 TEST_F(RunCommand, NothingIsMeasuredWhileRobotsSettle) {
-  const std::vector<std::string> run{"--random", "voxel:3", "--environment", "land", "--dt", "0.002"};
-  const auto with = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), run.begin(), run.end());
-    return run_json(more);
-  };
+  const Arguments run{"--random", "voxel:3", "--environment", "land", "--dt", "0.002"};
+  const auto with = [&](const Arguments& more) { return run_json(joined(run, more)); };
   const json whole = with({"--seconds", "1"}), settling = with({"--seconds", "0.5"}),
              rest = with({"--seconds", "1", "--settle", "0.5"});
   EXPECT_EQ(rest["settle"], 0.5);
@@ -234,8 +217,7 @@ TEST_F(RunCommand, ResultsNameTheFileAndTheRequestOfEachRobot) {
   for (const char* file : {"a/one.json", "two.json"})
     write(file, R"({"format": "mercury-robot", "version": 1, "name": "twin", "masses": [[0,0,0],[1,0,0]],
                     "springs": [[0,1,21]], "faces": []})");
-  const std::vector<std::string> arguments{path("a"),      path("two.json"), "--random",
-                                           "voxel:2:7:40", "--seconds",      "0.01"};
+  const Arguments arguments{path("a"), path("two.json"), "--random", "voxel:2:7:40", "--seconds", "0.01"};
   const json robots = run_json(arguments)["robots"];
   ASSERT_EQ(robots.size(), 4u);
   const json files{path("a/one.json"), path("two.json"), nullptr, nullptr},
@@ -248,9 +230,8 @@ TEST_F(RunCommand, ResultsNameTheFileAndTheRequestOfEachRobot) {
   }
   // Each alone is the same robot.
   EXPECT_EQ(run_json({"--random", "voxel:1:7:41", "--seconds", "0.01"})["robots"][0]["hash"], robots[3]["hash"]);
-  std::vector<std::string> table{"run"};
-  table.insert(table.end(), arguments.begin(), arguments.end());
-  EXPECT_THAT(mercury(table).output, testing::AllOf(HasSubstr("/a/one.json)"), HasSubstr("/two.json)")));
+  EXPECT_THAT(mercury(joined({"run"}, arguments)).output,
+              testing::AllOf(HasSubstr("/a/one.json)"), HasSubstr("/two.json)")));
 }
 
 TEST_F(RunCommand, TableShowsEachRobot) {
@@ -264,7 +245,7 @@ TEST_F(RunCommand, TableShowsEachRobot) {
 }
 
 TEST_F(RunCommand, CsvHasALinePerRobot) {
-  const std::vector<std::string> robots{"--random", "voxel:2", "--seconds", "0.1"};
+  const Arguments robots{"--random", "voxel:2", "--seconds", "0.1"};
   const Outcome outcome = mercury({"run", "--random", "voxel:2", "--seconds", "0.1", "--csv", path("a.csv")});
   ASSERT_EQ(outcome.status, 0);
   const json report = run_json(robots);
@@ -295,26 +276,18 @@ TEST_F(RunCommand, CsvHasALinePerRobot) {
 
 TEST_F(RunCommand, CsvThatCannotBeWrittenIsBadInput) {
   write("no", "");
-  const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--csv", path("no/a.csv")});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.messages,
-            "mercury: --csv: " + path("no/a.csv") + " cannot be written: " + path("no") + " is no folder\n");
+  EXPECT_THAT(mercury({"run", "--random", "voxel", "--seconds", "0.01", "--csv", path("no/a.csv")}),
+              Ends(2, "--csv: " + path("no/a.csv") + " cannot be written: " + path("no") + " is no folder"));
 }
 
 TEST_F(RunCommand, CsvGoesToAFolderNever) {
-  const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--csv", path("")});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.output, "");
-  EXPECT_EQ(outcome.messages, "mercury: --csv: " + path("") + " is a folder; give a file\n");
+  EXPECT_THAT(mercury({"run", "--random", "voxel", "--seconds", "0.01", "--csv", path("")}),
+              Ends(2, "--csv: " + path("") + " is a folder; give a file"));
 }
 
 TEST_F(RunCommand, CsvOnStandardOutputReplacesTheTable) {
-  const std::vector<std::string> run{"run", "--random", "voxel:2", "--seconds", "0.1", "--csv"};
-  const auto with = [&](const std::string& file) {
-    std::vector<std::string> arguments = run;
-    arguments.push_back(file);
-    return mercury(arguments);
-  };
+  const Arguments run{"run", "--random", "voxel:2", "--seconds", "0.1", "--csv"};
+  const auto with = [&](const std::string& file) { return mercury(joined(run, {file})); };
   ASSERT_EQ(with(path("a.csv")).status, 0);
   EXPECT_EQ(with("-").output, read("a.csv"));
   EXPECT_EQ(with("/dev/stdout").output, read("a.csv"));
@@ -331,8 +304,7 @@ TEST_F(RunCommand, RobotsUseTheEnvironmentOfTheirFile) {
   write("crawler.json", robot("land"));
   write("fish.json", robot("ocean"));
   const auto environment = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"--seconds", "0.01"});
-    return run_json(arguments)["configuration"]["environment"].get<std::string>();
+    return run_json(joined(arguments, {"--seconds", "0.01"}))["configuration"]["environment"].get<std::string>();
   };
   EXPECT_EQ(environment({path("crawler.json")}), "land");
   EXPECT_EQ(environment({path("fish.json")}), "ocean");
@@ -363,18 +335,15 @@ TEST_F(RunCommand, ExplodedRobotsAreReportedAndFailOnlyWithStrict) {
                              "absolute_work", "highest", "largest_strain", "strained_share"})
     EXPECT_TRUE(robot[figure].is_null()) << figure;
 
-  std::vector<std::string> strict = unstable;
-  strict.push_back("--strict");
+  const Arguments strict = joined(unstable, {"--strict"});
   EXPECT_EQ(mercury(strict).status, 1);
   EXPECT_EQ(mercury({"run", path("pair.json"), "--dt", "0.01", "--seconds", "2", "--strict"}).status, 0);
 }
 
 // Robots of a limit below the strain that they have all are overstretched, and their figures stay.
 TEST_F(RunCommand, StrainLimitMarksRobots) {
-  const std::vector<std::string> run{"--random", "voxel:2", "--seconds", "0.5"};
-  std::vector<std::string> limited = run;
-  limited.insert(limited.end(), {"--strain-limit", "1e-6"});
-  const json sound = run_json(run)["robots"], marked = run_json(limited)["robots"];
+  const Arguments run{"--random", "voxel:2", "--seconds", "0.5"};
+  const json sound = run_json(run)["robots"], marked = run_json(joined(run, {"--strain-limit", "1e-6"}))["robots"];
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(sound[i]["fate"], "sound");
     EXPECT_EQ(marked[i]["fate"], "overstretched");
@@ -385,7 +354,7 @@ TEST_F(RunCommand, StrainLimitMarksRobots) {
 TEST_F(RunCommand, CsvAndJsonDoNotShareStandardOutput) {
   const Outcome outcome = mercury({"run", "--random", "voxel", "--seconds", "0.01", "--json", "--csv", "-"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.messages, testing::HasSubstr("--csv: - and --json both mean standard output; give --csv a file"));
+  EXPECT_THAT(outcome.messages, HasSubstr("--csv: - and --json both mean standard output; give --csv a file"));
 }
 
 TEST_F(RunCommand, ABrokenStandardOutputLosesNoRecording) {
@@ -393,9 +362,7 @@ TEST_F(RunCommand, ABrokenStandardOutputLosesNoRecording) {
     const std::string command = std::string(MERCURY_PROGRAM) +
                                 " run --random voxel:2 --seconds 0.1 --every 10 --force" + " --record " + path("a.h5") +
                                 " " + output;
-    const Outcome outcome = run_program("sh", {"-c", command});
-    EXPECT_EQ(outcome.status, 1) << output;
-    EXPECT_THAT(outcome.messages, HasSubstr("standard output cannot be written")) << output;
+    EXPECT_THAT(run_program("sh", {"-c", command}), Ends(1, HasSubstr("standard output cannot be written"))) << output;
     EXPECT_EQ(TrajectoryReader(path("a.h5")).frames(), 11u) << output;
     std::filesystem::remove(path("a.h5"));
   }
@@ -405,9 +372,7 @@ TEST_F(RunCommand, ABrokenStandardOutputLosesNoRecording) {
 TEST_F(RunCommand, ABrokenStandardOutputLosesNoCsv) {
   const std::string command =
       std::string(MERCURY_PROGRAM) + " run --random voxel:2 --seconds 0.01 --csv " + path("a.csv") + " > /dev/full";
-  const Outcome outcome = run_program("sh", {"-c", command});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.messages, HasSubstr("standard output cannot be written"));
+  EXPECT_THAT(run_program("sh", {"-c", command}), Ends(1, HasSubstr("standard output cannot be written")));
   const std::string csv = read("a.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
 }
@@ -448,10 +413,7 @@ TEST_F(RunCommand, InvalidRobotFilesAreReportedInOneLine) {
   write("text.json", "not a robot");
   write("number.json", R"({"format": "mercury-robot", "version": 1, "masses": [[0,0,0]], "springs": [[0,5,1]]})");
   for (const char* name : {"text.json", "number.json"}) {
-    const Outcome outcome = mercury({"run", path(name)});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + path(name) + ": "));
-    EXPECT_EQ(std::count(outcome.messages.begin(), outcome.messages.end(), '\n'), 1);
+    EXPECT_THAT(mercury({"run", path(name)}), Ends(2, testing::StartsWith(path(name) + ": ")));
   }
 }
 

@@ -17,13 +17,11 @@ using testing::HasSubstr;
 
 class RunPicture : public FolderTest {
  protected:
-  Outcome render(const std::string& run, const std::string& output, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"render", path(run), "--size", "160x90", "--fps", "10", "-o", path(output)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return mercury(arguments);
+  Outcome render(const std::string& run, const std::string& output, const Arguments& more) const {
+    return mercury(joined({"render", path(run), "--size", "160x90", "--fps", "10", "-o", path(output)}, more));
   }
   // The message of a command that cannot be used.
-  std::string refusal(const std::string& run, const std::string& output, const std::vector<std::string>& more) const {
+  std::string refusal(const std::string& run, const std::string& output, const Arguments& more) const {
     const Outcome outcome = render(run, output, more);
     EXPECT_EQ(outcome.status, 2) << outcome.messages;
     EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
@@ -130,7 +128,7 @@ TEST_F(RunPicture, WhatARunDoesNotHaveIsRefused) {
 
 TEST_F(RunPicture, OptionsThatDoNotGoTogetherAreRefused) {
   make_run(path("map"), small_run("map-elites"), 1);
-  const auto refused = [&](const std::vector<std::string>& options, const std::string& message) {
+  const auto refused = [&](const Arguments& options, const std::string& message) {
     EXPECT_EQ(refusal("map", "a.mp4", options), "mercury: " + message + "\n");
   };
   refused({"--lineage", "best", "--map"}, "--map: not together with --lineage; give one of them");

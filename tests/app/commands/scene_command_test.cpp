@@ -45,10 +45,9 @@ distance = 3.0
     return path("bodies.toml");
   }
   // Without what depends on time.
-  static nlohmann::json results(std::vector<std::string> arguments) {
-    for (const char* more : {"--device", "cpu", "--threads", "1", "--seconds", "0.2", "--json", "--quiet"})
-      arguments.emplace_back(more);
-    const Outcome run = mercury(arguments);
+  static nlohmann::json results(const Arguments& arguments) {
+    const Outcome run =
+        mercury(joined(arguments, {"--device", "cpu", "--threads", "1", "--seconds", "0.2", "--json", "--quiet"}));
     EXPECT_EQ(run.status, 0) << run.messages;
     auto document = nlohmann::json::parse(run.output, nullptr, false);
     document.erase("wall_seconds");
@@ -59,16 +58,13 @@ distance = 3.0
     return {path("robots/0.json"), path("robots/1.json"), "--random",      "voxel:2:5",
             "--environment=land",  "--friction=0.3",      "--solver=xpbd", "--dt=0.002"};
   }
-  std::vector<std::string> with(const std::string& command, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{command};
-    for (const auto& list : {options(), more}) arguments.insert(arguments.end(), list.begin(), list.end());
-    return arguments;
+  std::vector<std::string> with(const std::string& command, const Arguments& more = {}) const {
+    return joined({command}, options(), more);
   }
   std::string refusal(const std::string& text) const {
     write("bad.toml", text);
     const Outcome run = mercury({"run", path("bad.toml"), "--seconds", "0.01", "--device", "cpu"});
-    EXPECT_EQ(run.status, 2) << text;
-    EXPECT_EQ(std::count(run.messages.begin(), run.messages.end(), '\n'), 1) << run.messages;
+    EXPECT_THAT(run, Ends(2, testing::_)) << text;
     return run.messages;
   }
 };
@@ -99,10 +95,8 @@ TEST_F(SceneCommand, RendersAsTheSameOptionsDo) {
     "target": [0, 0, 0.1], "distance": 3})");
   const std::vector<std::string> picture{"--seconds", "0.1",      "--fps", "10", "--size",
                                          "160x120",   "--device", "cpu",   "-o"};
-  const auto rendered = [&](std::vector<std::string> arguments, const std::string& to) {
-    arguments.insert(arguments.end(), picture.begin(), picture.end());
-    arguments.push_back(path(to));
-    const Outcome run = mercury(arguments);
+  const auto rendered = [&](const Arguments& arguments, const std::string& to) {
+    const Outcome run = mercury(joined(arguments, picture, {path(to)}));
     EXPECT_EQ(run.status, 0) << run.messages;
     std::string all;
     for (const std::string& name : run.status == 0 ? listing(to) : std::vector<std::string>{})
@@ -133,9 +127,8 @@ TEST_F(SceneCommand, IsDescribed) {
 TEST_F(SceneCommand, OfFilesAloneIsTakenByCommandsThatMakeNoRandomRobots) {
   write("files.toml", std::string(head) + "robots = [\"robots/0.json\"]\ncolor = \"strain\"\n");
   EXPECT_EQ(mercury({"mutate", path("files.toml"), "-o", path("child.json"), "--quiet"}).status, 0);
-  const Outcome refused = mercury({"mutate", path("both.toml"), "-o", path("children/")});
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.messages, HasSubstr("both.toml: has random robots, which mercury mutate does not take"));
+  EXPECT_THAT(mercury({"mutate", path("both.toml"), "-o", path("children/")}),
+              Ends(2, HasSubstr("both.toml: has random robots, which mercury mutate does not take")));
 }
 
 TEST_F(SceneCommand, ThatBreaksARuleIsRefusedInOneLineWithItsPlace) {
@@ -171,9 +164,8 @@ TEST_F(SceneCommand, ThatBreaksARuleIsRefusedInOneLineWithItsPlace) {
   for (const char* key : {"csv = \"x.csv\"", "record = \"x.h5\"", "output = \"x.mp4\"", "force = true",
                           "config = \"a\"", "device = \"cpu\"", "threads = 2", "keep-going = true"})
     EXPECT_THAT(refusal(head + robots + key + "\n"), HasSubstr("is not a key of a scene")) << key;
-  const Outcome two = mercury({"run", path("both.toml"), path("both.toml")});
-  EXPECT_EQ(two.status, 2);
-  EXPECT_THAT(two.messages, HasSubstr("is a second scene; give one"));
+  EXPECT_THAT(mercury({"run", path("both.toml"), path("both.toml")}),
+              Ends(2, HasSubstr("is a second scene; give one")));
   EXPECT_EQ(mercury({"run", path("missing.toml")}).status, 2);
   EXPECT_EQ(mercury({"info", path("bad.toml")}).status, 2);
 }
@@ -191,9 +183,8 @@ TEST_F(SceneCommand, BodiesOfBothPhysicsAreRefused) {
   save_robot(path("robots/real.json"), with_real_body(random_voxel_robot({}, 3, 0), {}));
   const std::string robots = "\"robots/real.json\", \"robots/0.json\"";
   for (const char* command : {"run", "info"}) {
-    const Outcome outcome = mercury({command, scene_of(robots)});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_THAT(outcome.messages, HasSubstr("one has a real body, the other that of the paper"));
+    EXPECT_THAT(mercury({command, scene_of(robots)}),
+                Ends(2, HasSubstr("one has a real body, the other that of the paper")));
   }
   EXPECT_EQ(results({"run", scene_of(robots, "physics = \"real\"\n")})["robots"][1]["physics"], "real");
 }

@@ -124,16 +124,14 @@ TEST_F(FolderTest, ATerminalShowsThatDrawingHasBegun) {
 // --- Values of options
 
 TEST_F(FolderTest, AGpuIsNotMistakenForACpu) {
-  const Outcome outcome = mercury({"bench", "--device", "gpu"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.messages, HasSubstr("did you mean cuda?"));
+  EXPECT_THAT(mercury({"bench", "--device", "gpu"}), Ends(2, HasSubstr("did you mean cuda?")));
 }
 
 TEST_F(FolderTest, BenchRefusesATimeThatNeverEnds) {
   for (const char* seconds : {"1e23", "inf", "nan", "0"}) {
-    const Outcome outcome = mercury({"bench", "--least-seconds", seconds, "--device", "cpu"});
-    EXPECT_EQ(outcome.status, 2) << seconds;
-    EXPECT_THAT(outcome.messages, HasSubstr("--least-seconds: "));
+    EXPECT_THAT(mercury({"bench", "--least-seconds", seconds, "--device", "cpu"}),
+                Ends(2, HasSubstr("--least-seconds: ")))
+        << seconds;
   }
 }
 
@@ -183,7 +181,7 @@ TEST_P(Signals, EndWith128AndTheirNumber) {
       {"new", "voxel", "-o", path("best/"), "--best-of", "1000000000", "--device", "cpu"},
       {"mutate", path("a.json"), "-o", path("mutated/"), "--count", "1000000"},
       {"cross", path("a.json"), path("b.json"), "-o", path("crossed/"), "--count", "1000000"}};
-  for (const std::vector<std::string>& arguments : long_runs)
+  for (const Arguments& arguments : long_runs)
     EXPECT_EQ(status_after_signal(arguments, GetParam()), 128 + GetParam()) << arguments[0] << " " << arguments[1];
 }
 

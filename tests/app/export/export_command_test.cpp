@@ -28,13 +28,8 @@ class ExportCommand : public FolderTest {
               0);
     return file;
   }
-  static void refuses(const std::vector<std::string>& arguments, const std::string& message) {
-    std::vector<std::string> all{"export"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const Outcome outcome = mercury(all);
-    EXPECT_EQ(outcome.status, 2) << message;
-    EXPECT_EQ(outcome.output, "");
-    EXPECT_EQ(outcome.messages, "mercury: " + message + "\n");
+  static void refuses(const Arguments& arguments, const std::string& message) {
+    EXPECT_THAT(mercury(joined({"export"}, arguments)), Ends(2, message)) << message;
   }
   std::string robot_;
 };
@@ -107,11 +102,8 @@ TEST_F(ExportCommand, StillTakesThePoseOfTheNearestFrame) {
 
 TEST_F(ExportCommand, RobotsAreSimulatedForAMotion) {
   // A frame is 20 steps.
-  const std::vector<std::string> options{"--seconds", "0.1", "--dt", "0.0016666666666666668", "--device", "cpu"};
-  const auto with_options = [&](std::vector<std::string> words) {
-    words.insert(words.end(), options.begin(), options.end());
-    return mercury(words);
-  };
+  const Arguments options{"--seconds", "0.1", "--dt", "0.0016666666666666668", "--device", "cpu"};
+  const auto with_options = [&](const Arguments& words) { return mercury(joined(words, options)); };
   ASSERT_EQ(with_options({"run", robot_, "--every", "20", "--record", path("run.h5")}).status, 0);
   ASSERT_EQ(mercury({"export", path("run.h5"), "-o", path("recorded.pc2")}).status, 0);
   const Outcome outcome = with_options({"export", robot_, "-o", path("simulated.pc2")});
@@ -131,11 +123,9 @@ TEST_F(ExportCommand, RobotsAreSimulatedForAMotion) {
 
 // Frames on steps are the steps' states, and those between them lie between them.
 TEST_F(ExportCommand, TheFrameRateOfASimulatedMotionIsChosen) {
-  const std::vector<std::string> options{"--seconds", "0.1", "--dt", "0.005", "--device", "cpu"};
+  const Arguments options{"--seconds", "0.1", "--dt", "0.005", "--device", "cpu"};
   const auto exported = [&](const std::string& file, const std::string& rate) {
-    std::vector<std::string> words{"export", robot_, "-o", path(file), "--fps", rate};
-    words.insert(words.end(), options.begin(), options.end());
-    const Outcome outcome = mercury(words);
+    const Outcome outcome = mercury(joined({"export", robot_, "-o", path(file), "--fps", rate}, options));
     EXPECT_EQ(outcome.status, 0) << outcome.messages;
     return read(file);
   };

@@ -174,10 +174,9 @@ class Start : public test::FolderTest {
     return options;
   }
   // The first frame of a recording by the program.
-  std::vector<Vec3> recorded(std::vector<std::string> words) {
+  std::vector<Vec3> recorded(const test::Arguments& words) {
     const std::vector<std::string> record{"--record", path("first.h5"), "--seconds", "0.01", "--device=cpu", "--force"};
-    words.insert(words.end(), record.begin(), record.end());
-    const test::Outcome outcome = test::mercury(words);
+    const test::Outcome outcome = test::mercury(test::joined(words, record));
     EXPECT_EQ(outcome.status, 0) << outcome.messages;
     TrajectoryReader reader(path("first.h5"));
     const std::span<const Vec3> positions = reader.positions(0);
@@ -243,11 +242,9 @@ TEST_F(Start, PinsHoldMassesWhereTheyBegin) {
 
 TEST_F(Start, TheWindowRefusesToBeginARecordingElsewhere) {
   ASSERT_EQ(test::mercury({"run", "--random", "voxel:1", "--seconds", "0.01", "--record", path("a.h5")}).status, 0);
-  for (const std::vector<std::string>& option :
+  for (const test::Arguments& option :
        {std::vector<std::string>{"--target-radius", "1"}, std::vector<std::string>{"--turned"}}) {
-    std::vector<std::string> words{"view", path("a.h5")};
-    words.insert(words.end(), option.begin(), option.end());
-    const test::Outcome outcome = test::mercury(words);
+    const test::Outcome outcome = test::mercury(test::joined({"view", path("a.h5")}, option));
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.messages, "mercury: " + option[0] + ": a recording has its own start; give robots to simulate\n");
   }

@@ -100,11 +100,11 @@ TEST_F(LiveVideo, GroupVideoIsMadeWhileTheSceneContinues) {
 TEST_F(LiveVideo, APictureHasThePixelsOfTheCommands) {
   for (const std::string environment : {"land", "ocean"}) {
     const std::string robot = path(environment + ".json");
-    const auto as_command = [&](const std::string& name, std::vector<std::string> more) {
-      std::vector<std::string> arguments{"render",  robot, "--environment", environment, "--size", "160x90",
-                                         "--still", "0.2", "--quality",     "low",       "-o",     path(name)};
-      arguments.insert(arguments.end(), more.begin(), more.end());
-      const test::Outcome outcome = test::mercury(arguments);
+    const auto as_command = [&](const std::string& name, const test::Arguments& more) {
+      const test::Outcome outcome =
+          test::mercury(test::joined({"render", robot, "--environment", environment, "--size", "160x90", "--still",
+                                      "0.2", "--quality", "low", "-o", path(name)},
+                                     more));
       EXPECT_EQ(outcome.status, 0) << outcome.messages;
       return render::read_png(path(name)).bytes;
     };

@@ -84,11 +84,10 @@ const std::vector<Parameter> parameters{
 class EveryParameter : public FolderTest, public testing::WithParamInterface<Parameter> {
  protected:
   const Parameter& parameter() const { return GetParam(); }
-  std::vector<std::string> run_with(const std::vector<std::string>& more) const {
+  std::vector<std::string> run_with(const Arguments& more) const {
     std::vector<std::string> arguments{"run", "--random", "voxel:1", "--seconds", "0", "--json"};
     if (parameter().option != "environment") arguments.push_back("--environment=" + parameter().environment);
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return joined(arguments, more);
   }
   json value_in(const Outcome& outcome) const {
     std::string name = parameter().option;
@@ -160,9 +159,8 @@ TEST_F(HostileConfigFile, IsRefusedInOneLine) {
 }
 
 TEST_F(HostileConfigFile, MayBeAFolder) {
-  const Outcome outcome = mercury({"run", "--random", "voxel:1", "--seconds", "0", "--config", folder_.string()});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.messages, "mercury: --config: " + folder_.string() + " is not a file; give a TOML file\n");
+  EXPECT_THAT(mercury({"run", "--random", "voxel:1", "--seconds", "0", "--config", folder_.string()}),
+              Ends(2, "--config: " + folder_.string() + " is not a file; give a TOML file"));
 }
 
 }  // namespace

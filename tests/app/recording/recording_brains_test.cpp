@@ -151,12 +151,10 @@ class RunBrains : public FolderTest {
     save_robot(path("thinker.json"), thinker);
     save_robot(path("pair.json"), pair("pair"));
   }
-  Outcome run(std::vector<std::string> more) const {
-    std::vector<std::string> words{
-        "run",     path("thinker.json"), path("pair.json"), "--seconds", "0.5", "--device", "cpu",
-        "--quiet", "--record",           path("a.h5"),      "--threads", "1",   "--force"};
-    words.insert(words.end(), more.begin(), more.end());
-    return mercury(words);
+  Outcome run(const Arguments& more) const {
+    return mercury(joined({"run", path("thinker.json"), path("pair.json"), "--seconds", "0.5", "--device", "cpu",
+                           "--quiet", "--record", path("a.h5"), "--threads", "1", "--force"},
+                          more));
   }
 };
 

@@ -37,11 +37,9 @@ TEST_F(RunRecord, RecordsEveryNStepsAndTheSeed) {
 }
 
 TEST_F(RunRecord, RecordingDoesNotChangeTheRun) {
-  const std::vector<std::string> arguments{"run", "--random", "voxel:2", "--seconds", "0.25", "--json"};
-  std::vector<std::string> recorded = arguments;
-  recorded.insert(recorded.end(), {"--record", file(), "--every", "3"});
+  const Arguments arguments{"run", "--random", "voxel:2", "--seconds", "0.25", "--json"};
   auto without = nlohmann::json::parse(mercury(arguments).output),
-       with = nlohmann::json::parse(mercury(recorded).output);
+       with = nlohmann::json::parse(mercury(joined(arguments, {"--record", file(), "--every", "3"})).output);
   EXPECT_EQ(with["robots"], without["robots"]);
 }
 
@@ -51,10 +49,9 @@ TEST_F(RunRecord, WithoutEveryThereAreThirtyFramesPerSecond) {
 }
 
 TEST_F(RunRecord, FramesPerSecondThatCannotBeAreRefused) {
-  const std::vector<std::string> run{"run", "--random", "voxel", "--seconds", "0.1", "--dt", "0.005"};
-  const auto refusal = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), run.begin(), run.end());
-    const Outcome outcome = mercury(more);
+  const Arguments run{"run", "--random", "voxel", "--seconds", "0.1", "--dt", "0.005"};
+  const auto refusal = [&](const Arguments& more) {
+    const Outcome outcome = mercury(joined(run, more));
     EXPECT_EQ(outcome.status, 2);
     return outcome.messages;
   };
@@ -159,22 +156,17 @@ TEST_F(RunRecord, TwoRunsWithOneNewNameKeepBothTables) {
 }
 
 TEST_F(RunRecord, ALimitOfTheSizeOfFilesIsReportedInOneLine) {
-  const Outcome outcome = run_program("sh", {"-c",
-                                             "ulimit -f 16; exec \"$0\" run --random voxel:4 --seconds 0.2 --every 1 "
-                                             "--quiet --record \"$1\"",
-                                             MERCURY_PROGRAM, file()});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.messages, testing::StartsWith("mercury: " + file() +
-                                                    ": the file grew beyond the size allowed here "
-                                                    "(ulimit -f); nothing was kept"));
-  EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
+  EXPECT_THAT(run_program("sh", {"-c",
+                                 "ulimit -f 16; exec \"$0\" run --random voxel:4 --seconds 0.2 --every 1 "
+                                 "--quiet --record \"$1\"",
+                                 MERCURY_PROGRAM, file()}),
+              Ends(1, testing::StartsWith(file() + ": the file grew beyond the size allowed here "
+                                                   "(ulimit -f); nothing was kept")));
 }
 
 TEST_F(RunRecord, BadOptionsAreReportedInOneLine) {
-  const auto messages = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"run", "--random", "voxel", "--seconds", "0.01"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = mercury(arguments);
+  const auto messages = [&](const Arguments& more) {
+    const Outcome outcome = mercury(joined({"run", "--random", "voxel", "--seconds", "0.01"}, more));
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.output, "");
     return outcome.messages;
