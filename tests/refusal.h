@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The message of a call that must refuse what it is given.
+// Why and what a call refuses that must refuse what it is given.
 #pragma once
 
 #include <string>
@@ -15,6 +15,16 @@ std::string refusal(const auto& call) {
     call();
   } catch (const Error& error) {
     return error.what();
+  }
+  return "";
+}
+
+// The parameter that a call refuses; empty if it refuses none.
+std::string refused_parameter(const auto& call) {
+  try {
+    call();
+  } catch (const ParameterError& error) {
+    return error.parameter();
   }
   return "";
 }

@@ -17,12 +17,8 @@ using testing::HasSubstr;
 TEST(ContextKind, NamesRoundTripAndUnknownOnesThrowAList) {
   for (const ContextKind kind : {ContextKind::automatic, ContextKind::egl, ContextKind::mesa, ContextKind::osmesa})
     EXPECT_EQ(context_kind_named(name_of(kind)), kind);
-  try {
-    context_kind_named("glx");
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("auto, egl, mesa or osmesa"));
-  }
+  EXPECT_THAT([] { context_kind_named("glx"); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("auto, egl, mesa or osmesa")));
 }
 
 class ContextTest : public testing::TestWithParam<ContextKind> {

@@ -44,12 +44,8 @@ TEST_F(Png, ACommentIsATextThatReadersSkip) {
 TEST_F(Png, LeavesNothingBehindWhenItCannotWrite) {
   const Image image{1, 1, PixelFormat::rgb, {1, 2, 3}};
   const std::string path = folder_ / "missing" / "a.png";
-  try {
-    write_png(path, image);
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()), path + ": No such file or directory");
-  }
+  EXPECT_THAT([&] { write_png(path, image); },
+              testing::ThrowsMessage<std::runtime_error>(path + ": No such file or directory"));
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 

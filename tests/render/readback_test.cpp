@@ -65,12 +65,8 @@ TEST_F(ReadbackTest, PicturesDrawnWithoutMemoryAreRefused) {
   if (glGetError() != GL_OUT_OF_MEMORY) GTEST_SKIP() << "this driver promises more memory than there is";
   context_->take_messages();
   use_more_memory_than_there_is();
-  try {
-    (void)read(renderer);
-    FAIL() << "the picture was accepted";
-  } catch (const ContextError& error) {
-    EXPECT_NE(std::string(error.what()).find("no memory left to draw with"), std::string::npos) << error.what();
-  }
+  EXPECT_THAT([&] { (void)read(renderer); },
+              testing::ThrowsMessage<ContextError>(testing::HasSubstr("no memory left to draw with")));
   context_->take_messages();
   EXPECT_EQ(read(renderer).bytes, good.bytes) << "the failure is reported once";
 }

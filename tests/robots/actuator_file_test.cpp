@@ -8,6 +8,7 @@
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
 #include "robots/file/document.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -37,12 +38,7 @@ class ActuatorsInFiles : public testing::TestWithParam<RobotFormat> {
   static Robot read(const std::string& json) { return parse_robot(document(json), GetParam()); }
   static Robot again(const Robot& robot) { return parse_robot(serialize_robot(robot, GetParam()), GetParam()); }
   static std::string refusal(const std::string& json) {
-    try {
-      read(json);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return mercury::refusal([&] { read(json); });
   }
   static std::string refusal_of(const std::string& actuators) { return refusal(chain(actuators)); }
 };
@@ -127,7 +123,7 @@ TEST_P(ActuatorsInFiles, MaterialsThatDoNotFitAreNamed) {
   const auto materials = [](const std::string& list) {
     return refusal_of(R"([{"name":"a","materials":[1]},{"name":"b","materials":)" + list + "}]");
   };
-  EXPECT_EQ(materials("[2]"), "no error");
+  EXPECT_EQ(materials("[2]"), "");
   EXPECT_EQ(materials("[]"), "/actuators/1: an actuator needs at least one material or spring");
   EXPECT_EQ(materials("3"), "/actuators/1/materials: must be an array, not a number");
   EXPECT_EQ(materials("[[1]]"), "/actuators/1/materials: must hold whole numbers, not an array");
@@ -147,7 +143,7 @@ TEST_P(ActuatorsInFiles, SpringsThatDoNotFitAreNamed) {
     return refusal_of(R"([{"name":"a","springs":[0]},{"name":"b","materials":[3]},{"name":"c","springs":)" + list +
                       "}]");
   };
-  EXPECT_EQ(springs("[1]"), "no error");
+  EXPECT_EQ(springs("[1]"), "");
   EXPECT_EQ(springs("[]"), "/actuators/2: an actuator needs at least one material or spring");
   EXPECT_EQ(springs("[912]"), "/actuators/2/springs: spring 912 is out of range, the robot has 5");
   EXPECT_EQ(springs("[18446744073709551615]"),
@@ -175,7 +171,7 @@ std::string star(int springs, int actuators) {
 
 TEST_P(ActuatorsInFiles, MoreActuatorsThanMaterialsAreRefused) {
   // The last of 255 keeps the material that the others leave; with one more spring there is none left for it.
-  EXPECT_EQ(refusal(star(255, 255)), "no error");
+  EXPECT_EQ(refusal(star(255, 255)), "");
   EXPECT_EQ(refusal(star(256, 255)),
             "/actuators/254/springs: its springs need materials of their own, and the robot would have more than 255");
   EXPECT_THAT(refusal(star(256, 256)), HasSubstr("at most 255 are accepted"));
@@ -200,13 +196,8 @@ TEST(AddActuator, AFullTableLosesMaterialsThatNoSpringHas) {
 
 TEST(ActuatorsInCbor, NothingIsAllocatedForActuatorsThatAreOnlyAnnounced) {
   using namespace std::string_literals;
-  const auto refusal = [](const std::string& cbor) -> std::string {
-    try {
-      parse_robot(cbor, RobotFormat::cbor);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+  const auto refusal = [](const std::string& cbor) {
+    return mercury::refusal([&] { parse_robot(cbor, RobotFormat::cbor); });
   };
   EXPECT_EQ(refusal("\xa1\x69"s + "actuators\x9a\x00\x0f\x42\x40"s),
             "/actuators: 1000000 actuators, at most 255 are accepted");

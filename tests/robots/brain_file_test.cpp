@@ -7,6 +7,7 @@
 #include "mercury/robot_file.h"
 #include "robots/carried_points.h"
 #include "robots/file/document.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -40,12 +41,7 @@ class BrainsInFiles : public testing::TestWithParam<RobotFormat> {
     return parse_robot(cbor, GetParam());
   }
   static std::string refusal(const std::string& members) {
-    try {
-      read(chain(members));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return mercury::refusal([&] { read(chain(members)); });
   }
 };
 INSTANTIATE_TEST_SUITE_P(Formats, BrainsInFiles, testing::Values(RobotFormat::json, RobotFormat::cbor),
@@ -160,7 +156,7 @@ TEST_P(BrainsInFiles, ErrorsSayWhere) {
             "/brain/layers/0/gate: no layer is named \"input\"; the brain has motor");
   EXPECT_EQ(layer(R"("neurons":2,"keep":{})"), "/brain/layers/0/keep: must be a number, not an object");
   EXPECT_EQ(layer(R"("neurons":2,"keep":[])"), "/brain/layers/0/keep: an empty list; leave it out for 1 - gate");
-  EXPECT_EQ(layer(R"("neurons":2,"keep":[1])"), "no error");
+  EXPECT_EQ(layer(R"("neurons":2,"keep":[1])"), "");
   EXPECT_EQ(layer(R"("neurons":2,"keep":[1,"x"])"), "/brain/layers/0/keep/1: must be a number, not a text");
   EXPECT_EQ(layer(R"("neurons":2,"keep":-1)"), "/brain/layers/0/keep: a keep is 0 to 1, or the name of a layer");
 }

@@ -13,6 +13,7 @@
 #include "mercury/inspect.h"
 #include "mercury/random.h"
 #include "robots/portable_math.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -137,14 +138,6 @@ TEST(Shells, NarrowAndWideOpeningsAreThat) {
 }
 
 TEST(Shells, RefuseWhatCannotBeBuilt) {
-  const auto refusal = [](const auto& call) -> std::string {
-    try {
-      call();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
   EXPECT_EQ(refusal([] { random_shell_robot({.lobes = 2}, 1); }), "lobes: 2 is not accepted; give 3 to 16, or 0");
   EXPECT_EQ(refusal([] { random_shell_robot({.diameter = 0.3f}, 1); }),
             "thickness: more than a quarter of the diameter is not accepted; give less");

@@ -10,22 +10,13 @@
 #include "mercury/backend.h"
 #include "mercury/error.h"
 #include "mercury/threads.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
 
-template <class Call>
-std::string message_of(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 std::string message_of(const Configuration& configuration) {
-  return message_of([&] { validate(configuration); });
+  return refusal([&] { validate(configuration); });
 }
 
 TEST(Configuration, DefaultsAreThoseOfTheDesign) {
@@ -81,17 +72,17 @@ TEST(Configuration, NamesAndParsingAreInverse) {
 }
 
 TEST(Configuration, ErrorsForUnknownNamesListTheAcceptedOnes) {
-  EXPECT_EQ(message_of([] { solver_named("euler"); }), "solver: \"euler\" is not a solver; give force or xpbd");
-  EXPECT_EQ(message_of([] { environment_named("lava"); }),
+  EXPECT_EQ(refusal([] { solver_named("euler"); }), "solver: \"euler\" is not a solver; give force or xpbd");
+  EXPECT_EQ(refusal([] { environment_named("lava"); }),
             "environment: \"lava\" is not an environment; give ocean, ocean-simple, land or water");
   EXPECT_EQ(
-      message_of([] { environment_named("ocean+lava"); }),
+      refusal([] { environment_named("ocean+lava"); }),
       "environment: \"ocean+lava\" is not an environment; give ocean, ocean-simple, land, water or space, followed by "
       "+ground or +contacts or both");
-  EXPECT_EQ(message_of([] { device_named("gpu"); }),
+  EXPECT_EQ(refusal([] { device_named("gpu"); }),
             "device: \"gpu\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all; did you mean cuda?");
   for (const char* name : {"gpus", "cuda:", "cuda:x", "cuda:-1", "cuda:1x", ""})
-    EXPECT_EQ(message_of([&] { device_named(name); }),
+    EXPECT_EQ(refusal([&] { device_named(name); }),
               "device: \"" + std::string(name) + "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all");
 }
 
@@ -141,12 +132,12 @@ TEST(Configuration, GravityAndStiffnessScaleAreThoseOfTheEnvironment) {
 TEST(Configuration, NumbersOfThreadsAreLimitedByTheMachine) {
   EXPECT_GE(max_threads(), 256);
   for (const int threads : {0, 1, 256, max_threads()})
-    EXPECT_EQ(message_of([&] { require_possible_threads({.threads = threads}); }), "") << threads;
+    EXPECT_EQ(refusal([&] { require_possible_threads({.threads = threads}); }), "") << threads;
   const std::string accepted = " is not accepted; give 0 (all cores) to " + std::to_string(max_threads());
   for (const int threads : {max_threads() + 1, std::numeric_limits<int>::max(), -1})
-    EXPECT_EQ(message_of([&] { require_possible_threads({.threads = threads}); }),
+    EXPECT_EQ(refusal([&] { require_possible_threads({.threads = threads}); }),
               "threads: " + std::to_string(threads) + accepted);
-  EXPECT_EQ(message_of([] { make_backend({.kind = DeviceKind::cpu, .threads = std::numeric_limits<int>::max()}); }),
+  EXPECT_EQ(refusal([] { make_backend({.kind = DeviceKind::cpu, .threads = std::numeric_limits<int>::max()}); }),
             "threads: 2147483647" + accepted);
   EXPECT_EQ(message_of(Configuration{.device = {.threads = 1 << 20}}), "");  // of a file from a larger machine
 }

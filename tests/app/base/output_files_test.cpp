@@ -10,6 +10,7 @@
 #include "mercury/file_links.h"
 #include "robots/file/whole_file.h"
 #include "tests/app/program.h"
+#include "tests/refusal.h"
 
 namespace mercury::test {
 namespace {
@@ -19,12 +20,7 @@ using testing::HasSubstr;
 class OutputFilesTest : public FolderTest {
  protected:
   static std::string refusal(const OutputFiles& outputs) {
-    try {
-      outputs.check();
-      return "";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    return mercury::refusal([&] { outputs.check(); });
   }
   std::string refusal_of(const std::string& name, bool force = false) const {
     OutputFiles outputs(force, false);

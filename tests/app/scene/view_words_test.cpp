@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "mercury/error.h"
+#include "tests/refusal.h"
 
 namespace mercury::test {
 namespace {
@@ -70,13 +71,8 @@ TEST(ViewWords, ErrorsNameTheParameter) {
   const auto refused = [](const std::function<void(ViewWords&)>& change) {
     ViewWords words;
     change(words);
-    try {
-      view_settings(words);
-    } catch (const ParameterError& error) {
-      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-      return error.parameter();
-    }
-    return std::string("nothing");
+    EXPECT_EQ(refusal([&] { view_settings(words); }).find('\n'), std::string::npos);
+    return refused_parameter([&] { view_settings(words); });
   };
   EXPECT_EQ(refused([](ViewWords& w) { w.color = "mood"; }), "color");
   EXPECT_EQ(refused([](ViewWords& w) { w.colormap = "jet"; }), "colormap");

@@ -16,6 +16,7 @@
 #include "mercury/random_voxel.h"
 #include "render/png.h"
 #include "tests/app/program.h"
+#include "tests/refusal.h"
 
 namespace mercury::test {
 namespace {
@@ -242,23 +243,15 @@ TEST_F(FilmTest, WholeFilmsHaveTheirFramesAndCanBeStopped) {
 }
 
 TEST_F(FilmTest, BadOptionsAreRefusedByName) {
-  const auto refused = [&](const std::function<void()>& work) {
-    try {
-      work();
-    } catch (const ParameterError& error) {
-      return error.parameter();
-    }
-    return std::string("nothing");
-  };
   for (const PictureSize size : {PictureSize{0, 90}, PictureSize{160, -1}, PictureSize{20000, 90}})
-    EXPECT_EQ(refused([&] { picture_of(thread_, simulation_, {.size = size}); }), "size");
-  EXPECT_EQ(refused([&] { Film(thread_, simulation_, path("a.avi"), options()); }), "output");
-  EXPECT_EQ(refused([&] { Film(thread_, simulation_, path("a.gif"), options(60)); }), "fps");
-  EXPECT_EQ(refused([&] { Film(thread_, simulation_, path("a.mp4"), options(-1)); }), "fps");
+    EXPECT_EQ(refused_parameter([&] { picture_of(thread_, simulation_, {.size = size}); }), "size");
+  EXPECT_EQ(refused_parameter([&] { Film(thread_, simulation_, path("a.avi"), options()); }), "output");
+  EXPECT_EQ(refused_parameter([&] { Film(thread_, simulation_, path("a.gif"), options(60)); }), "fps");
+  EXPECT_EQ(refused_parameter([&] { Film(thread_, simulation_, path("a.mp4"), options(-1)); }), "fps");
   ViewSettings pressure{.color = &color_quantity("pressure")};
   Simulation land({.environment = Land{}, .device = {.kind = DeviceKind::cpu}}, random_voxel_robots({}, 1, 1));
-  EXPECT_EQ(refused([&] { picture_of(thread_, land, {.size = tiny, .view = pressure}); }), "color");
-  EXPECT_EQ(refused([&] { film_of(thread_, std::move(land), path("a.mp4"), options(), NAN); }), "seconds");
+  EXPECT_EQ(refused_parameter([&] { picture_of(thread_, land, {.size = tiny, .view = pressure}); }), "color");
+  EXPECT_EQ(refused_parameter([&] { film_of(thread_, std::move(land), path("a.mp4"), options(), NAN); }), "seconds");
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 

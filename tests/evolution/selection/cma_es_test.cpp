@@ -16,6 +16,7 @@
 #include "mercury/error.h"
 #include "mercury/evolution.h"
 #include "tests/evolution/vector_genome.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -380,12 +381,7 @@ class OpaqueSpace : public VectorSpace {
 };
 
 std::string refusal(const EvolutionSettings& settings, const GenomeSpace& space) {
-  try {
-    const Evolution evolution(settings, space);
-    return "";
-  } catch (const ParameterError& error) {
-    return error.parameter() + ": " + error.problem();
-  }
+  return mercury::refusal<ParameterError>([&] { const Evolution evolution(settings, space); });
 }
 
 TEST_P(CmaEs, BeginsWithTheFounder) {

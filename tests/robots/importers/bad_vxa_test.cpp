@@ -10,7 +10,7 @@ namespace {
 
 std::string refusal(const VxaParts& parts) { return refusal_of(parts.text(), "vxa"); }
 
-TEST(BadVxa, TheValidFileIsAccepted) { EXPECT_EQ(refusal({}), "no error"); }
+TEST(BadVxa, TheValidFileIsAccepted) { EXPECT_EQ(refusal({}), ""); }
 
 TEST(BadVxa, NoXml) {
   EXPECT_EQ(refusal_of("", "vxa"), "holds no XML element");
@@ -125,7 +125,7 @@ TEST(BadVxa, BodiesTooLargeForARobot) {
 TEST(BadVxa, TruncatedFilesAreRefusedWhereverTheyEnd) {
   const std::string text = VxaParts{}.text();
   for (std::size_t end = 0; end < text.size() - 1; ++end)
-    ASSERT_NE(refusal_of(std::string_view(text).substr(0, end), "vxa"), "no error") << end;
+    ASSERT_NE(refusal_of(std::string_view(text).substr(0, end), "vxa"), "") << end;
 }
 
 }  // namespace

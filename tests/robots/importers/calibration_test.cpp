@@ -14,6 +14,7 @@
 
 #include "mercury/error.h"
 #include "mercury/voxel.h"
+#include "tests/refusal.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {
@@ -234,12 +235,7 @@ TEST(Calibration, DampingAndContactsFollowTheMassOnABeam) {
 TEST(Calibration, RefusesNumbersThatNoBodyHas) {
   constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [](const BeamModel& model, std::optional<double> scale = {}) {
-    try {
-      calibrate(model, scale);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return refusal([&] { calibrate(model, scale); });
   };
   for (const double odd : {0.0, -1.0, infinity, nan}) {
     EXPECT_EQ(refused({.elastic_modulus = odd}), "elastic modulus: must be a finite number above 0");

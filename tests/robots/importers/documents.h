@@ -7,6 +7,7 @@
 
 #include "mercury/error.h"
 #include "mercury/import.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 
@@ -73,12 +74,7 @@ inline Import import_of(const VxaParts& parts, const ImportOptions& options = {}
 }
 
 inline std::string refusal_of(std::string_view text, std::string_view format, std::string_view base = {}) {
-  try {
-    import_text(text, format, "test", {}, base);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return refusal([&] { import_text(text, format, "test", {}, base); });
 }
 
 inline const ImportedElement* element_at(const ImportReport& report, std::string_view place) {

@@ -205,7 +205,7 @@ TEST(BadEvogym, ArchivesThatAreNone) {
   undescribed.replace(header, 8, "{'other'");
   EXPECT_EQ(refusal_of(undescribed, "npz"), "not an archive of NumPy (.npz), or damaged");
   for (std::size_t end = 0; end < file.size(); end += 7)
-    EXPECT_NE(refusal_of(std::string_view(file).substr(0, end), "npz"), "no error") << end;
+    EXPECT_NE(refusal_of(std::string_view(file).substr(0, end), "npz"), "") << end;
   for (std::size_t place = 0; place < file.size(); ++place) {  // no crash
     std::string damaged = file;
     damaged[place] = static_cast<char>(damaged[place] ^ 0x5a);
