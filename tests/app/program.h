@@ -12,7 +12,9 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <source_location>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -71,6 +73,14 @@ inline std::unique_ptr<ChildProcess> working_mercury(const std::vector<std::stri
   unsetenv("MERCURY_PROGRESS_SECONDS");
   while (child->running() && child->messages().empty()) nap();
   return child;
+}
+
+// The outcome of a program that must succeed; ends the test if it did not.
+inline Outcome succeeded(const Outcome& outcome, const std::source_location& where = std::source_location::current()) {
+  if (outcome.status != 0)
+    throw std::runtime_error(std::string(where.file_name()) + ":" + std::to_string(where.line()) + ": " +
+                             testing::PrintToString(outcome));
+  return outcome;
 }
 
 // A folder that is there for one test, removed after it.

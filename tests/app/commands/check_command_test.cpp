@@ -107,8 +107,7 @@ TEST_F(CheckCommand, PutsAllIntoOneEnvironmentWhereNoneObjects) {
 }
 
 TEST_F(CheckCommand, ADryRunChangesNothing) {
-  const Outcome outcome = mercury(joined({"check", "--dry-run", "--csv", path("a.csv")}, robots));
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(mercury(joined({"check", "--dry-run", "--csv", path("a.csv")}, robots)));
   EXPECT_THAT(outcome.output, HasSubstr("also at dt/2 and dt/4"));
   EXPECT_TRUE(listing("").empty());
 }

@@ -85,7 +85,7 @@ TEST_F(Checkpoint, ATargetAndAPushArePartOfTheRun) {
   for (const json& robot : whole) EXPECT_TRUE(robot["reached"] == 0 || robot["reached"] == 1) << robot["reached"];
   kill(more);
   EXPECT_EQ(robots_of(mercury(resume_)), whole);
-  ASSERT_EQ(mercury(joined(run_, more, {"--record", path("r.h5")})).status, 0);
+  succeeded(mercury(joined(run_, more, {"--record", path("r.h5")})));
   EXPECT_EQ(mercury({"verify", path("r.h5"), "--quiet"}).status, 0);
 }
 
@@ -93,15 +93,14 @@ TEST_F(Checkpoint, ItCanGoOnForLonger) {
   Arguments longer = run_;
   *(std::ranges::find(longer, "1.23")) = "1.5";
   const json whole = robots_of(mercury(longer));
-  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
+  succeeded(mercury(joined(run_, {"--checkpoint", path("c.h5")})));
   EXPECT_EQ(robots_of(mercury(joined(resume_, {"--seconds", "1.5"}))), whole);
 }
 
 // Its throughput is that of the steps that it made itself, not of those before the checkpoint.
 TEST_F(Checkpoint, ThroughputIsOfTheStepsOfThisSession) {
   const auto steps_of = [&](const Arguments& arguments) {
-    const Outcome outcome = mercury(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(mercury(arguments));
     const json report = json::parse(outcome.output, nullptr, false);
     double springs = 0;
     for (const auto& robot : report["robots"]) springs += robot["springs"].get<double>();
@@ -170,13 +169,12 @@ TEST_F(Checkpoint, ARecordingThatIsNotThereIsReported) {
   for (const std::string& name : listing())
     if (name.ends_with(".part")) std::filesystem::remove(path(name));
   EXPECT_THAT(refused(joined(resume_, {"--record", path("a.h5")})).messages, HasSubstr("cannot be continued"));
-  const Outcome without = mercury(resume_);
-  EXPECT_EQ(without.status, 0);
+  const Outcome without = succeeded(mercury(resume_));
   EXPECT_THAT(without.messages, HasSubstr("is not continued"));
 }
 
 TEST_F(Checkpoint, OptionsThatItHasAreRefused) {
-  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
+  succeeded(mercury(joined(run_, {"--checkpoint", path("c.h5")})));
   EXPECT_THAT(refused(joined(resume_, {"--random", "voxel:2"})).messages, HasSubstr("give no others"));
   EXPECT_THAT(refused(joined(resume_, {"--dt", "0.01"})).messages, HasSubstr("its own configuration"));
   EXPECT_THAT(refused(joined(resume_, {"--seconds", "0.5"})).messages, HasSubstr("has come to 1.23 s"));
@@ -190,10 +188,10 @@ TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
   EXPECT_THAT(refused({"run", "--resume"}).messages, HasSubstr("goes on from the file of --checkpoint"));
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("text.h5")}).messages, HasSubstr("is not an HDF5 file"));
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("missing.h5")}).messages, HasSubstr("missing.h5"));
-  ASSERT_EQ(mercury(joined(run_, {"--record", path("r.h5")})).status, 0);
+  succeeded(mercury(joined(run_, {"--record", path("r.h5")})));
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("r.h5")}).messages,
               HasSubstr("is a recording, not a checkpoint"));
-  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
+  succeeded(mercury(joined(run_, {"--checkpoint", path("c.h5")})));
   const std::string whole = read("c.h5");
   write("half.h5", whole.substr(0, whole.size() / 2));
   refused({"run", "--resume", "--checkpoint", path("half.h5")});
@@ -212,7 +210,7 @@ TEST_F(Checkpoint, AFileThatIsNoneIsRefusedInOneLine) {
 }
 
 TEST_F(Checkpoint, LinksOutOfItAreNotFollowed) {
-  ASSERT_EQ(mercury(joined(run_, {"--checkpoint", path("c.h5")})).status, 0);
+  succeeded(mercury(joined(run_, {"--checkpoint", path("c.h5")})));
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);  // whoever opens it waits
   std::filesystem::create_symlink(path("pipe"), path("link.h5"));
   EXPECT_THAT(refused({"run", "--resume", "--checkpoint", path("link.h5")}).messages,
@@ -242,15 +240,12 @@ TEST_F(Checkpoint, LinksOutOfItAreNotFollowed) {
 
 class Verify : public Checkpoint {
  protected:
-  void record(const Arguments& more = {}) {
-    ASSERT_EQ(mercury(joined(run_, {"--record", path("r.h5")}, more)).status, 0);
-  }
+  void record(const Arguments& more = {}) { succeeded(mercury(joined(run_, {"--record", path("r.h5")}, more))); }
 };
 
 TEST_F(Verify, ARecordingIsTheSameOnItsDevice) {
   record();
-  const Outcome outcome = mercury({"verify", path("r.h5"), "--quiet"});
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"verify", path("r.h5"), "--quiet"}));
   EXPECT_THAT(outcome.output, HasSubstr("same: positions and velocities are identical, bit for bit"));
   const json report = json::parse(mercury({"verify", path("r.h5"), "--json", "--quiet"}).output);
   EXPECT_EQ(report["identical"], true);

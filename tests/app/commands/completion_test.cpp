@@ -35,7 +35,7 @@ class Completion : public FolderTest {
 
   void write_script(const std::string& shell) {
     const std::string command = std::string(MERCURY_PROGRAM) + " describe-options " + shell + " > " + path("script");
-    ASSERT_EQ(run_program("sh", {"-c", command}).status, 0);
+    succeeded(run_program("sh", {"-c", command}));
   }
 
   std::vector<std::string> run_script(const std::string& shell, const std::string& text) {
@@ -124,7 +124,7 @@ TEST_F(Completion, ZshReadsItsScript) {
 
 class ManPages : public FolderTest {
  protected:
-  void SetUp() override { ASSERT_EQ(mercury({"describe-options", "man", path("man")}).status, 0); }
+  void SetUp() override { succeeded(mercury({"describe-options", "man", path("man")})); }
 };
 
 TEST_F(ManPages, ThereIsOneForEachCommandAndKind) {

@@ -52,8 +52,7 @@ TEST_F(EvolveCommand, RunsOfVersion02GoOn) {
   const std::filesystem::path data = MERCURY_TEST_DATA;
   std::filesystem::copy(data / "run-of-version-0.2", path("old"), std::filesystem::copy_options::recursive);
   std::filesystem::copy(data / "run-of-version-0.2-lineage.csv", path("expected.csv"));
-  const Outcome outcome = evolve("old", {"--resume", "--generations", "4", "--quiet", "--device", "cpu"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(evolve("old", {"--resume", "--generations", "4", "--quiet", "--device", "cpu"}));
   const auto expected = rows_of(read("expected.csv")), found = rows_of(lineage("old"));
   ASSERT_EQ(expected.size(), 20u);
   ASSERT_EQ(found.size(), expected.size());
@@ -67,9 +66,8 @@ TEST_F(EvolveCommand, RunsOfVersion02GoOn) {
 // Robots of generation 0 do not depend on the objective, so a run for speed_x says who goes backward.
 TEST_F(EvolveCommand, RobotsWhoseObjectiveIsNotANumberAreUnsound) {
   const Arguments one_trial = joined(small("0"), {"--trials", "1"});
-  const Outcome outcome = evolve("roots", joined(one_trial, {"--objective", "sqrt(speed_x)"}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
-  ASSERT_EQ(evolve("speeds", joined(one_trial, {"--objective", "speed_x"})).status, 0);
+  const Outcome outcome = succeeded(evolve("roots", joined(one_trial, {"--objective", "sqrt(speed_x)"})));
+  succeeded(evolve("speeds", joined(one_trial, {"--objective", "speed_x"})));
   const auto roots = rows_of(lineage("roots")), speeds = rows_of(lineage("speeds"));
   ASSERT_EQ(roots.size(), 8u);
   ASSERT_EQ(speeds.size(), 8u);
@@ -93,8 +91,7 @@ TEST_F(EvolveCommand, RobotsWhoseObjectiveIsNotANumberAreUnsound) {
 }
 
 TEST_F(EvolveCommand, AnObjectiveThatIsNeverANumberIsNamedOnce) {
-  const Outcome outcome = evolve("run", joined(small("2"), {"--objective", "1/0"}));
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(evolve("run", joined(small("2"), {"--objective", "1/0"})));
   EXPECT_THAT(outcome.messages, testing::HasSubstr("the objective \"1/0\" is not a finite number for 8 of 8 robots"));
   EXPECT_EQ(outcome.messages.find("\"1/0\""), outcome.messages.rfind("\"1/0\""));
   EXPECT_THAT(outcome.output, testing::HasSubstr("no robot is sound; the first one is undefined"));
@@ -102,7 +99,7 @@ TEST_F(EvolveCommand, AnObjectiveThatIsNeverANumberIsNamedOnce) {
 }
 
 TEST_F(EvolveCommand, GoesOnToNoFewerGenerationsThanThereAre) {
-  ASSERT_EQ(evolve("run", small("3")).status, 0);
+  succeeded(evolve("run", small("3")));
   const std::string settings = read("run/run.toml"), before = lineage("run");
   for (const Arguments& go_on : {Arguments{"--resume"}, {"--merge"}, {"--resume", "--dry-run"}}) {
     EXPECT_THAT(
@@ -120,7 +117,7 @@ TEST_F(EvolveCommand, GoesOnToNoFewerGenerationsThanThereAre) {
 TEST_F(EvolveCommand, RunTriesAnyIndividualAsInTheRun) {
   for (const Arguments& trials :
        {Arguments{}, {"--trials", "1"}, {"--noise", "0.2", "--damage", "0.1", "--settle", "0.1"}}) {
-    ASSERT_EQ(evolve("run", joined(joined(small("2"), trials), {"--dt", "0.002", "--force"})).status, 0);
+    succeeded(evolve("run", joined(small("2"), trials, {"--dt", "0.002", "--force"})));
     const auto rows = rows_of(lineage("run"));
     for (const std::size_t id : {0, 9, 23}) {
       const Outcome outcome =
@@ -139,11 +136,10 @@ TEST_F(EvolveCommand, RunTriesAnyIndividualAsInTheRun) {
 }
 
 TEST_F(EvolveCommand, ARunStandsForItsChampionsItsElitesOrAnyIndividual) {
-  ASSERT_EQ(evolve("run", joined(small("3"), {"--no-confirm"})).status, 0);
+  succeeded(evolve("run", joined(small("3"), {"--no-confirm"})));
   const RunHistory history(path("run"));
   const auto names = [&](const Arguments& chosen) {
-    const Outcome outcome = mercury(joined({"run", path("run"), "--seconds", "0.3", "--csv", "-"}, chosen));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(mercury(joined({"run", path("run"), "--seconds", "0.3", "--csv", "-"}, chosen)));
     std::vector<std::string> found;
     for (const auto& row : rows_of(outcome.output)) found.push_back(row.at("name"));
     return found;
@@ -156,15 +152,13 @@ TEST_F(EvolveCommand, ARunStandsForItsChampionsItsElitesOrAnyIndividual) {
   EXPECT_EQ(names({"--robot", "elites"}), elites);
   EXPECT_EQ(names({"--robot", "best", "--robot", "5"}), (std::vector<std::string>{elites.front(), "run-5"}));
 
-  ASSERT_EQ(mercury({"export", path("run"), "--robot", "5", "-o", path("a.stl")}).status, 0);
+  succeeded(mercury({"export", path("run"), "--robot", "5", "-o", path("a.stl")}));
   save_robot(path("five.json"), history.grow(5));
-  ASSERT_EQ(mercury({"export", path("five.json"), "-o", path("b.stl")}).status, 0);
+  succeeded(mercury({"export", path("five.json"), "-o", path("b.stl")}));
   EXPECT_EQ(read("a.stl"), read("b.stl"));
 
-  ASSERT_EQ(evolve("on", {"--from", path("run"), "--robot", "5", "--robot", "9", "--population", "2", "--generations",
-                          "0", "--seconds", "0.1", "--quiet", "--no-confirm"})
-                .status,
-            0);
+  succeeded(evolve("on", {"--from", path("run"), "--robot", "5", "--robot", "9", "--population", "2", "--generations",
+                          "0", "--seconds", "0.1", "--quiet", "--no-confirm"}));
   EXPECT_EQ(load_robot(path("on/founders/0000.json")), history.grow(5));
   EXPECT_EQ(load_robot(path("on/founders/0001.json")), history.grow(9));
 
@@ -182,7 +176,7 @@ TEST_F(EvolveCommand, ARunStandsForItsChampionsItsElitesOrAnyIndividual) {
 
 // With the same jitters: the figures are those of checks.csv.
 TEST_F(EvolveCommand, CheckRepeatsTheCheckOfAChampion) {
-  ASSERT_EQ(evolve("run", joined(small("1"), {"--objective", "path"})).status, 0);
+  succeeded(evolve("run", joined(small("1"), {"--objective", "path"})));
   const auto checks = rows_of(read("run/checks.csv"));
   const Outcome outcome =
       mercury({"check", path("run"), "--robot", checks.at(0).at("id"), "--csv", "-", "--device", "cpu"});
@@ -198,11 +192,10 @@ TEST_F(EvolveCommand, CheckRepeatsTheCheckOfAChampion) {
 
 TEST_F(EvolveCommand, BestOfMapElitesIsTheMap) {
   const Arguments map{"--axis", "masses:8:36:4", "--axis", "muscle_share:0:1:3"};
-  ASSERT_EQ(evolve("run", joined(small("1"), map)).status, 0);
+  succeeded(evolve("run", joined(small("1"), map)));
   write("run/best/mine.json", "{}");
   for (const char* generations : {"1", "6"}) {
-    const Outcome outcome = evolve("run", {"--resume", "--generations", generations, "--quiet"});
-    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(evolve("run", {"--resume", "--generations", generations, "--quiet"}));
     EXPECT_THAT(outcome.output, testing::HasSubstr(path("run/best") + " holds the map"));
     const RunHistory history(path("run"));
     std::set<std::string> elites{"mine.json"}, files;
@@ -223,7 +216,7 @@ TEST_F(EvolveCommand, GenerationsSayHowFullTheMapIsAndHowManyLinesLive) {
   const Arguments map{"--axis", "masses:8:36:4", "--axis", "muscle_share:0:1:3"};
   for (const Arguments& cells : {Arguments{}, Arguments{"--niches", "20"}}) {
     const std::string run = cells.empty() ? "grid" : "niches";
-    ASSERT_EQ(evolve(run, joined(joined(small("5"), map), cells)).status, 0);
+    succeeded(evolve(run, joined(small("5"), map, cells)));
     std::map<std::string, std::string> line_of;  // the first ancestor, by id
     std::set<std::string> lines;
     double living = 0, sum = 0;
@@ -242,15 +235,15 @@ TEST_F(EvolveCommand, GenerationsSayHowFullTheMapIsAndHowManyLinesLive) {
     EXPECT_DOUBLE_EQ(std::stod(last.at("coverage")), living / (cells.empty() ? 12 : 20));
     EXPECT_NEAR(std::stod(last.at("qd_score")), sum, 1e-12 * std::abs(sum));
   }
-  ASSERT_EQ(evolve("no-map", small("1")).status, 0);
+  succeeded(evolve("no-map", small("1")));
   EXPECT_EQ(rows_of(read("no-map/generations.csv")).back().at("coverage"), "");
 }
 
 TEST_F(EvolveCommand, StepsOfMusclesAreSettingsOfARun) {
   const Arguments steps{"--genes", "both", "--muscle-adaptation", "--muscle-tail", "1"};
-  ASSERT_EQ(evolve("whole", joined(small("4"), steps)).status, 0);
-  ASSERT_EQ(evolve("parts", joined(small("2"), steps)).status, 0);
-  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  succeeded(evolve("whole", joined(small("4"), steps)));
+  succeeded(evolve("parts", joined(small("2"), steps)));
+  succeeded(evolve("parts", {"--resume", "--generations", "4", "--quiet"}));
   EXPECT_EQ(lineage("parts"), lineage("whole"));
   EXPECT_THAT(read("whole/run.toml"), testing::HasSubstr("\nmuscle_adaptation = true"));
   EXPECT_THAT(read("whole/run.toml"), testing::HasSubstr("\nmuscle_tail = 1"));
@@ -262,9 +255,9 @@ TEST_F(EvolveCommand, StepsOfMusclesAreSettingsOfARun) {
 }
 
 TEST_F(EvolveCommand, GrowthOfBrainsIsASettingOfARun) {
-  ASSERT_EQ(evolve("whole", growing("4")).status, 0);
-  ASSERT_EQ(evolve("parts", growing("2")).status, 0);
-  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  succeeded(evolve("whole", growing("4")));
+  succeeded(evolve("parts", growing("2")));
+  succeeded(evolve("parts", {"--resume", "--generations", "4", "--quiet"}));
   EXPECT_EQ(lineage("parts"), lineage("whole"));
   const std::string settings = read("whole/run.toml");
   EXPECT_THAT(settings, testing::HasSubstr("\nbrain_growth = true"));
@@ -288,9 +281,9 @@ TEST_F(EvolveCommand, GrowthOfBrainsIsASettingOfARun) {
 // Counted again from the genomes, by the definition of species in NEAT.
 TEST_F(EvolveCommand, GenerationsHaveTheNumberOfSpecies) {
   const Arguments settings{"--species-distance", "0.4", "--species", "1000"};
-  ASSERT_EQ(evolve("whole", joined(growing("4"), settings)).status, 0);
-  ASSERT_EQ(evolve("parts", joined(growing("2"), settings)).status, 0);
-  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  succeeded(evolve("whole", joined(growing("4"), settings)));
+  succeeded(evolve("parts", joined(growing("2"), settings)));
+  succeeded(evolve("parts", {"--resume", "--generations", "4", "--quiet"}));
   const RunHistory run(path("whole"));
   const auto rows = rows_of(read("whole/generations.csv")), of_parts = rows_of(read("parts/generations.csv"));
   ASSERT_EQ(rows.size(), 5u);
@@ -310,7 +303,7 @@ TEST_F(EvolveCommand, GenerationsHaveTheNumberOfSpecies) {
     counts.insert(count);
   }
   EXPECT_GT(counts.size(), 1u);  // it is no constant
-  ASSERT_EQ(evolve("ga", small("1")).status, 0);
+  succeeded(evolve("ga", small("1")));
   EXPECT_EQ(rows_of(read("ga/generations.csv")).back().at("species"), "");
 }
 
@@ -327,15 +320,14 @@ TEST_F(EvolveCommand, NoveltyAgesIslandsAndEmittersGoOnBitForBit) {
       all.at(1) = "sample:eel";
       return joined(all, {"--genes", "muscles"});
     };
-    ASSERT_EQ(evolve(name, options("4")).status, 0) << name;
-    ASSERT_EQ(evolve(name + "-parts", options("2")).status, 0) << name;
-    ASSERT_EQ(evolve(name + "-parts", {"--resume", "--generations", "4", "--quiet"}).status, 0) << name;
+    succeeded(evolve(name, options("4")));
+    succeeded(evolve(name + "-parts", options("2")));
+    succeeded(evolve(name + "-parts", {"--resume", "--generations", "4", "--quiet"}));
     EXPECT_EQ(read(name + "/first_parents.csv"), read(name + "-parts/first_parents.csv")) << name;
   }
   EXPECT_THAT(evolve("refused", joined(small("1"), {"--algorithm", "ga", "--axis", "masses"})),
               Ends(2, testing::HasSubstr("--axis: goes with --algorithm map-elites, novelty or cma-me")));
-  const Outcome pipelined =
-      evolve("pipelined", joined(joined(small("1"), {"--algorithm", "novelty", "--pipelined"}), axes));
+  const Outcome pipelined = evolve("pipelined", joined(small("1"), {"--algorithm", "novelty", "--pipelined"}, axes));
   EXPECT_EQ(pipelined.status, 2);
   EXPECT_THAT(pipelined.messages, testing::HasSubstr("novelty learns from each generation"));
 }
@@ -344,8 +336,7 @@ TEST_F(EvolveCommand, NoveltyAgesIslandsAndEmittersGoOnBitForBit) {
 TEST_F(EvolveCommand, OnlyConfirmedChampionsAreInBest) {
   const Arguments settings{"--from",   "voxel:3x2x2", "--population", "8", "--generations", "6", "--seconds", "1",
                            "--device", "cpu",         "--seed",       "5", "--quiet"};
-  const Outcome outcome = evolve("run", settings);
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(evolve("run", settings));
   EXPECT_THAT(outcome.output, testing::HasSubstr(" champions are confirmed"));
   const std::string checks = read("run/checks.csv");
   std::vector<std::string> confirmed;
@@ -366,19 +357,18 @@ TEST_F(EvolveCommand, OnlyConfirmedChampionsAreInBest) {
   EXPECT_EQ(std::filesystem::exists(path("run/best")) ? listing("run/best") : std::vector<std::string>{}, confirmed);
 
   // The search does not notice, and what is lost is made again.
-  ASSERT_EQ(evolve("unchecked", joined(settings, {"--no-confirm"})).status, 0);
+  succeeded(evolve("unchecked", joined(settings, {"--no-confirm"})));
   EXPECT_EQ(lineage("unchecked"), lineage("run"));
   EXPECT_EQ(listing("unchecked/best").size(), champions.size());
   std::filesystem::remove(path("run/checks.csv"));
   std::filesystem::remove_all(path("run/best"));
-  ASSERT_EQ(evolve("run", {"--resume", "--quiet"}).status, 0);
+  succeeded(evolve("run", {"--resume", "--quiet"}));
   EXPECT_EQ(read("run/checks.csv"), checks);
   EXPECT_EQ(std::filesystem::exists(path("run/best")) ? listing("run/best") : std::vector<std::string>{}, confirmed);
 }
 
 TEST_F(EvolveCommand, MakesARunFolder) {
-  const Outcome outcome = evolve("run", small());
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(evolve("run", small()));
   EXPECT_EQ(outcome.messages, "");
   EXPECT_THAT(listing("run"), testing::IsSupersetOf({"checks.csv", "generations.csv", "genomes", "lineage.csv",
                                                      "progress.svg", "run.toml"}));
@@ -391,14 +381,14 @@ TEST_F(EvolveCommand, MakesARunFolder) {
 TEST_F(EvolveCommand, FoldingIsMeasuredWhereAnObjectiveOrAxisNamesIt) {
   for (const Arguments& asks : {Arguments{"--objective", "distance - inverted"},
                                 Arguments{"--algorithm", "map-elites", "--axis", "overlap:0:1:4"}}) {
-    ASSERT_EQ(evolve("folds", joined(small("1"), joined(asks, {"--force"}))).status, 0);
+    succeeded(evolve("folds", joined(small("1"), asks, {"--force"})));
     const RunHistory run(path("folds"));
     for (const Individual& one : run.individuals()) {
       EXPECT_TRUE(std::isfinite(one.assessment.values[find_quantity("inverted").value()]));
       EXPECT_TRUE(std::isfinite(one.score()));
     }
   }
-  ASSERT_EQ(evolve("plain", small("1")).status, 0);
+  succeeded(evolve("plain", small("1")));
   for (const Individual& one : RunHistory(path("plain")).individuals())
     EXPECT_TRUE(std::isnan(one.assessment.values[find_quantity("inverted").value()]));
 }
@@ -406,7 +396,7 @@ TEST_F(EvolveCommand, FoldingIsMeasuredWhereAnObjectiveOrAxisNamesIt) {
 TEST_F(EvolveCommand, UprightIsMeasuredWhereAnObjectiveOrAxisNamesIt) {
   for (const Arguments& asks : {Arguments{"--objective", "distance * upright"},
                                 Arguments{"--algorithm", "map-elites", "--axis", "upright:-1:1:4"}}) {
-    ASSERT_EQ(evolve("stands", joined(small("1"), joined(asks, {"--force"}))).status, 0);
+    succeeded(evolve("stands", joined(small("1"), asks, {"--force"})));
     for (const Individual& one : RunHistory(path("stands")).individuals())
       EXPECT_TRUE(std::isfinite(one.assessment.values[find_quantity("upright").value()]));
   }
@@ -419,12 +409,12 @@ TEST_F(EvolveCommand, TrialsAroundATargetGoOnBitForBitAndAreThereAgainInRun) {
                                                       "--reach", "0.3", "--mean", "--trials", "4", "--objective",
                                                       "reached - target_nearest", "--no-confirm"}));
   };
-  ASSERT_EQ(run("whole", "3").status, 0);
-  ASSERT_EQ(run("parts", "1").status, 0);
-  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "2", "--quiet"}).status, 0);
-  ASSERT_EQ(evolve("parts", {"--merge", "--generations", "3", "--quiet"}).status, 0);
-  for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(evolve("parts", {"--shard", shard, "--quiet"}).status, 0);
-  ASSERT_EQ(evolve("parts", {"--merge", "--quiet"}).status, 0);
+  succeeded(run("whole", "3"));
+  succeeded(run("parts", "1"));
+  succeeded(evolve("parts", {"--resume", "--generations", "2", "--quiet"}));
+  succeeded(evolve("parts", {"--merge", "--generations", "3", "--quiet"}));
+  for (const char* shard : {"1/2", "2/2"}) succeeded(evolve("parts", {"--shard", shard, "--quiet"}));
+  succeeded(evolve("parts", {"--merge", "--quiet"}));
   EXPECT_EQ(lineage("parts"), lineage("whole"));
   const RunHistory history(path("whole"));
   const Individual& best = history.individuals()[history.living().front()];
@@ -442,20 +432,19 @@ TEST_F(EvolveCommand, CmaEsGoesOnBitForBitAndSaysWhatItCannotSearch) {
       return evolve(folder, {"--from", "sample:eel", "--genes", "muscles", "--algorithm", algorithm, "--seconds", "0.1",
                              "--trials", "1", "--generations", generations, "--no-confirm", "--quiet", "--force"});
     };
-    const Outcome whole = run("whole", "5");
-    ASSERT_EQ(whole.status, 0) << whole.messages;
+    const Outcome whole = succeeded(run("whole", "5"));
     const RunHistory history(path("whole"));
     const std::size_t numbers = history.genome(0)->numbers().size();
     EXPECT_GE(numbers, 4u);
     EXPECT_EQ(history.generations()[0].born, 4 + static_cast<std::size_t>(3 * std::log(static_cast<double>(numbers))));
-    ASSERT_EQ(run("parts", "2").status, 0);
-    ASSERT_EQ(evolve("parts", {"--resume", "--generations", "5", "--quiet"}).status, 0);
+    succeeded(run("parts", "2"));
+    succeeded(evolve("parts", {"--resume", "--generations", "5", "--quiet"}));
     EXPECT_EQ(lineage("parts"), lineage("whole"));
-    ASSERT_EQ(run("shards", "3").status, 0);
-    ASSERT_EQ(evolve("shards", {"--merge", "--generations", "5", "--quiet"}).status, 0);
+    succeeded(run("shards", "3"));
+    succeeded(evolve("shards", {"--merge", "--generations", "5", "--quiet"}));
     for (int generation = 4; generation <= 5; ++generation) {
-      for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(evolve("shards", {"--shard", shard, "--quiet"}).status, 0);
-      ASSERT_EQ(evolve("shards", {"--merge", "--quiet"}).status, 0);
+      for (const char* shard : {"1/2", "2/2"}) succeeded(evolve("shards", {"--shard", shard, "--quiet"}));
+      succeeded(evolve("shards", {"--merge", "--quiet"}));
     }
     EXPECT_EQ(lineage("shards"), lineage("whole"));
   }
@@ -475,19 +464,19 @@ TEST_F(EvolveCommand, CmaEsGoesOnBitForBitAndSaysWhatItCannotSearch) {
 
 TEST_F(EvolveCommand, LineageDoesNotDependOnThreads) {
   const std::string lineage_of_all_threads = expected_lineage();
-  ASSERT_EQ(evolve("one", joined(small(), {"--threads", "1"})).status, 0);
+  succeeded(evolve("one", joined(small(), {"--threads", "1"})));
   EXPECT_EQ(lineage("one"), lineage_of_all_threads);
   EXPECT_THAT(lineage_of_all_threads, testing::HasSubstr("ancestor_list"));
 }
 
 TEST_F(EvolveCommand, LineageDependsOnTheSeed) {
-  ASSERT_EQ(evolve("other", joined(small(), {"--seed", "6"})).status, 0);
+  succeeded(evolve("other", joined(small(), {"--seed", "6"})));
   EXPECT_NE(lineage("other"), expected_lineage());
 }
 
 TEST_F(EvolveCommand, GenerationsCanBeRaised) {
-  ASSERT_EQ(evolve("run", small("2")).status, 0);
-  ASSERT_EQ(evolve("run", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  succeeded(evolve("run", small("2")));
+  succeeded(evolve("run", {"--resume", "--generations", "4", "--quiet"}));
   EXPECT_EQ(lineage("run"), expected_lineage());
 }
 
@@ -500,17 +489,17 @@ TEST_F(EvolveCommand, MissingDevicesAreNoticedBeforeAFolderIsMade) {
 }
 
 TEST_F(EvolveCommand, RunsAreReplacedOnlyWithForce) {
-  ASSERT_EQ(evolve("run", small("1")).status, 0);
+  succeeded(evolve("run", small("1")));
   const std::string before = lineage("run");
   EXPECT_THAT(evolve("run", joined(small("1"), {"--seed", "9"})),
               Ends(2, path("run") + ": holds a run; --resume goes on with it, --force replaces it"));
   EXPECT_EQ(lineage("run"), before);
-  ASSERT_EQ(evolve("run", joined(small("1"), {"--seed", "9", "--force"})).status, 0);
+  succeeded(evolve("run", joined(small("1"), {"--seed", "9", "--force"})));
   EXPECT_NE(lineage("run"), before);
 }
 
 TEST_F(EvolveCommand, ResumedRunsKeepTheirSettings) {
-  ASSERT_EQ(evolve("run", small("1")).status, 0);
+  succeeded(evolve("run", small("1")));
   EXPECT_THAT(evolve("run", {"--resume", "--seconds", "3"}),
               Ends(2,
                    "--seconds: a run that goes on keeps its settings; only --generations, "
@@ -518,19 +507,17 @@ TEST_F(EvolveCommand, ResumedRunsKeepTheirSettings) {
 }
 
 TEST_F(EvolveCommand, StartsFromRobotFiles) {
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("parents"), "--count", "3", "--voxels", "3x2x2"}).status, 0);
-  const Outcome outcome = evolve(
-      "run", {"--from", path("parents"), "--population", "6", "--generations", "1", "--seconds", "0.2", "--quiet"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(mercury({"new", "voxel", "-o", path("parents"), "--count", "3", "--voxels", "3x2x2"}));
+  succeeded(evolve(
+      "run", {"--from", path("parents"), "--population", "6", "--generations", "1", "--seconds", "0.2", "--quiet"}));
   const RunHistory history(path("run"));
   for (std::uint64_t id : {0, 1, 2})
     EXPECT_EQ(history.grow(id).masses, load_robot(path("parents/voxel-1-" + std::to_string(id) + ".json")).masses);
 }
 
 TEST_F(EvolveCommand, MusclesOfAnyBody) {
-  const Outcome outcome = evolve("run", {"--from", MERCURY_ROBOT_LIBRARY "/eel.json", "--genes", "muscles",
-                                         "--population", "4", "--generations", "1", "--seconds", "0.1", "--quiet"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(evolve("run", {"--from", MERCURY_ROBOT_LIBRARY "/eel.json", "--genes", "muscles", "--population", "4",
+                           "--generations", "1", "--seconds", "0.1", "--quiet"}));
   const RunHistory history(path("run"));
   const Robot eel = load_robot(MERCURY_ROBOT_LIBRARY "/eel.json"), last = history.grow(7);
   EXPECT_EQ(last.masses, eel.masses);
@@ -540,9 +527,9 @@ TEST_F(EvolveCommand, MusclesOfAnyBody) {
 
 TEST_F(EvolveCommand, BrainsGoOnAsIfTheRunHadNotStopped) {
   const Arguments brains{"--genes", "brain,both", "--target", "1,0,0", "--objective", "-target_distance"};
-  ASSERT_EQ(evolve("whole", joined(small("4"), brains)).status, 0);
-  ASSERT_EQ(evolve("parts", joined(small("1"), brains)).status, 0);
-  ASSERT_EQ(evolve("parts", {"--resume", "--generations", "4", "--quiet"}).status, 0);
+  succeeded(evolve("whole", joined(small("4"), brains)));
+  succeeded(evolve("parts", joined(small("1"), brains)));
+  succeeded(evolve("parts", {"--resume", "--generations", "4", "--quiet"}));
   EXPECT_EQ(lineage("parts"), lineage("whole"));
   const RunHistory whole(path("whole")), parts(path("parts"));
   EXPECT_EQ(whole.settings().space.genes, Genes::both | Genes::brain);
@@ -554,10 +541,9 @@ TEST_F(EvolveCommand, BrainsGoOnAsIfTheRunHadNotStopped) {
 }
 
 TEST_F(EvolveCommand, ChampionsHaveTheBrainThatEvolved) {
-  const Outcome outcome = evolve("run", {"--from", "sample:hunter", "--genes", "brain", "--target", "-2,3,0",
-                                         "--objective", "-target_distance", "--population", "4", "--generations", "1",
-                                         "--seconds", "0.5", "--trials", "1", "--no-confirm", "--quiet"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(evolve("run", {"--from", "sample:hunter", "--genes", "brain", "--target", "-2,3,0", "--objective",
+                           "-target_distance", "--population", "4", "--generations", "1", "--seconds", "0.5",
+                           "--trials", "1", "--no-confirm", "--quiet"}));
   const RunHistory history(path("run"));
   std::set<std::filesystem::path> files;
   for (const auto& file : std::filesystem::directory_iterator(path("run/best"))) files.insert(file.path());

@@ -30,7 +30,7 @@ TEST_F(EvolveCommand, KilledRunsEndInTheSameLineage) {
     command = {"evolve", path("run"), "--resume", "--quiet"};
   }
   EXPECT_GT(kills, 0);
-  ASSERT_EQ(mercury(command).status, 0);
+  succeeded(mercury(command));
   EXPECT_EQ(lineage("run"), wanted);
 }
 
@@ -43,51 +43,50 @@ TEST_F(EvolveCommand, InterruptedRunsStopCleanlyAndGoOn) {
   ASSERT_EQ(outcome.status, 128 + SIGINT) << outcome.messages;
   EXPECT_THAT(outcome.messages, testing::EndsWith("mercury evolve " + path("run") + " --resume goes on\n"));
   EXPECT_THAT(listing("run"), testing::Contains("lineage.csv"));
-  ASSERT_EQ(evolve("run", {"--resume", "--quiet"}).status, 0);
+  succeeded(evolve("run", {"--resume", "--quiet"}));
   EXPECT_EQ(lineage("run"), expected_lineage(generations));
 }
 
 TEST_F(EvolveCommand, ShardsEndInTheSameLineage) {
-  ASSERT_EQ(evolve("run", joined(small("2"), {"--prepare"})).status, 0);
+  succeeded(evolve("run", joined(small("2"), {"--prepare"})));
   for (int generation = 0; generation <= 2; ++generation) {
-    for (const char* shard : {"3/3", "1/3", "2/3"}) ASSERT_EQ(evolve("run", {"--shard", shard, "--quiet"}).status, 0);
-    const Outcome merged = evolve("run", {"--merge"});
-    ASSERT_EQ(merged.status, 0) << merged.messages;
+    for (const char* shard : {"3/3", "1/3", "2/3"}) succeeded(evolve("run", {"--shard", shard, "--quiet"}));
+    succeeded(evolve("run", {"--merge"}));
   }
   EXPECT_EQ(lineage("run"), expected_lineage("2"));
   EXPECT_THAT(listing("run"), testing::Not(testing::Contains("shards")));
   EXPECT_THAT(evolve("run", {"--merge"}), Ends(2, path("run") + ": has all its 2 generations; mercury evolve " +
                                                       path("run") + " --merge --generations N raises their number"));
-  ASSERT_EQ(evolve("run", {"--merge", "--generations", "3"}).status, 0);
-  ASSERT_EQ(evolve("run", {"--shard", "1/1", "--quiet"}).status, 0);
-  ASSERT_EQ(evolve("run", {"--merge"}).status, 0);
+  succeeded(evolve("run", {"--merge", "--generations", "3"}));
+  succeeded(evolve("run", {"--shard", "1/1", "--quiet"}));
+  succeeded(evolve("run", {"--merge"}));
   EXPECT_EQ(lineage("run"), expected_lineage("3"));
 }
 
 TEST_F(EvolveCommand, IslandsAreTheSameInShards) {
   const Arguments islands = joined(small("3"), {"--islands", "2", "--migration-interval", "2", "--migrants", "1"});
-  ASSERT_EQ(evolve("whole", islands).status, 0);
-  ASSERT_EQ(evolve("run", joined(islands, {"--prepare"})).status, 0);
+  succeeded(evolve("whole", islands));
+  succeeded(evolve("run", joined(islands, {"--prepare"})));
   for (int generation = 0; generation <= 3; ++generation) {
-    for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(evolve("run", {"--shard", shard, "--quiet"}).status, 0);
-    ASSERT_EQ(evolve("run", {"--merge"}).status, 0);
+    for (const char* shard : {"1/2", "2/2"}) succeeded(evolve("run", {"--shard", shard, "--quiet"}));
+    succeeded(evolve("run", {"--merge"}));
   }
   EXPECT_EQ(lineage("run"), lineage("whole"));
 }
 
 TEST_F(EvolveCommand, GrowingBrainsAreTheSameInShards) {
-  ASSERT_EQ(evolve("whole", growing("3")).status, 0);
-  ASSERT_EQ(evolve("run", joined(growing("3"), {"--prepare"})).status, 0);
+  succeeded(evolve("whole", growing("3")));
+  succeeded(evolve("run", joined(growing("3"), {"--prepare"})));
   for (int generation = 0; generation <= 3; ++generation) {
-    for (const char* shard : {"1/2", "2/2"}) ASSERT_EQ(evolve("run", {"--shard", shard, "--quiet"}).status, 0);
-    ASSERT_EQ(evolve("run", {"--merge"}).status, 0);
+    for (const char* shard : {"1/2", "2/2"}) succeeded(evolve("run", {"--shard", shard, "--quiet"}));
+    succeeded(evolve("run", {"--merge"}));
   }
   EXPECT_EQ(lineage("run"), lineage("whole"));
 }
 
 // Wherever it is at that moment.
 TEST_F(EvolveCommand, KilledRunsOfGrowingBrainsEndInTheSameLineage) {
-  ASSERT_EQ(evolve("whole", growing("12")).status, 0);
+  succeeded(evolve("whole", growing("12")));
   Arguments command = joined({"evolve", path("run")}, growing("12"));
   for (std::size_t target : {1, 4, 8}) {
     ChildProcess child(MERCURY_PROGRAM, command);
@@ -96,7 +95,7 @@ TEST_F(EvolveCommand, KilledRunsOfGrowingBrainsEndInTheSameLineage) {
     outcome_of(child);
     command = {"evolve", path("run"), "--resume", "--quiet"};
   }
-  ASSERT_EQ(mercury(command).status, 0);
+  succeeded(mercury(command));
   EXPECT_EQ(lineage("run"), lineage("whole"));
 }
 
@@ -115,10 +114,10 @@ TEST_F(EvolveCommand, RunsWhoseFolderWasRemovedEndWithALine) {
 }
 
 TEST_F(EvolveCommand, MissingAndDamagedShardsAreNamed) {
-  ASSERT_EQ(evolve("run", joined(small("2"), {"--prepare"})).status, 0);
+  succeeded(evolve("run", joined(small("2"), {"--prepare"})));
   EXPECT_EQ(evolve("run", {"--merge"}).messages,
             "mercury: " + path("run/shards") + ": has no shard of generation 0; make them by --shard I/N\n");
-  ASSERT_EQ(evolve("run", {"--shard", "1/2", "--quiet"}).status, 0);
+  succeeded(evolve("run", {"--shard", "1/2", "--quiet"}));
   EXPECT_EQ(evolve("run", {"--merge"}).messages,
             "mercury: " + path("run/shards") + ": shard 2 of 2 of generation 0 is missing\n");
   const std::string whole = read("run/shards/0-1-of-2");
@@ -171,15 +170,14 @@ class EvolveByMpi : public EvolveCommand {
 };
 
 TEST_F(EvolveByMpi, RanksEndInTheSameLineage) {
-  const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, small())));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(run_program("mpirun", three_ranks(joined({path("run")}, small()))));
   EXPECT_EQ(lineage("run"), expected_lineage());
 }
 
 TEST_F(EvolveByMpi, PipelinedRunsAreTheSameOnAllRanksAndWhenTheyGoOn) {
   const Arguments pipelined = joined(small("12"), {"--pipelined"});
-  ASSERT_EQ(evolve("whole", pipelined).status, 0);
-  ASSERT_EQ(run_program("mpirun", three_ranks(joined({path("run")}, pipelined))).status, 0);
+  succeeded(evolve("whole", pipelined));
+  succeeded(run_program("mpirun", three_ranks(joined({path("run")}, pipelined))));
   EXPECT_EQ(lineage("run"), lineage("whole"));
   // Interrupted with the next generation begun on all ranks.
   ChildProcess child("mpirun", three_ranks(joined({path("later")}, joined(small("4000"), {"--pipelined"}))));
@@ -187,26 +185,22 @@ TEST_F(EvolveByMpi, PipelinedRunsAreTheSameOnAllRanksAndWhenTheyGoOn) {
   child.signal(SIGINT);
   outcome_of(child);
   const std::size_t before = generations_in("later");
-  ASSERT_EQ(run_program("mpirun", three_ranks({path("later"), "--resume", "--quiet", "--generations",
-                                               std::to_string(before + 3)}))
-                .status,
-            0);
-  ASSERT_EQ(evolve("alone", joined(small(std::to_string(before + 3)), {"--pipelined"})).status, 0);
+  succeeded(run_program(
+      "mpirun", three_ranks({path("later"), "--resume", "--quiet", "--generations", std::to_string(before + 3)})));
+  succeeded(evolve("alone", joined(small(std::to_string(before + 3)), {"--pipelined"})));
   EXPECT_EQ(lineage("later"), lineage("alone"));
 }
 
 TEST_F(EvolveByMpi, IslandsAreTheSameOnAllRanks) {
   const Arguments islands = joined(small("3"), {"--islands", "2", "--migration-interval", "2", "--migrants", "1"});
-  ASSERT_EQ(evolve("whole", islands).status, 0);
-  const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, islands)));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(evolve("whole", islands));
+  succeeded(run_program("mpirun", three_ranks(joined({path("run")}, islands))));
   EXPECT_EQ(lineage("run"), lineage("whole"));
 }
 
 TEST_F(EvolveByMpi, GrowingBrainsAreTheSameOnAllRanks) {
-  ASSERT_EQ(evolve("whole", growing("3")).status, 0);
-  const Outcome outcome = run_program("mpirun", three_ranks(joined({path("run")}, growing("3"))));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(evolve("whole", growing("3")));
+  succeeded(run_program("mpirun", three_ranks(joined({path("run")}, growing("3")))));
   EXPECT_EQ(lineage("run"), lineage("whole"));
 }
 
@@ -247,16 +241,15 @@ TEST_F(EvolveByMpi, ALostRankEndsTheRunWithALine) {
     EXPECT_EQ(lines_of_mercury(outcome), 1u) << outcome.messages;
     EXPECT_THAT(outcome.messages, testing::HasSubstr("mercury: rank " + std::to_string(lost) + " no longer answers; "));
     for (const int rank : {0, 1, 2}) EXPECT_EQ(process_of(rank, path(run)), 0);
-    ASSERT_EQ(evolve(run, {"--resume", "--quiet"}).status, 0);
+    succeeded(evolve(run, {"--resume", "--quiet"}));
     EXPECT_EQ(lineage(run), wanted);
   }
 }
 
 TEST_F(EvolveByMpi, PreparingAndMergingAreDoneOnce) {
-  ASSERT_EQ(run_program("mpirun", three_ranks(joined({path("run"), "--prepare"}, small("0")))).status, 0);
-  ASSERT_EQ(evolve("run", {"--shard", "1/1", "--quiet"}).status, 0);
-  const Outcome outcome = run_program("mpirun", three_ranks({path("run"), "--merge"}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(run_program("mpirun", three_ranks(joined({path("run"), "--prepare"}, small("0")))));
+  succeeded(evolve("run", {"--shard", "1/1", "--quiet"}));
+  succeeded(run_program("mpirun", three_ranks({path("run"), "--merge"})));
   EXPECT_EQ(lineage("run"), expected_lineage("0"));
 }
 

@@ -78,12 +78,11 @@ class EvolveSweep : public FolderTest {
 };
 
 TEST_F(EvolveSweep, ItsRunsAreThoseOfSingleCommands) {
-  const Outcome sweep = evolve("sweep", small({"--seeds", "3,7", "--vary", "algorithm=ga,afpo"}));
-  ASSERT_EQ(sweep.status, 0) << sweep.messages;
+  const Outcome sweep = succeeded(evolve("sweep", small({"--seeds", "3,7", "--vary", "algorithm=ga,afpo"})));
   for (const std::string seed : {"3", "7"})
     for (const std::string algorithm : {"ga", "afpo"}) {
       const std::string single = "single-" + algorithm + "-" + seed;
-      ASSERT_EQ(evolve(single, small({"--seed", seed, "--algorithm", algorithm})).status, 0);
+      succeeded(evolve(single, small({"--seed", seed, "--algorithm", algorithm})));
       EXPECT_EQ(read("sweep/algorithm=" + algorithm + "/seed-" + seed + "/lineage.csv"), read(single + "/lineage.csv"));
     }
   const Sweep read_back = read_sweep(path("sweep"));
@@ -102,24 +101,22 @@ TEST_F(EvolveSweep, ItsRunsAreThoseOfSingleCommands) {
 }
 
 TEST_F(EvolveSweep, OptionsWithoutAValueAreThereOrNot) {
-  ASSERT_EQ(evolve("sweep", small({"--seeds", "3", "--vary", "muscle-adaptation=no,yes", "--genes", "both"})).status,
-            0);
-  ASSERT_EQ(evolve("with", small({"--seed", "3", "--genes", "both", "--muscle-adaptation"})).status, 0);
-  ASSERT_EQ(evolve("without", small({"--seed", "3", "--genes", "both"})).status, 0);
+  succeeded(evolve("sweep", small({"--seeds", "3", "--vary", "muscle-adaptation=no,yes", "--genes", "both"})));
+  succeeded(evolve("with", small({"--seed", "3", "--genes", "both", "--muscle-adaptation"})));
+  succeeded(evolve("without", small({"--seed", "3", "--genes", "both"})));
   EXPECT_EQ(read("sweep/muscle-adaptation=yes/seed-3/lineage.csv"), read("with/lineage.csv"));
   EXPECT_EQ(read("sweep/muscle-adaptation=no/seed-3/lineage.csv"), read("without/lineage.csv"));
   EXPECT_NE(read("with/lineage.csv"), read("without/lineage.csv"));
 }
 
 TEST_F(EvolveSweep, GoesOnWhereItStopped) {
-  ASSERT_EQ(evolve("sweep", small({"--seeds", "1..2", "--prepare"})).status, 0);
+  succeeded(evolve("sweep", small({"--seeds", "1..2", "--prepare"})));
   EXPECT_EQ(runs_of_sweep(path("sweep")).size(), 2u);
-  ASSERT_EQ(evolve("sweep/all/seed-1", {"--resume", "--quiet"}).status, 0);  // a run of it, by itself
-  const Outcome rest = evolve("sweep", {"--resume", "--generations", "3", "--quiet"});
-  ASSERT_EQ(rest.status, 0) << rest.messages;
+  succeeded(evolve("sweep/all/seed-1", {"--resume", "--quiet"}));  // a run of it, by itself
+  succeeded(evolve("sweep", {"--resume", "--generations", "3", "--quiet"}));
   for (const std::string seed : {"1", "2"}) {
-    ASSERT_EQ(evolve("single-" + seed, small({"--seed", seed})).status, 0);
-    ASSERT_EQ(evolve("single-" + seed, {"--resume", "--generations", "3", "--quiet"}).status, 0);
+    succeeded(evolve("single-" + seed, small({"--seed", seed})));
+    succeeded(evolve("single-" + seed, {"--resume", "--generations", "3", "--quiet"}));
     EXPECT_EQ(read("sweep/all/seed-" + seed + "/lineage.csv"), read("single-" + seed + "/lineage.csv"));
   }
 }
@@ -148,7 +145,7 @@ TEST_F(EvolveSweep, MistakesAreRefusedBeforeAnythingIsWritten) {
     EXPECT_EQ(std::ranges::count(outcome.messages, '\n'), 1) << outcome.messages;
     EXPECT_FALSE(std::filesystem::exists(path("sweep"))) << testing::PrintToString(mistake);
   }
-  ASSERT_EQ(evolve("sweep", small({"--seeds", "1", "--prepare"})).status, 0);
+  succeeded(evolve("sweep", small({"--seeds", "1", "--prepare"})));
   EXPECT_EQ(evolve("sweep", small({"--seeds", "1"})).status, 2);                          // it is there
   EXPECT_EQ(evolve("sweep", {"--resume", "--seeds", "1..3"}).status, 2);                  // it keeps its runs
   EXPECT_EQ(evolve("sweep/all/seed-1", small({"--seeds", "1", "--force"})).status, 2);    // it is a run

@@ -32,24 +32,21 @@ class ImportCommand : public FolderTest {
 };
 
 TEST_F(ImportCommand, WritesRobotAndWorldThatRunTogether) {
-  const Outcome outcome = mercury({"import", path("crawler.vxa"), "-o", path("robots")});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"import", path("crawler.vxa"), "-o", path("robots")}));
   EXPECT_THAT(listing("robots"), ElementsAre("crawler.json", "crawler.toml"));
   EXPECT_THAT(outcome.output, HasSubstr("/VXA/VXC/Palette/Material[1]/Mechanical/CTE"));
   const Robot robot = load_robot(path("robots/crawler.json"));
   EXPECT_EQ(robot.name, "crawler");
   EXPECT_EQ(voxel_grid_of(robot)->cells, (std::vector<MaterialId>{1, 2, 0, 3}));
-  const Outcome run = mercury({"run", path("robots/crawler.json"), "--config", path("robots/crawler.toml"), "--seconds",
-                               "0.2", "--device", "cpu", "--json"});
-  ASSERT_EQ(run.status, 0) << run.messages;
+  const Outcome run = succeeded(mercury({"run", path("robots/crawler.json"), "--config", path("robots/crawler.toml"),
+                                         "--seconds", "0.2", "--device", "cpu", "--json"}));
   const auto result = nlohmann::json::parse(run.output);
   EXPECT_EQ(result["configuration"]["environment"], "land");
   EXPECT_EQ(result["robots"][0]["fate"], "sound");
 }
 
 TEST_F(ImportCommand, ReportsAsJson) {
-  const Outcome outcome = mercury({"import", path("crawler.vxa"), "-o", path("robots"), "--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"import", path("crawler.vxa"), "-o", path("robots"), "--json"}));
   const auto report = nlohmann::json::parse(outcome.output)["files"][0];
   EXPECT_EQ(report["file"], path("crawler.vxa"));
   EXPECT_EQ(report["robots"][0], path("robots/crawler.json"));
@@ -70,8 +67,8 @@ TEST_F(ImportCommand, SaysWhenNothingWasImported) {
   EXPECT_THAT(nothing.messages, HasSubstr("base.vxa: no robot in it: it has no voxels"));
   EXPECT_THAT(nothing.messages, testing::EndsWith("mercury: nothing was imported\n"));
   EXPECT_FALSE(std::filesystem::exists(path("robots")));
-  const Outcome some = mercury({"import", path("crawler.vxa"), path("base.vxa"), "-o", path("robots"), "--brief"});
-  EXPECT_EQ(some.status, 0);
+  const Outcome some =
+      succeeded(mercury({"import", path("crawler.vxa"), path("base.vxa"), "-o", path("robots"), "--brief"}));
   EXPECT_THAT(some.messages, HasSubstr("no robot in it"));
 }
 
@@ -80,15 +77,12 @@ TEST_F(ImportCommand, AHistoryBecomesARecordingThatPlays) {
   for (int i = 0; i < 5; ++i)
     text += fmt::format("<<<Step{} Time:{}>>>{},0,0,0,0,0,0,-5,-5,-5,5,5,5,1,0,;<<<>>>\n", 10 * i, 0.01 * i, i);
   write("bot.history", text);
-  const Outcome outcome = mercury({"import", path("bot.history"), "-o", path("motions"), "--brief"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"import", path("bot.history"), "-o", path("motions"), "--brief"}));
   EXPECT_THAT(listing("motions"), ElementsAre("bot.h5"));
   EXPECT_THAT(outcome.output, HasSubstr("a motion to play, not a robot to simulate"));
-  const Outcome info = mercury({"info", path("motions/bot.h5"), "--json"});
-  ASSERT_EQ(info.status, 0) << info.messages;
+  succeeded(mercury({"info", path("motions/bot.h5"), "--json"}));
   // 1 mm per 0.01 s, ten times as large and the square root of that as slow.
-  const Outcome page = mercury({"export", path("motions/bot.h5"), "-o", path("bot.html")});
-  ASSERT_EQ(page.status, 0) << page.messages;
+  succeeded(mercury({"export", path("motions/bot.h5"), "-o", path("bot.html")}));
   EXPECT_THAT(read("bot.html"), HasSubstr(fmt::format("0.04 m in {:.3g} s", 0.04 * std::sqrt(10.0))));
   EXPECT_EQ(mercury({"run", path("bot.history")}).status, 2);
 }
@@ -100,8 +94,7 @@ TEST_F(ImportCommand, FoldersGiveAllRobotsAndOneConfiguration) {
   write("run/b.vxd", "<VXD/>");
   write("run/note.txt", "");
   write("run/robot.json", "{\"format\": \"mercury-robot\"}");
-  const Outcome outcome = mercury({"import", path("run"), "-o", path("robots"), "--brief"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"import", path("run"), "-o", path("robots"), "--brief"}));
   EXPECT_THAT(listing("robots"), ElementsAre("a.json", "a.toml", "b.json", "b.toml", "import.toml"));
   EXPECT_THAT(outcome.output, HasSubstr("on the base " + path("run/base.vxa")));
   EXPECT_THAT(outcome.output, testing::Not(HasSubstr("Mechanical")));
@@ -111,7 +104,7 @@ TEST_F(ImportCommand, FoldersGiveAllRobotsAndOneConfiguration) {
 TEST_F(ImportCommand, FilesOfOneNameDoNotReplaceEachOther) {
   std::filesystem::create_directories(path("other"));
   write("other/crawler.vxa", VxaParts{}.text());
-  ASSERT_EQ(mercury({"import", path("crawler.vxa"), path("other/crawler.vxa"), "-o", path("robots")}).status, 0);
+  succeeded(mercury({"import", path("crawler.vxa"), path("other/crawler.vxa"), "-o", path("robots")}));
   EXPECT_THAT(listing("robots"),
               ElementsAre("crawler-2.json", "crawler-2.toml", "crawler.json", "crawler.toml", "import.toml"));
 }
@@ -146,24 +139,23 @@ TEST_F(ImportCommand, RefusesWhatCannotBeUsed) {
 }
 
 TEST_F(ImportCommand, ExistingFilesAreKept) {
-  ASSERT_EQ(mercury({"import", path("crawler.vxa"), "-o", path("robots")}).status, 0);
+  succeeded(mercury({"import", path("crawler.vxa"), "-o", path("robots")}));
   refuses({path("crawler.vxa"), "-o", path("robots")},
           "-o: " + path("robots/crawler.json") + " exists already; use --force to replace it, or give another name");
   EXPECT_EQ(mercury({"import", path("crawler.vxa"), "-o", path("robots"), "--force"}).status, 0);
 }
 
 TEST_F(ImportCommand, CommandsTakeSuchFilesDirectly) {
-  const Outcome outcome = mercury({"run", path("crawler.vxa"), "--seconds", "0.1", "--device", "cpu"});
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"run", path("crawler.vxa"), "--seconds", "0.1", "--device", "cpu"}));
   EXPECT_THAT(outcome.output, HasSubstr("crawler"));
   EXPECT_THAT(outcome.messages, HasSubstr("imported without its world"));
   EXPECT_EQ(mercury({"info", path("crawler.vxa")}).status, 0);
 }
 
 TEST_F(ImportCommand, ExportedVoxelRobotsComeBack) {
-  ASSERT_EQ(mercury({"new", "voxel", "--seed", "3", "-o", path("eel.json")}).status, 0);
-  ASSERT_EQ(mercury({"export", path("eel.json"), "-o", path("eel.vxa")}).status, 0);
-  ASSERT_EQ(mercury({"import", path("eel.vxa"), "-o", path("back")}).status, 0);
+  succeeded(mercury({"new", "voxel", "--seed", "3", "-o", path("eel.json")}));
+  succeeded(mercury({"export", path("eel.json"), "-o", path("eel.vxa")}));
+  succeeded(mercury({"import", path("eel.vxa"), "-o", path("back")}));
   const Robot there = load_robot(path("eel.json")), back = load_robot(path("back/eel.json"));
   EXPECT_EQ(voxel_grid_of(back)->cells, largest_body(*voxel_grid_of(there)).cells);
 }

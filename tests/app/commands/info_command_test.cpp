@@ -13,11 +13,9 @@ class InfoCommand : public FolderTest {};
 
 TEST_F(InfoCommand, DescribesAFile) {
   // One voxel has 8 masses, a spring per pair of them (28), and 6 sides of two triangles.
-  ASSERT_EQ(mercury({"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("cube.json")})
-                .status,
-            0);
-  const Outcome outcome = mercury({"info", path("cube.json")});
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(
+      mercury({"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("cube.json")}));
+  const Outcome outcome = succeeded(mercury({"info", path("cube.json")}));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("masses +8\n"));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("springs +28, "));
   EXPECT_THAT(outcome.output, HasSubstr("closed, Euler characteristic 2, 0.06 m2, 0.001 m3"));
@@ -30,11 +28,10 @@ TEST_F(InfoCommand, DescribesAFile) {
 TEST_F(InfoCommand, ListsNamedActuators) {
   write("chain.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],"faces":[],
     "springs":[[0,1,1],[1,2,2],[2,3,1]],"actuators":[{"name":"ends","materials":[1,3]},{"name":"mid","springs":[1]}]})");
-  const Outcome outcome = mercury({"info", path("chain.json")});
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"info", path("chain.json")}));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("actuators +ends: 2 springs of material 1, 3\n"
                                                      " +mid: 1 spring of material 2\n"));
-  ASSERT_EQ(mercury({"run", path("chain.json"), "--seconds", "0.01", "--record", path("chain.h5")}).status, 0);
+  succeeded(mercury({"run", path("chain.json"), "--seconds", "0.01", "--record", path("chain.h5")}));
   EXPECT_THAT(mercury({"info", path("chain.h5")}).output,
               HasSubstr("chain: 4 masses, 3 springs, 0 faces, 2 actuators"));
 }
@@ -54,8 +51,7 @@ TEST_F(InfoCommand, SaysTheMassAndTheVibrationsOfABody) {
   write("weight.json", R"({"format":"mercury-robot","version":1,"requires":["mass","fixed"],"faces":[],
     "masses":[[0,0,0.5],[0,0,0]],"mass":[1,2],"fixed":[0],"springs":[[0,1,1]],
     "materials":[{"stiffness":0},{"stiffness":5000,"relaxation_time":0.03}]})");
-  const Outcome outcome = mercury({"info", path("weight.json")});
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"info", path("weight.json")}));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("mass +3 kg, 1 point fixed\n"));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("density +-\n"));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("vibrates +from 7.96 Hz on\n"));
@@ -72,23 +68,20 @@ TEST_F(InfoCommand, SaysTheMassAndTheVibrationsOfABody) {
 }
 
 TEST_F(InfoCommand, WithoutAFileDescribesTheMachine) {
-  const Outcome outcome = mercury({"info"});
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(mercury({"info"}));
   for (const char* what : {"processor", "memory", "GPU", "drawing (egl)", "drawing (osmesa)", "encoder"})
     EXPECT_THAT(outcome.output, HasSubstr(what));
   EXPECT_THAT(outcome.output, HasSubstr("writes .mp4 .webm .gif"));
 }
 
 TEST_F(InfoCommand, AdvisesOnAMissingEncoder) {
-  const Outcome outcome = mercury({"info", "--ffmpeg", path("none")});
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(mercury({"info", "--ffmpeg", path("none")}));
   EXPECT_THAT(outcome.output, HasSubstr(path("none") + " does not run"));
   EXPECT_THAT(outcome.output, HasSubstr("apt install ffmpeg"));
 }
 
 nlohmann::json info_json(const Arguments& arguments) {
-  const Outcome outcome = mercury(joined({"info", "--json"}, arguments));
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury(joined({"info", "--json"}, arguments)));
   return nlohmann::json::parse(outcome.output, nullptr, false);
 }
 
@@ -99,14 +92,11 @@ std::vector<std::string> names_of(const nlohmann::json& list, const char* name =
 }
 
 TEST_F(InfoCommand, JsonHoldsWhatThePathsName) {
-  ASSERT_EQ(mercury({"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("r/"),
-                     "--count", "2"})
-                .status,
-            0);
+  succeeded(mercury(
+      {"new", "voxel", "--voxels", "1x1x1", "--air", "0", "--symmetry", "none", "-o", path("r/"), "--count", "2"}));
   write("chain.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],"faces":[],
     "springs":[[0,1,1],[1,2,2],[2,3,1]],"actuators":[{"name":"ends","materials":[1,3]},{"name":"mid","springs":[1]}]})");
-  ASSERT_EQ(mercury({"run", path("chain.json"), "--seconds", "0.01", "--every", "2", "--record", path("a.h5")}).status,
-            0);
+  succeeded(mercury({"run", path("chain.json"), "--seconds", "0.01", "--every", "2", "--record", path("a.h5")}));
   const auto json = info_json({path("chain.json"), path("r"), path("a.h5")});
   EXPECT_TRUE(json["machine"].is_null());
   EXPECT_EQ(names_of(json["robots"]), (std::vector<std::string>{"chain", "voxel-1-0", "voxel-1-1"}));
@@ -140,10 +130,8 @@ TEST_F(InfoCommand, JsonOfTheMachineAndOfARun) {
   const auto whats = names_of(machine["machine"], "what");
   for (const char* what : {"processor", "memory", "GPU", "encoder"}) EXPECT_THAT(whats, testing::Contains(what));
   EXPECT_TRUE(machine["robots"].empty());
-  ASSERT_EQ(mercury({"evolve", path("run"), "--from", "voxel:2x2x2", "--population", "6", "--generations", "2",
-                     "--seconds", "0.05", "--strain-limit", "1.5", "--quiet"})
-                .status,
-            0);
+  succeeded(mercury({"evolve", path("run"), "--from", "voxel:2x2x2", "--population", "6", "--generations", "2",
+                     "--seconds", "0.05", "--strain-limit", "1.5", "--quiet"}));
   const auto run = info_json({path("run")})["runs"][0];
   EXPECT_EQ(run["generations"], 2);
   EXPECT_EQ(run["last_generation"], 2);

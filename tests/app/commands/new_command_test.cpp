@@ -16,8 +16,7 @@ namespace {
 class NewCommand : public FolderTest {};
 
 TEST_F(NewCommand, WritesTheRobotsOfASeed) {
-  const Outcome outcome = mercury({"new", "voxel", "-o", path("r"), "--count", "3", "--seed", "7"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"new", "voxel", "-o", path("r"), "--count", "3", "--seed", "7"}));
   EXPECT_EQ(listing("r"), (std::vector<std::string>{"voxel-7-0.json", "voxel-7-1.json", "voxel-7-2.json"}));
   EXPECT_EQ(outcome.output,
             path("r/voxel-7-0.json") + "\n" + path("r/voxel-7-1.json") + "\n" + path("r/voxel-7-2.json") + "\n");
@@ -25,10 +24,8 @@ TEST_F(NewCommand, WritesTheRobotsOfASeed) {
 }
 
 TEST_F(NewCommand, OptionsShapeTheRobots) {
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.cbor"), "--voxels", "3x4x5", "--air", "0", "--edge", "0.2",
-                     "--symmetry", "x", "--patch", "1"})
-                .status,
-            0);
+  succeeded(mercury({"new", "voxel", "-o", path("a.cbor"), "--voxels", "3x4x5", "--air", "0", "--edge", "0.2",
+                     "--symmetry", "x", "--patch", "1"}));
   const RandomVoxelOptions options{
       .smallest = {3, 4, 5}, .largest = {3, 4, 5}, .edge = 0.2f, .air = 0, .mirror = Mirror::x, .patch = 1};
   EXPECT_EQ(load_robot(path("a.cbor")), random_voxel_robot(options, 1));
@@ -36,7 +33,7 @@ TEST_F(NewCommand, OptionsShapeTheRobots) {
 }
 
 TEST_F(NewCommand, FolderTakesTheChosenFormat) {
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("r/"), "--format", "cbor"}).status, 0);
+  succeeded(mercury({"new", "voxel", "-o", path("r/"), "--format", "cbor"}));
   EXPECT_EQ(listing("r"), std::vector<std::string>{"voxel-1-0.cbor"});
 }
 
@@ -72,8 +69,7 @@ TEST_F(NewCommand, BestOfWritesEveryCandidate) {
   std::vector<std::string> run{"run", "--random", "voxel:6", "--trials", "3", "--csv", path("b.csv")};
   for (auto* command : {&search, &run}) {
     command->insert(command->end(), trial.begin(), trial.end());
-    const Outcome outcome = mercury(*command);
-    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    succeeded(mercury(*command));
   }
   EXPECT_EQ(read("a.csv"), read("b.csv"));
   const std::string csv = read("a.csv");
@@ -155,13 +151,12 @@ TEST_F(NewCommand, AFailingCsvLosesNoRobot) {
 }
 
 TEST_F(NewCommand, RobotsNameTheEnvironmentOfTheirTrial) {
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "2", "--seconds", "0", "--environment", "land"})
-                .status,
-            0);
+  succeeded(
+      mercury({"new", "voxel", "-o", path("a.json"), "--best-of", "2", "--seconds", "0", "--environment", "land"}));
   EXPECT_EQ(environment_of(load_robot(path("a.json"))), "land");
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("b.json"), "--best-of", "2", "--seconds", "0"}).status, 0);
+  succeeded(mercury({"new", "voxel", "-o", path("b.json"), "--best-of", "2", "--seconds", "0"}));
   EXPECT_EQ(environment_of(load_robot(path("b.json"))), "ocean");
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("c.json")}).status, 0);
+  succeeded(mercury({"new", "voxel", "-o", path("c.json")}));
   EXPECT_EQ(environment_of(load_robot(path("c.json"))), "");
 }
 

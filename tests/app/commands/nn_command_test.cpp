@@ -17,9 +17,8 @@ class NnCommand : public FolderTest {};
 
 TEST_F(NnCommand, NewWritesTheRobotsOfASeed) {
   for (const std::string format : {"json", "cbor"}) {
-    const Outcome outcome = mercury(
-        {"new", "nn", "-o", path(format), "--count", "2", "--seed", "7", "--points", "100", "--format", format});
-    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    succeeded(mercury(
+        {"new", "nn", "-o", path(format), "--count", "2", "--seed", "7", "--points", "100", "--format", format}));
     EXPECT_EQ(listing(format), (std::vector<std::string>{"nn-7-0." + format, "nn-7-1." + format}));
     const Robot robot = load_robot(path(format + "/nn-7-1." + format));
     EXPECT_EQ(robot, random_nn_robot({.points = 100}, 7, 1));
@@ -28,10 +27,8 @@ TEST_F(NnCommand, NewWritesTheRobotsOfASeed) {
 }
 
 TEST_F(NnCommand, OptionsShapeTheRobots) {
-  ASSERT_EQ(mercury({"new", "nn", "-o", path("a.json"), "--points", "200", "--hidden", "20,30", "--alpha", "0.5",
-                     "--mirrored", "1"})
-                .status,
-            0);
+  succeeded(mercury({"new", "nn", "-o", path("a.json"), "--points", "200", "--hidden", "20,30", "--alpha", "0.5",
+                     "--mirrored", "1"}));
   const NnOptions options{.hidden = {20, 30}, .points = 200, .alpha = 0.5f, .mirrored = 1};
   EXPECT_EQ(load_robot(path("a.json")), random_nn_robot(options, 1));
 }

@@ -50,8 +50,8 @@ using CrossCommand = Offspring;
 using GrowCommand = Offspring;
 
 TEST_F(MutateCommand, WritesTheChildrenOfASeed) {
-  const Outcome outcome = mercury({"mutate", path("a.json"), "-o", path("c"), "--count", "3", "--seed", "7"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome =
+      succeeded(mercury({"mutate", path("a.json"), "-o", path("c"), "--count", "3", "--seed", "7"}));
   EXPECT_EQ(listing("c"), (std::vector<std::string>{"voxel-1-0-m0.json", "voxel-1-0-m1.json", "voxel-1-0-m2.json"}));
   EXPECT_THAT(outcome.output, HasSubstr(path("c/voxel-1-0-m2.json") + "\n"));
   EXPECT_EQ(load_robot(path("c/voxel-1-0-m2.json")), mutate_robot(a_, {.seed = seed_of(7, 2)}, "voxel-1-0-m2"));
@@ -61,8 +61,7 @@ TEST_F(MutateCommand, WritesTheChildrenOfASeed) {
 TEST_F(MutateCommand, ChildrenDifferFromEachOtherAndFromTheirParent) {
   // One voxel of one muscle: a mutant is one voxel of another material, of which there are 21.
   save_robot(path("small.json"), make_voxel_robot(VoxelGrid(1, 1, 1, 5), {.name = "small"}));
-  const Outcome outcome = mercury({"mutate", path("small.json"), "-o", path("c"), "--count", "19"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(mercury({"mutate", path("small.json"), "-o", path("c"), "--count", "19"}));
   const std::set<std::uint64_t> bodies = bodies_in("c");
   EXPECT_EQ(bodies.size(), 19u);
   EXPECT_FALSE(bodies.contains(body_hash(load_robot(path("small.json")))));
@@ -78,8 +77,7 @@ TEST_F(MutateCommand, LeavesOutChildrenForWhichThereIsNoBody) {
 }
 
 TEST_F(MutateCommand, ChangesMusclesAlone) {
-  ASSERT_EQ(mercury({"mutate", path("a.json"), "-o", path("late.json"), "--strength", "0", "--muscles", "2"}).status,
-            0);
+  succeeded(mercury({"mutate", path("a.json"), "-o", path("late.json"), "--strength", "0", "--muscles", "2"}));
   const Robot late = load_robot(path("late.json"));
   EXPECT_EQ(late.name, "late");
   EXPECT_EQ(late.springs, a_.springs);
@@ -92,14 +90,13 @@ TEST_F(MutateCommand, TakesFoldersAndNames) {
   ASSERT_EQ(outcome.status, 0) << outcome.messages;
   EXPECT_EQ(listing("c"), (std::vector<std::string>{"g1-0.json", "g1-1.json", "g1-2.json", "g1-3.json"}));
   EXPECT_EQ(ancestry_of(load_robot(path("c/g1-2.json")))->parents, std::vector{b_.name});
-  ASSERT_EQ(mercury({"mutate", path("c"), "-o", path("d/"), "--format", "cbor"}).status, 0);
+  succeeded(mercury({"mutate", path("c"), "-o", path("d/"), "--format", "cbor"}));
   EXPECT_EQ(listing("d").size(), 4u);
   EXPECT_EQ(listing("d")[0], "g1-0-m0.cbor");
 }
 
 TEST_F(MutateCommand, MusclesOfRobotsThatNoGeneratorMadeChange) {
-  ASSERT_EQ(
-      mercury({"mutate", "sample:dog", "-o", path("dogs"), "--count", "3", "--seed", "7", "--muscles", "2"}).status, 0);
+  succeeded(mercury({"mutate", "sample:dog", "-o", path("dogs"), "--count", "3", "--seed", "7", "--muscles", "2"}));
   const Robot dog = load_robot(sample_or_path("sample:dog"));
   ASSERT_EQ(listing("dogs").size(), 3u);
   for (std::uint64_t i = 0; i < 3; ++i) {
@@ -159,7 +156,7 @@ TEST_F(CrossCommand, InvalidInputIsReported) {
 }
 
 TEST_F(GrowCommand, AnOriginThatNobodyEditedGivesTheSameRobot) {
-  ASSERT_EQ(mercury({"grow", path("a.json"), path("b.json"), "-o", path("c/")}).status, 0);
+  succeeded(mercury({"grow", path("a.json"), path("b.json"), "-o", path("c/")}));
   EXPECT_EQ(load_robot(path("c/voxel-1-0.json")), a_);
   EXPECT_EQ(load_robot(path("c/voxel-2-0.json")), b_);
 }
@@ -168,7 +165,7 @@ TEST_F(GrowCommand, AnEditedOriginGivesAnotherBody) {
   auto document = nlohmann::json::parse(read("a.json"));
   document["origin"] = {{"kind", "voxel"}, {"size", {2, 1, 1}}, {"edge", 0.2}, {"cells", {3, 22}}, {"note", "mine"}};
   write("a.json", document.dump());
-  ASSERT_EQ(mercury({"grow", path("a.json"), "-o", path("a.json"), "--force"}).status, 0);
+  succeeded(mercury({"grow", path("a.json"), "-o", path("a.json"), "--force"}));
   const Robot grown = load_robot(path("a.json"));
   EXPECT_EQ(grown.masses.size(), 12u);
   EXPECT_EQ(grown.name, "voxel-1-0");

@@ -78,8 +78,7 @@ TEST_F(Outputs, FullDeviceIsAFailureInOneLine) {
 TEST_F(Outputs, CsvGoesThroughAPipe) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   auto reader = std::async(std::launch::async, [this] { return read("pipe"); });
-  const Outcome outcome = mercury(run({"--csv", path("pipe")}));
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(mercury(run({"--csv", path("pipe")})));
   const std::string csv = reader.get();
   EXPECT_THAT(csv, testing::StartsWith("index,name,"));
   EXPECT_THAT(csv, HasSubstr("\n0,eel,"));
@@ -124,7 +123,7 @@ TEST_F(Outputs, OtherFilesInAFolderStay) {
   std::filesystem::create_directory(path("folder"));
   for (const char* name : {"folder/voxel-1-2.json", "folder/voxel-1-0.cbor", "folder/voxel-1-00.json", "folder/note"})
     write(name, "mine");
-  ASSERT_EQ(mercury({"new", "voxel", "--count", "2", "-o", path("folder")}).status, 0);
+  succeeded(mercury({"new", "voxel", "--count", "2", "-o", path("folder")}));
   EXPECT_EQ(listing("folder"), (std::vector<std::string>{"note", "voxel-1-0.cbor", "voxel-1-0.json", "voxel-1-00.json",
                                                          "voxel-1-1.json", "voxel-1-2.json"}));
   EXPECT_EQ(read("folder/voxel-1-2.json"), "mine");
@@ -133,7 +132,7 @@ TEST_F(Outputs, OtherFilesInAFolderStay) {
 TEST_F(Outputs, ForceReplacesFiles) {
   write("a.csv", "mine");
   write("a.h5", "mine");
-  ASSERT_EQ(mercury(run({"--csv", path("a.csv"), "--record", path("a.h5"), "--force"})).status, 0);
+  succeeded(mercury(run({"--csv", path("a.csv"), "--record", path("a.h5"), "--force"})));
   EXPECT_NE(read("a.csv"), "mine");
   EXPECT_NE(read("a.h5"), "mine");
   EXPECT_EQ(listing(), (std::vector<std::string>{"a.csv", "a.h5", "eel.json"}));
@@ -147,7 +146,7 @@ TEST_F(Outputs, InputsAndProtectedFilesStayEvenIfForced) {
   write("a.toml", "seconds = 0.01\n");
   EXPECT_THAT(refusal(run({"--config", path("a.toml"), "--csv", path("a.toml"), "--force"})),
               HasSubstr("this command reads"));
-  ASSERT_EQ(mercury(run({"--record", path("a.h5")})).status, 0);
+  succeeded(mercury(run({"--record", path("a.h5")})));
   std::filesystem::create_symlink(path("a.h5"), path("b.mp4"));
   EXPECT_THAT(refusal({"render", path("a.h5"), "-o", path("b.mp4"), "--force"}), HasSubstr("this command reads"));
   EXPECT_TRUE(is_eel("eel.json"));
@@ -165,11 +164,10 @@ TEST_F(Outputs, TwoOutputsAreTwoFiles) {
 
 TEST_F(Outputs, RobotsGoThroughLinksAndToStandardOutput) {
   std::filesystem::create_symlink(path("there.json"), path("link.json"));
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("link.json")}).status, 0);
+  succeeded(mercury({"new", "voxel", "-o", path("link.json")}));
   EXPECT_TRUE(std::filesystem::is_symlink(path("link.json")));
   EXPECT_EQ(load_robot(path("there.json")), random_voxel_robot({}, 1));
-  const Outcome printed = mercury({"new", "voxel", "-o", "-"});
-  EXPECT_EQ(printed.status, 0) << printed.messages;
+  const Outcome printed = succeeded(mercury({"new", "voxel", "-o", "-"}));
   EXPECT_EQ(parse_robot(printed.output, RobotFormat::json), random_voxel_robot({}, 1));
   const Outcome binary = mercury({"grow", path("eel.json"), "-o", "/dev/stdout", "--format", "cbor"});
   EXPECT_EQ(parse_robot(binary.output, RobotFormat::cbor), eel_);
@@ -217,7 +215,7 @@ TEST_F(Outputs, NamesOfRobotsLeadToNoOtherFolder) {
   Robot robot = eel_;
   robot.name = "../outside\n";
   save_robot(path("eel.json"), robot);
-  ASSERT_EQ(mercury({"grow", path("eel.json"), "-o", path("inside/")}).status, 0);
+  succeeded(mercury({"grow", path("eel.json"), "-o", path("inside/")}));
   EXPECT_EQ(listing("inside"), std::vector<std::string>{"_outside_.json"});
   EXPECT_EQ(listing(), (std::vector<std::string>{"eel.json", "inside"}));
 }
@@ -277,8 +275,7 @@ TEST_F(Outputs, DryRunsSayWhatWouldBeDoneAndWriteNothing) {
       {{"evolve", path("swim"), "--population", "10", "--generations", "4", "--seconds", "5"},
        {"50: 10 at first, then 10 in each of 4 generations", "5000 steps", "the folder " + path("swim")}}};
   for (const auto& [command, texts] : commands) {
-    const Outcome outcome = mercury(joined(command, {"--dry-run"}));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(mercury(joined(command, {"--dry-run"})));
     EXPECT_EQ(outcome.messages, "");
     EXPECT_THAT(outcome.output, testing::StartsWith("dry run of mercury " + command[0]));
     for (const std::string& text : texts) EXPECT_THAT(outcome.output, HasSubstr(text)) << command[0];

@@ -223,15 +223,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Program, PrintsItsVersion) {
   for (const Arguments& arguments :
        std::vector<std::vector<std::string>>{{"--version"}, {"-V"}, {"run", "-V"}, {"-V", "new", "voxel"}}) {
-    const Outcome outcome = mercury(arguments);
-    EXPECT_EQ(outcome.status, 0);
+    const Outcome outcome = succeeded(mercury(arguments));
     EXPECT_THAT(outcome.output, StartsWith("mercury "));
   }
 }
 
 TEST(Program, HelpNamesEveryCommandAndGoesToStandardOutput) {
-  const Outcome outcome = mercury({"--help"});
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(mercury({"--help"}));
   EXPECT_EQ(outcome.messages, "");
   for (const char* command : {"render", "run", "new", "info"}) EXPECT_THAT(outcome.output, HasSubstr(command));
 }
@@ -295,8 +293,7 @@ TEST(Program, HelpFitsTheTerminal) {
 
 TEST(Program, OptionsMayStandBeforeTheCommand) {
   const std::vector<std::string> usual{"run", "--random", "voxel:2", "--seed", "4", "--seconds", "0.01", "--csv", "-"};
-  const Outcome expected = mercury(usual);
-  ASSERT_EQ(expected.status, 0);
+  const Outcome expected = succeeded(mercury(usual));
   for (const Arguments& arguments : std::vector<std::vector<std::string>>{
            {"--seconds", "0.01", "run", "--random", "voxel:2", "--seed", "4", "--csv", "-"},
            {"--random", "voxel:2", "--seed=4", "-q", "--seconds", "0.01", "--csv", "-", "run"}})
@@ -393,9 +390,9 @@ TEST_F(ConfigFileTest, TyposInTablesOfOtherCommandsAreReported) {
 // Each table overrides the keys above it: [new.voxel] those of [new], and those those at the top.
 TEST_F(ConfigFileTest, TablesOfKindsOverrideThoseOfTheirCommand) {
   write("a.toml", "seed = 3\n[new]\nseed = 4\ncount = 2\n[new.voxel]\nseed = 5\nvoxels = \"2x2x2\"\n");
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("v"), "--config", path("a.toml")}).status, 0);
+  succeeded(mercury({"new", "voxel", "-o", path("v"), "--config", path("a.toml")}));
   EXPECT_EQ(listing("v"), (std::vector<std::string>{"voxel-5-0.json", "voxel-5-1.json"}));
-  ASSERT_EQ(mercury({"new", "shell", "-o", path("s"), "--config", path("a.toml")}).status, 0);
+  succeeded(mercury({"new", "shell", "-o", path("s"), "--config", path("a.toml")}));
   EXPECT_EQ(listing("s"), (std::vector<std::string>{"shell-4-0.json", "shell-4-1.json"}));
 }
 

@@ -38,8 +38,7 @@ class RenderCommand : public FolderTest {
 };
 
 TEST_F(RenderCommand, VideoHasTheRequestedFrames) {
-  const Outcome outcome = mercury(command("a.mp4", {"--fps", "20", "--seconds", "0.5"}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury(command("a.mp4", {"--fps", "20", "--seconds", "0.5"})));
   const auto stream = probe(path("a.mp4"));
   EXPECT_EQ(stream["width"], 160);
   EXPECT_EQ(stream["height"], 90);
@@ -54,18 +53,17 @@ TEST_F(RenderCommand, VideoHasTheRequestedFrames) {
 }
 
 TEST_F(RenderCommand, HeroShowsOneRobotAndCopiesBehindIt) {
-  const Outcome outcome = mercury(command("hero.png", {"--style", "hero", "--quality", "low", "--still", "0.1"}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome =
+      succeeded(mercury(command("hero.png", {"--style", "hero", "--quality", "low", "--still", "0.1"})));
   EXPECT_THAT(outcome.messages, HasSubstr("simulating 10 robots (ocean) on "));
   EXPECT_EQ(render::read_png(path("hero.png")).width, 160);
 }
 
 TEST_F(RenderCommand, FootprintsOfAStillAreThoseOfTheFilm) {
   const auto drawn = [&](const std::string& output, std::vector<std::string> more) {
-    const Outcome outcome = mercury(joined(
+    succeeded(mercury(joined(
         {"render", "sample:dog", "--size", "160x90", "--quality", "medium", "--camera", "still", "-o", path(output)},
-        more));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+        more)));
     return output.ends_with("/") ? render::Image{} : render::read_png(path(output));
   };
   // Frames at other times than those at which the ground is looked at.
@@ -90,40 +88,37 @@ TEST_F(RenderCommand, ALensIsOfAPicture) {
 }
 
 TEST_F(RenderCommand, SpeedShortensTheVideo) {
-  ASSERT_EQ(mercury(command("a.mp4", {"--fps", "20", "--seconds", "1", "--speed", "4"})).status, 0);
+  succeeded(mercury(command("a.mp4", {"--fps", "20", "--seconds", "1", "--speed", "4"})));
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "5");
 }
 
 TEST_F(RenderCommand, QuietPrintsNothing) {
-  const Outcome outcome = mercury(command("a.gif", {"--fps", "20", "--seconds", "0.1", "--quiet"}));
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(mercury(command("a.gif", {"--fps", "20", "--seconds", "0.1", "--quiet"})));
   EXPECT_EQ(outcome.messages, "");
   EXPECT_EQ(probe(path("a.gif"))["nb_read_frames"], "2");
 }
 
 TEST_F(RenderCommand, OddSizesAreRoundedUpAndReported) {
-  const Outcome outcome = mercury(command("a.webm", {"--seconds", "0.1", "--size", "161x91"}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury(command("a.webm", {"--seconds", "0.1", "--size", "161x91"})));
   EXPECT_THAT(outcome.messages, HasSubstr("needs even sides: drawn at 162x92"));
   EXPECT_EQ(probe(path("a.webm"))["width"], 162);
 }
 
 TEST_F(RenderCommand, FramesOfAFolderShowMovingRobots) {
-  ASSERT_EQ(mercury(command("frames", {"--fps", "1", "--seconds", "2"})).status, 0);
+  succeeded(mercury(command("frames", {"--fps", "1", "--seconds", "2"})));
   ASSERT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
   EXPECT_NE(read("frames/frame-00000.png"), read("frames/frame-00001.png"));
 }
 
 TEST_F(RenderCommand, SameCommandGivesTheSamePictures) {
-  ASSERT_EQ(mercury(command("a", {"--fps", "2", "--seconds", "1", "--environment", "land"})).status, 0);
-  ASSERT_EQ(mercury(command("b", {"--fps", "2", "--seconds", "1", "--environment", "land", "--threads", "1"})).status,
-            0);
+  succeeded(mercury(command("a", {"--fps", "2", "--seconds", "1", "--environment", "land"})));
+  succeeded(mercury(command("b", {"--fps", "2", "--seconds", "1", "--environment", "land", "--threads", "1"})));
   for (const std::string& frame : listing("a")) EXPECT_EQ(read("a/" + frame), read("b/" + frame)) << frame;
 }
 
 TEST_F(RenderCommand, StillShowsTheGivenTime) {
-  ASSERT_EQ(mercury(command("a.png", {"--still", "1"})).status, 0);
-  ASSERT_EQ(mercury(command("frames", {"--fps", "1", "--seconds", "2"})).status, 0);
+  succeeded(mercury(command("a.png", {"--still", "1"})));
+  succeeded(mercury(command("frames", {"--fps", "1", "--seconds", "2"})));
   const render::Image still = render::read_png(path("a.png")), frame = render::read_png(path("frames/frame-00001.png"));
   EXPECT_EQ(still.width, 160);
   EXPECT_EQ(still.height, 90);
@@ -136,7 +131,7 @@ TEST_F(RenderCommand, StillShowsTheGivenTime) {
 // On land, so that there is a shadow.
 TEST_F(RenderCommand, FiguresShowRobotsAndTheirShadowsAlone) {
   const std::vector<std::string> figure{"--background", "transparent", "--environment", "land", "--show", "skin"};
-  ASSERT_EQ(mercury(command("a.png", figure)).status, 0);
+  succeeded(mercury(command("a.png", figure)));
   const render::Image image = render::read_png(path("a.png"));
   ASSERT_EQ(image.format, render::PixelFormat::rgba);
   ASSERT_EQ(image.width, 160);
@@ -151,16 +146,16 @@ TEST_F(RenderCommand, FiguresShowRobotsAndTheirShadowsAlone) {
   EXPECT_GT(solid, 160 * 90 / 50);
   EXPECT_GT(shadow, 50);
   const Arguments tight = joined(figure, {"--tight", "--dpi", "300"});
-  ASSERT_EQ(mercury(command("b.png", tight)).status, 0);
+  succeeded(mercury(command("b.png", tight)));
   EXPECT_LT(render::read_png(path("b.png")).width, 160);
   EXPECT_NE(read("b.png").find("pHYs"), std::string::npos);
-  ASSERT_EQ(mercury(command("c.png", {"--background", "white", "--show", "skin"})).status, 0);
+  succeeded(mercury(command("c.png", {"--background", "white", "--show", "skin"})));
   const render::Image white = render::read_png(path("c.png"));
   EXPECT_EQ(white.format, render::PixelFormat::rgb);
   EXPECT_TRUE(std::all_of(white.bytes.begin(), white.bytes.begin() + 9, [](int byte) { return byte == 255; }));
-  ASSERT_EQ(mercury(command("d.svg", {"--background", "white", "--caption", "Fig. 1", "--scale-bar"})).status, 0);
+  succeeded(mercury(command("d.svg", {"--background", "white", "--caption", "Fig. 1", "--scale-bar"})));
   EXPECT_THAT(read("d.svg"), HasSubstr(">Fig. 1</text>"));
-  ASSERT_EQ(mercury(command("d.pdf", {"--background", "transparent", "--caption", "Fig. 1"})).status, 0);
+  succeeded(mercury(command("d.pdf", {"--background", "transparent", "--caption", "Fig. 1"})));
   EXPECT_TRUE(read("d.pdf").starts_with("%PDF-"));
   EXPECT_THAT(mercury(command("e.mp4", {"--background", "transparent", "--seconds", "0.1"})).messages,
               HasSubstr("--background: .mp4 has no transparency"));
@@ -186,12 +181,11 @@ TEST_F(RenderCommand, FilmsOverNothingHaveOpacities) {
   const std::vector<std::string> figure{"--background", "transparent", "--seconds", "0.1",
                                         "--fps",        "20",          "--show",    "skin"};
   constexpr std::size_t frame = 160 * 90 * 4;
-  ASSERT_EQ(mercury(command("frames", figure)).status, 0);
+  succeeded(mercury(command("frames", figure)));
   const render::Image still = render::read_png(path("frames/frame-00001.png"));
   ASSERT_EQ(still.format, render::PixelFormat::rgba);
   for (const std::string name : {"a.webm", "a.gif", "a.apng"}) {
-    const Outcome outcome = mercury(command(name, figure));
-    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    succeeded(mercury(command(name, figure)));
     const std::string frames = decoded(path(name), name == "a.webm" ? "libvpx-vp9" : "");
     ASSERT_EQ(frames.size(), 2 * frame) << name;
     double difference = 0;
@@ -199,16 +193,14 @@ TEST_F(RenderCommand, FilmsOverNothingHaveOpacities) {
       difference += std::abs(static_cast<std::uint8_t>(frames[frame + i]) - still.bytes[i]);
     EXPECT_LT(difference / (160 * 90), name == "a.apng" ? 1e-9 : 8) << name;
   }
-  ASSERT_EQ(
-      mercury(command("a.mp4", {"--background", "white", "--seconds", "0.1", "--fps", "20", "--show", "skin"})).status,
-      0);
+  succeeded(mercury(command("a.mp4", {"--background", "white", "--seconds", "0.1", "--fps", "20", "--show", "skin"})));
   const std::string white = decoded(path("a.mp4"));
   ASSERT_EQ(white.size(), 2 * frame);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_GE(static_cast<std::uint8_t>(white[i]), 253);
 }
 
 TEST_F(RenderCommand, ContactSheetHasTheRequestedWidth) {
-  ASSERT_EQ(mercury(command("a.png", {"--contact-sheet", "3x2", "--seconds", "0.5", "--size", "400x200"})).status, 0);
+  succeeded(mercury(command("a.png", {"--contact-sheet", "3x2", "--seconds", "0.5", "--size", "400x200"})));
   const render::Image sheet = render::read_png(path("a.png"));
   // Three pictures and two gaps of 4 pixels: (400 + 4) / 3 - 4 = 130 wide, half as high.
   EXPECT_EQ(sheet.width, 3 * 130 + 2 * 4);
@@ -218,10 +210,10 @@ TEST_F(RenderCommand, ContactSheetHasTheRequestedWidth) {
 TEST_F(RenderCommand, RecordingGivesThePicturesOfTheSimulation) {
   const std::vector<std::string> simulate{"--random",      "voxel:2", "--seconds", "1",
                                           "--environment", "land",    "--dt",      "0.002"};
-  ASSERT_EQ(mercury(joined({"run", "--record", path("a.h5"), "--every", "1"}, simulate)).status, 0);
-  ASSERT_EQ(mercury({"render", path("a.h5"), "-o", path("played"), "--fps", "2", "--size", "160x90"}).status, 0);
+  succeeded(mercury(joined({"run", "--record", path("a.h5"), "--every", "1"}, simulate)));
+  succeeded(mercury({"render", path("a.h5"), "-o", path("played"), "--fps", "2", "--size", "160x90"}));
   const Arguments direct = joined({"render", "-o", path("direct"), "--fps", "2", "--size", "160x90"}, simulate);
-  ASSERT_EQ(mercury(direct).status, 0);
+  succeeded(mercury(direct));
   EXPECT_EQ(listing("played"), (std::vector<std::string>{"frame-00000.png", "frame-00001.png"}));
   for (const std::string& frame : listing("direct"))
     EXPECT_EQ(read("direct/" + frame), read("played/" + frame)) << frame;
@@ -232,13 +224,13 @@ TEST_F(RenderCommand, RobotsBeginWhereTheFirstTrialOfARunDoes) {
   const std::vector<std::string> start{"--target", "0.3,0.2,0", "--target-radius", "0.6", "--turned"};
   const auto made = [&](std::vector<std::string> words, const Arguments& more) {
     for (const auto* part : {&robots, &more}) words.insert(words.end(), part->begin(), part->end());
-    ASSERT_EQ(mercury(words).status, 0);
+    succeeded(mercury(words));
   };
   const auto picture = [&](const std::string& name) {
     return std::vector<std::string>{"render", "-o", path(name), "--fps", "2", "--size", "160x90"};
   };
   made({"run", "--record", path("a.h5"), "--every", "1"}, start);
-  ASSERT_EQ(mercury({"render", path("a.h5"), "-o", path("played"), "--fps", "2", "--size", "160x90"}).status, 0);
+  succeeded(mercury({"render", path("a.h5"), "-o", path("played"), "--fps", "2", "--size", "160x90"}));
   made(picture("direct"), start);
   made(picture("elsewhere"), {"--target", "0.3,0.2,0"});
   EXPECT_EQ(read("direct/frame-00000.png"), read("played/frame-00000.png"));
@@ -256,7 +248,7 @@ TEST_F(RenderCommand, FilmsAndRecordingsHaveExactlyTheirRate) {
     return std::vector<std::string>{"render", "-o", path(name), "--size", "64x36", "--quality", "low", "--faceted"};
   };
   ASSERT_EQ(with(film_of("a.mp4")), 0);
-  ASSERT_EQ(mercury(joined(film_of("b.mp4"), {path("a.h5")})).status, 0);
+  succeeded(mercury(joined(film_of("b.mp4"), {path("a.h5")})));
   for (const char* film : {"a.mp4", "b.mp4"}) {
     const auto stream = probe(path(film));
     EXPECT_EQ(stream["r_frame_rate"], "30/1");
@@ -269,7 +261,7 @@ TEST_F(RenderCommand, FilmsAndRecordingsHaveExactlyTheirRate) {
       direct{"render", "--random", "voxel:1", "--device", "cpu", "-o", path("direct")};
   for (auto* command : {&played, &direct}) {
     command->insert(command->end(), short_film.begin(), short_film.end());
-    ASSERT_EQ(mercury(*command).status, 0);
+    succeeded(mercury(*command));
   }
   ASSERT_EQ(listing("direct").size(), 6u);
   for (const std::string& frame : listing("direct")) {
@@ -288,8 +280,7 @@ TEST_F(RenderCommand, TwoRecordingsPlaySideBySide) {
   ASSERT_EQ(record("one.h5", "voxel:1", "0.2"), 0);
   ASSERT_EQ(record("other.h5", "voxel:2:7", "0.4"), 0);
   const std::vector<std::string> sides{"render", path("one.h5"), path("other.h5"), "--size", "320x120", "--fps", "10"};
-  const Outcome outcome = mercury(joined(sides, {"-o", path("sides")}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(mercury(joined(sides, {"-o", path("sides")})));
   EXPECT_EQ(listing("sides").size(), 4u);  // as long as the longer one
   const render::Image first = render::read_png(path("sides/frame-00000.png")),
                       last = render::read_png(path("sides/frame-00003.png"));
@@ -312,10 +303,9 @@ class RenderResult : public RenderCommand {
  protected:
   // The same run as a recording (.h5) and a result (.json).
   std::string run(const std::string& name, const Arguments& robots) const {
-    const Outcome outcome = mercury(joined({"run"}, robots,
-                                           {"--seconds", "0.2", "--environment", "land", "--friction", "0.3",
-                                            "--device", "cpu", "--json", "--record", path(name + ".h5")}));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(mercury(joined({"run"}, robots,
+                                                     {"--seconds", "0.2", "--environment", "land", "--friction", "0.3",
+                                                      "--device", "cpu", "--json", "--record", path(name + ".h5")})));
     write(name + ".json", outcome.output);
     return name + ".json";
   }
@@ -345,20 +335,18 @@ TEST_F(RenderResult, IsSimulatedAgainBesideARecordingOfTheSameRun) {
     farthest = std::max(farthest, std::abs(recorded.bytes[i] - simulated.bytes[i]));
   EXPECT_LE(farthest, 2);  // positions are rounded differently
 
-  const Outcome alone = film({result, "--fps", "10"}, "alone");
-  ASSERT_EQ(alone.status, 0) << alone.messages;
+  const Outcome alone = succeeded(film({result, "--fps", "10"}, "alone"));
   EXPECT_EQ(listing("alone").size(), 2u);  // as long as the run
   EXPECT_THAT(alone.messages, HasSubstr("simulating 2 robots (land)"));
 }
 
 TEST_F(RenderResult, ItsMotionIsExported) {
   const std::string result = path(run("walk", {"--random", "voxel:2:7"}));
-  const Outcome outcome = mercury({"export", result, "-o", path("walk.html"), "--device", "cpu"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"export", result, "-o", path("walk.html"), "--device", "cpu"}));
   EXPECT_THAT(outcome.messages, HasSubstr("all final states are those of the result, bit for bit"));
   EXPECT_THAT(read("walk.html"), HasSubstr("walk.json"));
-  const Outcome table = mercury({"export", result, "-o", path("walk.csv"), "--robot", "1", "--device", "cpu"});
-  EXPECT_EQ(table.status, 0) << table.messages;
+  const Outcome table =
+      succeeded(mercury({"export", result, "-o", path("walk.csv"), "--robot", "1", "--device", "cpu"}));
   EXPECT_THAT(table.messages, HasSubstr("bit for bit"));
   // A pose needs no result: it is that of the robot's file.
   EXPECT_THAT(mercury({"export", result, "-o", path("walk.obj")}),
@@ -368,11 +356,10 @@ TEST_F(RenderResult, ItsMotionIsExported) {
 }
 
 TEST_F(RenderResult, NamesFilesThatLieBesideIt) {
-  ASSERT_EQ(mercury({"new", "voxel", "-o", path("one.json")}).status, 0);
+  succeeded(mercury({"new", "voxel", "-o", path("one.json")}));
   const std::string text = read(run("moved", {path("one.json")}));
   write("moved.json", with(text, path("one.json"), "one.json"));
-  const Outcome outcome = film({"moved.json", "--still", "0.2"}, "one.png");
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(film({"moved.json", "--still", "0.2"}, "one.png"));
   EXPECT_THAT(outcome.messages, HasSubstr("bit for bit"));
   write("gone.json", with(text, path("one.json"), "gone/one.json"));
   EXPECT_THAT(film({"gone.json"}, "gone.mp4"),
@@ -391,8 +378,7 @@ TEST_F(RenderResult, ThatEndsElsewhereIsFilmedAndSaidSo) {
   EXPECT_EQ(render::read_png(path("other.png")).width, 240);
 
   write("trials.json", with(text, "\"trials\": 1", "\"trials\": 3"));
-  const Outcome trials = film({"trials.json", "--still", "0.2"}, "trials.png");
-  EXPECT_EQ(trials.status, 0) << trials.messages;
+  const Outcome trials = succeeded(film({"trials.json", "--still", "0.2"}, "trials.png"));
   EXPECT_THAT(trials.messages,
               HasSubstr("3 trials with jitter 0; here robots begin without jitter, and are not compared"));
 }
@@ -423,12 +409,10 @@ TEST_F(RenderResult, ThatCannotBeUsedIsRefusedInOneLine) {
 
 // Three columns of one recording are the same picture three times; a run stands beside a recording.
 TEST_F(RenderCommand, RecordingsAndRunsStandSideBySide) {
-  ASSERT_EQ(mercury({"run", "--random", "voxel:1", "--seconds", "0.1", "--record", path("a.h5")}).status, 0);
+  succeeded(mercury({"run", "--random", "voxel:1", "--seconds", "0.1", "--record", path("a.h5")}));
   const std::string one = path("a.h5");
-  ASSERT_EQ(mercury({"render", one, one, one, "--size", "300x90", "--still", "0.1", "-o", path("three.png"), "--show",
-                     "skin"})
-                .status,
-            0);
+  succeeded(mercury(
+      {"render", one, one, one, "--size", "300x90", "--still", "0.1", "-o", path("three.png"), "--show", "skin"}));
   const render::Image three = render::read_png(path("three.png"));
   ASSERT_EQ(three.width, 300);
   EXPECT_EQ(columns(three, 0, 100).bytes, columns(three, 100, 100).bytes);
@@ -438,8 +422,7 @@ TEST_F(RenderCommand, RecordingsAndRunsStandSideBySide) {
   const std::vector<std::string> sides{"render", path("run"),    one,     "--size", "320x90", "--seconds",
                                        "0.1",    "--background", "white", "--show", "skin"};
   for (const Arguments& film : {Arguments{"--still", "0.1", "-o", path("both.png")}, {"-o", path("both.mp4")}}) {
-    const Outcome outcome = mercury(joined(sides, film));
-    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    succeeded(mercury(joined(sides, film)));
   }
   const render::Image both = render::read_png(path("both.png"));
   for (const int begin : {0, 160}) {
@@ -459,8 +442,7 @@ TEST_F(RenderCommand, RecordingDoesNotMixWithRobots) {
 }
 
 TEST_F(RenderCommand, EachRobotGetsAVideo) {
-  const Outcome outcome = mercury(command("a.gif", {"--each", "--seconds", "0.1", "--seed", "3"}));
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(mercury(command("a.gif", {"--each", "--seconds", "0.1", "--seed", "3"})));
   EXPECT_EQ(listing(), (std::vector<std::string>{"a-voxel-3-0.gif", "a-voxel-3-1.gif"}));
 }
 
@@ -470,8 +452,7 @@ TEST_F(RenderCommand, VideosOfRobotsWithDotsInTheirNamesKeepTheirType) {
     "masses": [[0,0,0],[1,0,0]], "springs": [[0,1,1]], "faces": []})");
   for (const auto& [output, written] : std::vector<std::pair<std::string, std::string>>{
            {"a.mp4", "a-v1.2.mp4"}, {"b.1.gif", "b.1-v1.2.gif"}, {"frames/", "frames-v1.2/"}}) {
-    const Outcome outcome = mercury({"render", path("r.json"), "--each", "-o", path(output), "--dry-run"});
-    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(mercury({"render", path("r.json"), "--each", "-o", path(output), "--dry-run"}));
     EXPECT_THAT(outcome.output, HasSubstr(path(written) + "\n"));
   }
 }
@@ -492,8 +473,7 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
                                                        {"--follow", "--azimuth", "30"}};
   std::set<std::string> pictures;
   for (const Arguments& variant : variants) {
-    const Outcome outcome = mercury(command("a.png", joined({"--still", "0.5", "--force"}, variant)));
-    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    succeeded(mercury(command("a.png", joined({"--still", "0.5", "--force"}, variant))));
     EXPECT_TRUE(pictures.insert(read("a.png")).second) << testing::PrintToString(variant);
   }
 }
@@ -501,10 +481,9 @@ TEST_F(RenderCommand, ViewOptionsChangeThePicture) {
 // A camera that stays where the start put it, when both sides are alike, is the same for one side and for two.
 TEST_F(RenderCommand, EachSideOfAComparisonIsThePictureOfItsSettings) {
   const auto picture = [this](const std::string& name, const std::string& size, std::vector<std::string> more) {
-    const Outcome outcome = mercury(
+    succeeded(mercury(
         command(name, joined(more, {"--size", size, "--fps", "2", "--seconds", "1", "--camera", "still", "--color",
-                                    "strain", "--scale", "-0.2,0.2", "--show", "skin", "--dt", "0.0005"})));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+                                    "strain", "--scale", "-0.2,0.2", "--show", "skin", "--dt", "0.0005"}))));
     return render::read_png(path(name + "/frame-00001.png"));
   };
   const render::Image both = picture("both", "320x90", {"--compare", "solver=xpbd"});
@@ -516,17 +495,15 @@ TEST_F(RenderCommand, EachSideOfAComparisonIsThePictureOfItsSettings) {
 
 TEST_F(RenderCommand, SidesOfAFilmShareCameraAndScale) {
   // Equal settings: whatever the camera and the colors do over time, both sides do it.
-  ASSERT_EQ(mercury(command("even", {"--fps", "4", "--seconds", "1", "--size", "320x90", "--color", "speed", "--show",
-                                     "skin", "--compare", "dt=0.001"}))
-                .status,
-            0);
+  succeeded(mercury(command("even", {"--fps", "4", "--seconds", "1", "--size", "320x90", "--color", "speed", "--show",
+                                     "skin", "--compare", "dt=0.001"})));
   for (const std::string& frame : listing("even")) {
     const render::Image picture = render::read_png(path("even/" + frame));
     EXPECT_EQ(columns(picture, 0, 160).bytes, columns(picture, 160, 160).bytes) << frame;
   }
   // Different settings: a film of both in one file.
-  const Outcome film = mercury(command("a.mp4", {"--fps", "20", "--seconds", "0.5", "--compare", "environment=land"}));
-  ASSERT_EQ(film.status, 0) << film.messages;
+  const Outcome film =
+      succeeded(mercury(command("a.mp4", {"--fps", "20", "--seconds", "0.5", "--compare", "environment=land"})));
   EXPECT_THAT(film.messages, HasSubstr("comparing ocean | land"));
   EXPECT_EQ(probe(path("a.mp4"))["width"], 160);
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], "10");
@@ -623,14 +600,14 @@ class RefusedVideo : public RenderCommand {
 
 TEST_F(RefusedVideo, FolderThatHoldsSomethingIsFilledOnlyWithForce) {
   const std::vector<std::string> longer{"--fps", "1", "--seconds", "3"}, shorter{"--fps", "1", "--seconds", "1"};
-  ASSERT_EQ(mercury(command("frames", longer)).status, 0);
+  succeeded(mercury(command("frames", longer)));
   const std::string last = read("frames/frame-00002.png");
   EXPECT_EQ(refusal("frames", {}),
             "mercury: -o: " + path("frames") + " is not empty; use --force to write into it, or give another folder\n");
   EXPECT_EQ(read("frames/frame-00002.png"), last);
   for (const char* name : {"frames/note", "frames/frame-1.png", "frames/frame-00007.jpg"}) write(name, "mine");
   write("frames/frame-00005.png", "of an earlier film, after a gap");
-  ASSERT_EQ(mercury(command("frames", joined(shorter, {"--force"}))).status, 0);
+  succeeded(mercury(command("frames", joined(shorter, {"--force"}))));
   EXPECT_EQ(listing("frames"), (std::vector<std::string>{"frame-00000.png", "frame-00007.jpg", "frame-1.png", "note"}));
 }
 
@@ -696,7 +673,7 @@ TEST_F(RefusedVideo, NumbersThatCannotBeUsedAreReportedBeforeAnyWork) {
 }
 
 TEST_F(RefusedVideo, WhatARecordingDoesNotHaveIsRefused) {
-  ASSERT_EQ(mercury({"run", "--random", "voxel:1", "--seconds", "0.5", "--record", path("a.h5")}).status, 0);
+  succeeded(mercury({"run", "--random", "voxel:1", "--seconds", "0.5", "--record", path("a.h5")}));
   const auto still = [&](const std::string& moment, const std::string& name) {
     return mercury({"render", path("a.h5"), "--still", moment, "--size", "160x90", "-o", path(name)});
   };

@@ -16,8 +16,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 json run_json(std::vector<std::string> arguments) {
-  const Outcome outcome = mercury(joined({"run"}, arguments, {"--json"}));
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury(joined({"run"}, arguments, {"--json"})));
   return json::parse(outcome.output, nullptr, false);
 }
 
@@ -130,7 +129,7 @@ TEST_F(RunCommand, HashesAreReproducibleWithAnyNumberOfThreads) {
 }
 
 TEST_F(RunCommand, RobotAloneEndsAsInTheGroup) {
-  ASSERT_EQ(mercury({"new", "voxel", "-o", folder_.string(), "--count", "4", "--seed", "1"}).status, 0);
+  succeeded(mercury({"new", "voxel", "-o", folder_.string(), "--count", "4", "--seed", "1"}));
   const auto group = hashes(run_json({"--random", "voxel:4", "--seed", "1", "--seconds", "0.3"}));
   EXPECT_EQ(hashes(run_json({folder_.string(), "--seconds", "0.3"})), group);
   for (const auto& [name, hash] : group) {
@@ -235,8 +234,7 @@ TEST_F(RunCommand, ResultsNameTheFileAndTheRequestOfEachRobot) {
 }
 
 TEST_F(RunCommand, TableShowsEachRobot) {
-  const Outcome outcome = mercury({"run", "--random", "voxel:2", "--seed", "9", "--seconds", "0.1"});
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(mercury({"run", "--random", "voxel:2", "--seed", "9", "--seconds", "0.1"}));
   EXPECT_THAT(outcome.output, HasSubstr("voxel-9-0"));
   EXPECT_THAT(outcome.output, HasSubstr("voxel-9-1"));
   EXPECT_THAT(outcome.output, HasSubstr("distance [m]"));
@@ -246,8 +244,7 @@ TEST_F(RunCommand, TableShowsEachRobot) {
 
 TEST_F(RunCommand, CsvHasALinePerRobot) {
   const Arguments robots{"--random", "voxel:2", "--seconds", "0.1"};
-  const Outcome outcome = mercury({"run", "--random", "voxel:2", "--seconds", "0.1", "--csv", path("a.csv")});
-  ASSERT_EQ(outcome.status, 0);
+  succeeded(mercury({"run", "--random", "voxel:2", "--seconds", "0.1", "--csv", path("a.csv")}));
   const json report = run_json(robots);
   std::istringstream csv(read("a.csv"));
   // A column for each member of the objects, with the same values.
@@ -321,8 +318,7 @@ TEST_F(RunCommand, ExplodedRobotsAreReportedAndFailOnlyWithStrict) {
         R"({"format": "mercury-robot", "version": 1, "name": "pair", "masses": [[0,0,0],[1,0,0]],
             "springs": [[0,1,1,1]], "faces": []})");
   const std::vector<std::string> unstable{"run", path("pair.json"), "--dt", "1", "--seconds", "200", "--json"};
-  const Outcome outcome = mercury(unstable);
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(mercury(unstable));
   EXPECT_THAT(outcome.messages, HasSubstr("1 of 1 robots exploded"));
   const json robot = json::parse(outcome.output, nullptr, false)["robots"][0];
   EXPECT_EQ(robot["exploded"], true);

@@ -34,8 +34,7 @@ TEST_F(RunPicture, LineageIsFilmedOneAncestorAfterTheOther) {
   const RunHistory run(path("swim"));
   const std::size_t ancestors = run.line_of(run.living().front()).size();
   ASSERT_GT(ancestors, 1u);
-  const Outcome outcome = render("swim", "a.mp4", {"--lineage", "best", "--seconds", "0.3"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(render("swim", "a.mp4", {"--lineage", "best", "--seconds", "0.3"}));
   EXPECT_EQ(probe(path("a.mp4"))["nb_read_frames"], std::to_string(3 * ancestors));
   EXPECT_THAT(outcome.messages, HasSubstr("(ocean-simple)"));  // as the run has it, not the default
 }
@@ -74,34 +73,29 @@ TEST_F(RunPicture, AncestorsAreTheFirstTheLastAndTheLargestRises) {
 TEST_F(RunPicture, GenerationsStandInARowWithTheirCaptions) {
   make_run(path("swim"), small_run());
   const RunHistory run(path("swim"));
-  const Outcome outcome = render("swim", "a.png", {"--generation", "0,3,last", "--still", "0.2"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(render("swim", "a.png", {"--generation", "0,3,last", "--still", "0.2"}));
   EXPECT_THAT(outcome.messages, HasSubstr("simulating 3 robots"));
   // A caption more or less changes the picture.
-  ASSERT_EQ(
-      render("swim", "b.png", {"--generation", "0,3,last", "--still", "0.2", "--show", "skin,path,clock,scale"}).status,
-      0);
+  succeeded(render("swim", "b.png", {"--generation", "0,3,last", "--still", "0.2", "--show", "skin,path,clock,scale"}));
   EXPECT_NE(read("a.png"), read("b.png"));
 }
 
 TEST_F(RunPicture, MapIsDrawnAsATable) {
   make_run(path("map"), small_run("map-elites"));
   const RunHistory run(path("map"));
-  const Outcome outcome = render("map", "a.png", {"--map"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(render("map", "a.png", {"--map"}));
   EXPECT_THAT(outcome.messages, HasSubstr("simulating " + std::to_string(run.living().size()) + " robot"));
   EXPECT_EQ(render::read_png(path("a.png")).width, 160);
-  ASSERT_EQ(render("map", "a.gif", {"--map", "--seconds", "0.2"}).status, 0);
+  succeeded(render("map", "a.gif", {"--map", "--seconds", "0.2"}));
   EXPECT_EQ(probe(path("a.gif"))["nb_read_frames"], "2");
 }
 
 TEST_F(RunPicture, ChampionsAreFilmedTogetherAndEachAlone) {
   make_run(path("swim"), small_run());
   const RunHistory run(path("swim"));
-  const Outcome outcome = render("swim", "a.gif", {"--best", "2", "--seconds", "0.1"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(render("swim", "a.gif", {"--best", "2", "--seconds", "0.1"}));
   EXPECT_THAT(outcome.messages, HasSubstr("simulating 2 robots"));
-  ASSERT_EQ(render("swim", "each.gif", {"--best", "2", "--seconds", "0.1", "--each"}).status, 0);
+  succeeded(render("swim", "each.gif", {"--best", "2", "--seconds", "0.1", "--each"}));
   for (const std::uint64_t id : run.living().first(2))
     EXPECT_TRUE(std::filesystem::exists(path("each-swim-" + std::to_string(id) + ".gif")));
 }
@@ -145,7 +139,7 @@ TEST_F(RunPicture, OptionsThatDoNotGoTogetherAreRefused) {
 }
 
 TEST_F(RunPicture, OptionsOfRunsNeedARun) {
-  ASSERT_EQ(mercury({"new", "voxel", "--count", "2", "-o", path("robots")}).status, 0);
+  succeeded(mercury({"new", "voxel", "--count", "2", "-o", path("robots")}));
   for (const auto& [option, value] : {std::pair{"--lineage", "best"}, {"--generation", "0"}, {"--best", "2"}})
     EXPECT_EQ(
         refusal("robots", "a.gif", {option, value}),
@@ -161,8 +155,7 @@ TEST_F(RunInfo, SummarizesTheRun) {
   make_run(path("swim"), small_run(), 4);
   const RunHistory run(path("swim"));
   const Individual& best = run.individuals()[run.living().front()];
-  const Outcome outcome = mercury({"info", path("swim")});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"info", path("swim")}));
   EXPECT_THAT(outcome.output, testing::StartsWith("swim\n"));
   EXPECT_THAT(outcome.output,
               testing::ContainsRegex("evolves +voxel robots, voxels 1x1x1..3x2x2; what changes: body\n"));
@@ -179,8 +172,7 @@ TEST_F(RunInfo, SummarizesTheRun) {
 
 TEST_F(RunInfo, ReadsARunThatIsBeingWritten) {
   RunFolder writer = RunFolder::create(path("swim"), small_run());
-  const Outcome outcome = mercury({"info", path("swim")});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"info", path("swim")}));
   EXPECT_THAT(outcome.output, testing::ContainsRegex("generations +none of 6 yet\n"));
   EXPECT_EQ(refusal("swim", "a.mp4", {}),
             "mercury: " + path("swim") + ": has no generation yet; try again when the first one is done\n");

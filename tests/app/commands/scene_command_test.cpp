@@ -96,8 +96,7 @@ TEST_F(SceneCommand, RendersAsTheSameOptionsDo) {
   const std::vector<std::string> picture{"--seconds", "0.1",      "--fps", "10", "--size",
                                          "160x120",   "--device", "cpu",   "-o"};
   const auto rendered = [&](const Arguments& arguments, const std::string& to) {
-    const Outcome run = mercury(joined(arguments, picture, {path(to)}));
-    EXPECT_EQ(run.status, 0) << run.messages;
+    const Outcome run = succeeded(mercury(joined(arguments, picture, {path(to)})));
     std::string all;
     for (const std::string& name : run.status == 0 ? listing(to) : std::vector<std::string>{})
       all += read(to + "/" + name);
@@ -111,8 +110,7 @@ TEST_F(SceneCommand, RendersAsTheSameOptionsDo) {
 }
 
 TEST_F(SceneCommand, IsDescribed) {
-  const Outcome text = mercury({"info", path("both.toml")});
-  EXPECT_EQ(text.status, 0) << text.messages;
+  const Outcome text = succeeded(mercury({"info", path("both.toml")}));
   for (const char* part : {"both.toml", "robots/0.json", "2 of kind voxel, seed 5", "land", "xpbd", "still", "strain"})
     EXPECT_THAT(text.output, HasSubstr(part));
   const auto json = nlohmann::json::parse(mercury({"info", path("both.toml"), "--json"}).output)["scenes"][0];

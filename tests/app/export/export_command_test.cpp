@@ -17,15 +17,13 @@ using testing::Not;
 class ExportCommand : public FolderTest {
  protected:
   ExportCommand() {
-    EXPECT_EQ(
-        mercury({"new", "voxel", "--count", "2", "--seed", "7", "--voxels", "2x2x2", "-o", path("robots")}).status, 0);
+    succeeded(mercury({"new", "voxel", "--count", "2", "--seed", "7", "--voxels", "2x2x2", "-o", path("robots")}));
     robot_ = path("robots/voxel-7-0.json");
   }
   std::string recording() const {
     const std::string file = path("run.h5");
-    EXPECT_EQ(mercury({"run", path("robots"), "--seconds", "0.2", "--every", "20", "--device", "cpu", "--record", file})
-                  .status,
-              0);
+    succeeded(
+        mercury({"run", path("robots"), "--seconds", "0.2", "--every", "20", "--device", "cpu", "--record", file}));
     return file;
   }
   static void refuses(const Arguments& arguments, const std::string& message) {
@@ -38,8 +36,7 @@ TEST_F(ExportCommand, ExtensionSaysTheFormatAndNamesArePrinted) {
   for (const ExportFormat& format : export_formats()) {
     if (!holds_pose(format)) continue;
     const std::string file = path("eel" + std::string(format.extension));
-    const Outcome outcome = mercury({"export", robot_, "-o", file});
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(mercury({"export", robot_, "-o", file}));
     EXPECT_EQ(outcome.output, file + "\n");
     EXPECT_TRUE(std::filesystem::exists(file));
   }
@@ -50,18 +47,15 @@ TEST_F(ExportCommand, EveryMotionFormatTakesARecording) {
   for (const ExportFormat& format : export_formats()) {
     if (!holds_motion(format)) continue;
     const std::string target = path("out/swim" + std::string(format.extension));
-    const Outcome outcome = mercury({"export", file, "--robot", "1", "--every", "2", "-o", target});
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    const Outcome outcome = succeeded(mercury({"export", file, "--robot", "1", "--every", "2", "-o", target}));
     EXPECT_EQ(outcome.output, target + "\n");
   }
 }
 
 TEST_F(ExportCommand, SeriesHasTheChosenFramesWithTheirTimes) {
   const std::string file = recording();  // frames at 0, 0.02, ..., 0.2 s
-  ASSERT_EQ(mercury({"export", file, "--robot", "voxel-7-1", "--from", "0.04", "--to", "0.17", "--every", "2", "-o",
-                     path("swim.pvd")})
-                .status,
-            0);
+  succeeded(mercury({"export", file, "--robot", "voxel-7-1", "--from", "0.04", "--to", "0.17", "--every", "2", "-o",
+                     path("swim.pvd")}));
   EXPECT_THAT(listing("swim-frames"), ElementsAre("0.vtu", "1.vtu", "2.vtu", "3.vtu"));
   const std::string list = read("swim.pvd");
   for (const char* entry : {"timestep=\"0.04\" part=\"0\" file=\"swim-frames/0.vtu\"", "timestep=\"0.08\"",
@@ -71,17 +65,17 @@ TEST_F(ExportCommand, SeriesHasTheChosenFramesWithTheirTimes) {
 
 TEST_F(ExportCommand, ShorterSeriesRemovesTheFurtherFramesOfAnEarlierOne) {
   const std::string file = recording();
-  ASSERT_EQ(mercury({"export", file, "--robot", "0", "-o", path("swim.pvd")}).status, 0);
+  succeeded(mercury({"export", file, "--robot", "0", "-o", path("swim.pvd")}));
   EXPECT_EQ(listing("swim-frames").size(), 11u);
   write("swim-frames/notes.txt", "mine");
   refuses({file, "--robot", "0", "--to", "0.02", "-o", path("swim.pvd")},
           "-o: " + path("swim.pvd") + " exists already; use --force to replace it, or give another name");
-  ASSERT_EQ(mercury({"export", file, "--robot", "0", "--to", "0.02", "--force", "-o", path("swim.pvd")}).status, 0);
+  succeeded(mercury({"export", file, "--robot", "0", "--to", "0.02", "--force", "-o", path("swim.pvd")}));
   EXPECT_THAT(listing("swim-frames"), ElementsAre("0.vtu", "1.vtu", "notes.txt"));
 }
 
 TEST_F(ExportCommand, SeveralRobotsGoIntoAFolder) {
-  ASSERT_EQ(mercury({"export", path("robots"), "--format", "stl", "-o", path("printed")}).status, 0);
+  succeeded(mercury({"export", path("robots"), "--format", "stl", "-o", path("printed")}));
   EXPECT_THAT(listing("printed"), ElementsAre("voxel-7-0.stl", "voxel-7-1.stl"));
   refuses({path("robots"), "-o", path("all.stl")},
           "-o: " + path("all.stl") +
@@ -91,12 +85,12 @@ TEST_F(ExportCommand, SeveralRobotsGoIntoAFolder) {
 
 TEST_F(ExportCommand, StillTakesThePoseOfTheNearestFrame) {
   const std::string file = recording();
-  ASSERT_EQ(mercury({"export", file, "--still", "0.111", "--robot", "0", "-o", path("still.obj")}).status, 0);
-  ASSERT_EQ(mercury({"export", file, "--still", "0.12", "--robot", "0", "-o", path("exact.obj")}).status, 0);
+  succeeded(mercury({"export", file, "--still", "0.111", "--robot", "0", "-o", path("still.obj")}));
+  succeeded(mercury({"export", file, "--still", "0.12", "--robot", "0", "-o", path("exact.obj")}));
   const auto vertices = [](const std::string& obj) { return obj.substr(obj.find("\nv ")); };
   const auto without_materials = [&](std::string obj) { return vertices(obj); };
   EXPECT_EQ(without_materials(read("still.obj")), without_materials(read("exact.obj")));
-  ASSERT_EQ(mercury({"export", robot_, "-o", path("rest.obj")}).status, 0);
+  succeeded(mercury({"export", robot_, "-o", path("rest.obj")}));
   EXPECT_NE(vertices(read("rest.obj")), vertices(read("exact.obj")));
 }
 
@@ -105,9 +99,8 @@ TEST_F(ExportCommand, RobotsAreSimulatedForAMotion) {
   const Arguments options{"--seconds", "0.1", "--dt", "0.0016666666666666668", "--device", "cpu"};
   const auto with_options = [&](const Arguments& words) { return mercury(joined(words, options)); };
   ASSERT_EQ(with_options({"run", robot_, "--every", "20", "--record", path("run.h5")}).status, 0);
-  ASSERT_EQ(mercury({"export", path("run.h5"), "-o", path("recorded.pc2")}).status, 0);
-  const Outcome outcome = with_options({"export", robot_, "-o", path("simulated.pc2")});
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(mercury({"export", path("run.h5"), "-o", path("recorded.pc2")}));
+  const Outcome outcome = succeeded(with_options({"export", robot_, "-o", path("simulated.pc2")}));
   EXPECT_EQ(outcome.output, path("simulated.pc2") + "\n");
   EXPECT_EQ(read("simulated.pc2"), read("recorded.pc2"));
   EXPECT_THAT(listing("."), Not(Contains(HasSubstr(".simulated"))));  // no recording is left
@@ -125,8 +118,7 @@ TEST_F(ExportCommand, RobotsAreSimulatedForAMotion) {
 TEST_F(ExportCommand, TheFrameRateOfASimulatedMotionIsChosen) {
   const Arguments options{"--seconds", "0.1", "--dt", "0.005", "--device", "cpu"};
   const auto exported = [&](const std::string& file, const std::string& rate) {
-    const Outcome outcome = mercury(joined({"export", robot_, "-o", path(file), "--fps", rate}, options));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    succeeded(mercury(joined({"export", robot_, "-o", path(file), "--fps", rate}, options)));
     return read(file);
   };
   const std::string steps = exported("steps.pc2", "200"), between = exported("between.pc2", "80");
@@ -209,8 +201,7 @@ TEST_F(ExportCommand, FilesAreReplacedOnlyWithForce) {
 }
 
 TEST_F(ExportCommand, DryRunWritesNothing) {
-  const Outcome outcome = mercury({"export", robot_, "-o", path("new/eel.obj"), "--dry-run"});
-  EXPECT_EQ(outcome.status, 0) << outcome.messages;
+  const Outcome outcome = succeeded(mercury({"export", robot_, "-o", path("new/eel.obj"), "--dry-run"}));
   EXPECT_THAT(outcome.output, HasSubstr("nothing was written"));
   EXPECT_THAT(outcome.output, HasSubstr("eel.mtl"));
   EXPECT_THAT(listing(), ElementsAre("robots"));

@@ -10,6 +10,7 @@
 #include "mercury/robot_file.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
+#include "tests/refusal.h"
 #include "tests/same_bits.h"
 #include "tests/sim/backend.h"
 
@@ -122,13 +123,8 @@ TEST_F(RecordedBrains, AreThereOnRequestOnly) {
   EXPECT_TRUE(reader.state(1).brains.empty());
 
   Simulation without(on_cpu(), std::vector{pair("a")});
-  try {
-    record(without, path("b.h5"), 20, 10, {.brains = true});
-    ADD_FAILURE() << "accepted";
-  } catch (const ParameterError& error) {
-    EXPECT_EQ(error.parameter(), "brains");
-    EXPECT_EQ(error.problem(), "none of the robots has a brain");
-  }
+  EXPECT_EQ(refusal<ParameterError>([&] { record(without, path("b.h5"), 20, 10, {.brains = true}); }),
+            "brains: none of the robots has a brain");
   EXPECT_THAT(listing(), testing::ElementsAre("a.h5"));
 }
 
@@ -160,7 +156,7 @@ class RunBrains : public FolderTest {
 
 TEST_F(RunBrains, AreRecordedDescribedAndVerified) {
   for (const std::vector<std::string>& rhythm : {std::vector<std::string>{"--every", "7"}, {"--fps", "130"}}) {
-    ASSERT_EQ(run({"--brains", rhythm[0], rhythm[1]}).status, 0);
+    succeeded(run({"--brains", rhythm[0], rhythm[1]}));
     const Outcome same = mercury({"verify", path("a.h5"), "--quiet"});
     EXPECT_EQ(same.status, 0) << same.output << same.messages;
     EXPECT_THAT(same.output,
@@ -174,7 +170,7 @@ TEST_F(RunBrains, AreRecordedDescribedAndVerified) {
 }
 
 TEST_F(RunBrains, AChangedSenseIsADifference) {
-  ASSERT_EQ(run({"--brains"}).status, 0);
+  succeeded(run({"--brains"}));
   {
     hdf5::prepare();
     const hdf5::Handle file(H5Fopen(path("a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT)),

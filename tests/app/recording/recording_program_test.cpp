@@ -22,9 +22,8 @@ class RunRecord : public FolderTest {
 };
 
 TEST_F(RunRecord, RecordsEveryNStepsAndTheSeed) {
-  const Outcome outcome = mercury({"run", "--random", "voxel:3", "--seed", "5", "--seconds", "0.1", "--dt", "0.002",
-                                   "--solver", "xpbd", "--record", file(), "--every", "7"});
-  ASSERT_EQ(outcome.status, 0) << outcome.messages;
+  succeeded(mercury({"run", "--random", "voxel:3", "--seed", "5", "--seconds", "0.1", "--dt", "0.002", "--solver",
+                     "xpbd", "--record", file(), "--every", "7"}));
   EXPECT_THAT(listing(), ElementsAre("a.h5"));
   const TrajectoryReader reader(file());
   ASSERT_EQ(reader.frames(), 8u);  // 0, 7, ..., 49 of 50 steps
@@ -44,7 +43,7 @@ TEST_F(RunRecord, RecordingDoesNotChangeTheRun) {
 }
 
 TEST_F(RunRecord, WithoutEveryThereAreThirtyFramesPerSecond) {
-  ASSERT_EQ(mercury({"run", "--random", "voxel", "--seconds", "1", "--dt", "0.005", "--record", file()}).status, 0);
+  succeeded(mercury({"run", "--random", "voxel", "--seconds", "1", "--dt", "0.005", "--record", file()}));
   EXPECT_EQ(TrajectoryReader(file()).every(), 7);  // 1/30 s is 6.7 steps
 }
 
