@@ -56,8 +56,7 @@ class Attachments : public test::FolderTest {
   }
   // The messages of a window that opens it.
   std::vector<std::string> messages_about(LiveScene& scene, const std::string& lines) const {
-    scene.open({scene_with(lines)});
-    scene.wait_until_done();
+    test::open_and_wait(scene, {scene_with(lines)});
     scene.frame();
     std::vector<std::string> texts;
     for (const Message& message : scene.take_messages()) texts.push_back(message.text);
@@ -80,8 +79,7 @@ TEST_F(Attachments, UndoAndRedoTakeEachOfThemAwayAndPutItBack) {
   scene.undo();
   EXPECT_THAT(texts_of(scene), ElementsAre("0:4"));
   EXPECT_EQ(scene.undo_name(), "pin a mass");
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_THAT(texts_of(scene), IsEmpty());
   EXPECT_THAT(scene.snapshot().perturbations, IsEmpty());
   scene.redo();
@@ -102,25 +100,20 @@ TEST_F(Attachments, ARobotThatComesBackHasItsPinAgain) {
   scene.remove({ids_of(scene)[0]});
   scene.wait_until_done();
   EXPECT_THAT(texts_of(scene), SizeIs(1));
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_EQ(texts_of(scene), both);
   EXPECT_THAT(scene.snapshot().perturbations, SizeIs(2));
 }
 
 TEST_F(Attachments, APinThatComesBackFromBeforeAResetHoldsItsMassWhereItIs) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   const RobotId id = ids_of(scene)[0];
-  scene.step(800);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 800);
   scene.pin({.robot = id, .index = 0, .mass = 4});
   scene.remove_attachments({id});
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   scene.undo();
-  scene.step(200);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 200);
   EXPECT_LT(length(scene.snapshot().positions_of(0)[4] - scene.document().robots[0].body.robot->masses[4]), 1e-3f);
 }
 
@@ -130,8 +123,7 @@ TEST_F(Attachments, ASceneFileKeepsThem) {
   ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
   EXPECT_THAT(read("held.toml"), HasSubstr("attach = [\n  \"0:4\",\n  \"1:3:"));
   LiveScene again(test::on_cpu());
-  again.open({path("held.toml")});
-  again.wait_until_done();
+  test::open_and_wait(again, {path("held.toml")});
   EXPECT_EQ(texts_of(again), texts_of(scene));
   EXPECT_THAT(again.take_messages(), IsEmpty());
   // The pin holds the mass where it starts, with the robot set down on the floor.
@@ -144,8 +136,7 @@ TEST_F(Attachments, ASceneFileKeepsThem) {
 // A file as the first version with attachments wrote it: it is read for ever.
 TEST_F(Attachments, AKeptSceneFileIsRead) {
   LiveScene scene(test::on_cpu());
-  scene.open({MERCURY_SCENES "/attached.toml"});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {MERCURY_SCENES "/attached.toml"});
   EXPECT_THAT(texts_of(scene), ElementsAre("0:1", "1:7:0.5,-1.25,3:40"));
 }
 
@@ -158,25 +149,18 @@ TEST_F(Attachments, ACommandNamesThem) {
 }
 
 TEST_F(Attachments, GoingBackBeforeAPinTakesItAwayAndUndoBringsItBack) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
-  scene.step(100);
-  scene.wait_until_done();
+  test::RobotScene scene(1);
+  test::step_and_wait(scene, 100);
   const double before = scene.snapshot().time;
-  scene.step(50);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 50);
   scene.pin({.robot = ids_of(scene)[0], .index = 0, .mass = 4});
-  scene.step(50);
-  scene.wait_until_done();
-  scene.seek(before);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 50);
+  test::seek_and_wait(scene, before);
   scene.go_on();
-  scene.step(10);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 10);
   EXPECT_THAT(texts_of(scene), IsEmpty());
   EXPECT_THAT(scene.snapshot().perturbations, IsEmpty());
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_THAT(texts_of(scene), ElementsAre("0:4"));
   EXPECT_THAT(scene.snapshot().perturbations, SizeIs(1));
 }
@@ -208,29 +192,24 @@ class Drives : public Attachments {
 
 TEST_F(Drives, ASceneFileKeepsThem) {
   LiveScene scene(test::on_cpu());
-  scene.open({path("fins.json"), path("fins.json")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("fins.json"), path("fins.json")});
   const std::vector<RobotId> ids = ids_of(scene);
   scene.drive_actuator(ids, "left: \"fin\"", -0.25f);
   scene.drive_actuator({ids[1]}, "tail", 1);
   ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
   LiveScene again(test::on_cpu());
-  again.open({path("held.toml")});
-  again.wait_until_done();
+  test::open_and_wait(again, {path("held.toml")});
   EXPECT_THAT(drives_of(again), ElementsAre("0:left: \"fin\":-0.25", "1:left: \"fin\":-0.25", "1:tail:1"));
   EXPECT_THAT(again.take_messages(), IsEmpty());
   // The physics has them from the first step on.
   scene.reset();
   for (LiveScene* one : {&scene, &again}) {
-    one->step(200);
-    one->wait_until_done();
+    test::step_and_wait(*one, 200);
   }
   EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), again.snapshot().positions.host()));
   LiveScene free(test::on_cpu());
-  free.open({path("fins.json"), path("fins.json")});
-  free.wait_until_done();
-  free.step(200);
-  free.wait_until_done();
+  test::open_and_wait(free, {path("fins.json"), path("fins.json")});
+  test::step_and_wait(free, 200);
   EXPECT_FALSE(same_bits(free.snapshot().positions.host(), again.snapshot().positions.host()));
   EXPECT_THAT(again.command("view").text, HasSubstr(" --drive="));
 }
@@ -268,8 +247,7 @@ class HeldNeurons : public Attachments {
   static std::vector<std::string> neurons_of(const LiveScene& scene) { return texts_of(scene, &HeldParts::neurons); }
   // Where the masses are after that many steps.
   static std::vector<Vec3> positions_after(LiveScene& scene, std::int64_t steps) {
-    scene.step(steps);
-    scene.wait_until_done();
+    test::step_and_wait(scene, steps);
     const std::span<const Vec3> positions = scene.snapshot().positions.host();
     return {positions.begin(), positions.end()};
   }
@@ -277,16 +255,14 @@ class HeldNeurons : public Attachments {
 
 TEST_F(HeldNeurons, ASceneFileKeepsThem) {
   LiveScene scene(test::on_cpu());
-  scene.open({path("thinker.json"), path("thinker.json")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("thinker.json"), path("thinker.json")});
   const std::vector<RobotId> ids = ids_of(scene);
   scene.clamp_neuron(ids[0], 1, 0.0f);
   scene.clamp_neuron(ids[1], 0, -0.25f);
   scene.clamp_neuron(ids[1], 3, 1e-3f);
   ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
   LiveScene again(test::on_cpu());
-  again.open({path("held.toml")});
-  again.wait_until_done();
+  test::open_and_wait(again, {path("held.toml")});
   EXPECT_THAT(neurons_of(again), ElementsAre("0:left: a 1:0", "1:left: a 0:-0.25", "1:motor 1:0.001"));
   EXPECT_THAT(again.take_messages(), IsEmpty());
   EXPECT_THAT(again.command("view").text, HasSubstr(" --neuron='0:left: a 1:0' "));
@@ -331,8 +307,8 @@ TEST_F(HeldNeurons, BadTextIsRefused) {
   // Other commands leave them out, and say so.
   write("held.toml",
         "format = \"mercury-scene\"\nversion = 1\nrobots = [\"thinker.json\"]\nneuron = [\"0:motor 0:0\"]\n");
-  const test::Outcome run = test::mercury({"run", path("held.toml"), "--seconds", "0.01", "--device", "cpu"});
-  EXPECT_EQ(run.status, 0);
+  const test::Outcome run =
+      test::succeeded(test::mercury({"run", path("held.toml"), "--seconds", "0.01", "--device", "cpu"}));
   EXPECT_THAT(run.messages,
               HasSubstr("held.toml: neurons that are held by hand are left out; only mercury view has them\n"));
 }

@@ -11,6 +11,7 @@
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/nap.h"
+#include "tests/refusal.h"
 #include "tests/sim/backend.h"
 
 namespace mercury {
@@ -38,11 +39,6 @@ Simulation alone(const LiveScene& scene, const Configuration& configuration) {
   return simulation;
 }
 
-void make_steps(LiveScene& scene, std::int64_t count) {
-  scene.step(count);
-  scene.wait_until_done();
-}
-
 void stiffen(LiveScene& scene, RobotId robot) {
   scene.scale_materials({robot}, {.stiffness = 1.7f, .frequency = 1.3f});
 }
@@ -56,12 +52,11 @@ class ComparisonOn : public BackendTest {
 INSTANTIATE_TEST_SUITE_P(All, ComparisonOn, every_device, BackendTest::name);
 
 TEST_P(ComparisonOn, SecondSideIsARunOfItsOwnWithThatConfiguration) {
-  LiveScene scene(options());
-  test::make_robots(scene, 3);
+  test::RobotScene scene(3, options());
   for (const char* text : {"solver=xpbd", "environment=land", "damping=0.7,density=400", "dt=0.00025"}) {
     scene.reset();
     scene.set_second(SideDifference(text));
-    make_steps(scene, 120);
+    test::step_and_wait(scene, 120);
     Simulation second = alone(scene, SideDifference(text).over(scene.configuration()));
     second.step(std::llround(scene.snapshot().time / second.configuration().dt));
     ASSERT_TRUE(scene.snapshot().second) << text;
@@ -74,9 +69,8 @@ TEST_P(ComparisonOn, SecondSideIsARunOfItsOwnWithThatConfiguration) {
 }
 
 TEST_P(ComparisonOn, BothSidesBeginInTheSameStates) {
-  LiveScene scene(options());
-  test::make_robots(scene, 2);
-  make_steps(scene, 70);
+  test::RobotScene scene(2, options());
+  test::step_and_wait(scene, 70);
   scene.set_second(SideDifference("solver=xpbd"));
   scene.wait_until_done();
   EXPECT_TRUE(second_positions(scene) == positions_of(scene.snapshot()));
@@ -87,19 +81,18 @@ TEST_P(ComparisonOn, BothSidesBeginInTheSameStates) {
   xpbd.solver = Solver::xpbd;
   both.configure(xpbd);
   both.step(50);
-  make_steps(scene, 50);
+  test::step_and_wait(scene, 50);
   EXPECT_TRUE(second_positions(scene) == positions_of(both));
   EXPECT_EQ(scene.snapshot().second->steps, scene.snapshot().steps);
 }
 
 TEST_P(ComparisonOn, GhostHasTheBitsOfTheUnchangedRobotAlone) {
-  LiveScene scene(options());
-  test::make_robots(scene, 3);
+  test::RobotScene scene(3, options());
   const std::vector<RobotId> robots = test::ids_of(scene);
-  make_steps(scene, 40);
+  test::step_and_wait(scene, 40);
   EXPECT_EQ(scene.show_ghosts({robots[1]}), 1u);
   stiffen(scene, robots[1]);
-  make_steps(scene, 60);
+  test::step_and_wait(scene, 60);
   Simulation unchanged(scene.configuration(), std::span(scene.document().find(robots[1])->body.robot.get(), 1));
   unchanged.step(100);
   EXPECT_TRUE(ghost_positions(scene) == positions_of(unchanged));
@@ -123,15 +116,14 @@ Robot thinking_robot() {
 
 TEST_P(ComparisonOn, GhostOfARobotWithAHeldNeuronHasItsWholeBrain) {
   const Robot thinker = thinking_robot();
-  LiveScene scene(options());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1, options());
   scene.add({thinker});
   const RobotId robot = test::ids_of(scene)[1];
-  make_steps(scene, 40);
+  test::step_and_wait(scene, 40);
   scene.clamp_neuron(robot, 3, 0.5f);
   scene.end_edit();
   EXPECT_EQ(scene.show_ghosts({robot}), 1u);
-  make_steps(scene, 60);
+  test::step_and_wait(scene, 60);
   Simulation held(scene.configuration(), std::span(&thinker, 1)), whole(scene.configuration(), std::span(&thinker, 1));
   held.step(40);
   held.clamp_neuron(0, 3, 0.5f);
@@ -149,14 +141,12 @@ TEST_P(ComparisonOn, GhostOfARobotWithAHeldNeuronHasItsWholeBrain) {
   EXPECT_TRUE(ghost_positions(scene) == positions_of(whole));
   EXPECT_TRUE(positions_of(held) != positions_of(whole));
   // The timeline shows it again, and undo releases it.
-  scene.seek(scene.configuration().dt * 20);
-  scene.wait_until_done();
-  scene.seek(scene.configuration().dt * 100);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, scene.configuration().dt * 20);
+  test::seek_and_wait(scene, scene.configuration().dt * 100);
   EXPECT_TRUE(now() == positions_of(held));
   scene.go_on();
   scene.undo();
-  make_steps(scene, 60);
+  test::step_and_wait(scene, 60);
   held.clamp_neuron(0, 3, std::nullopt);
   held.step(60);
   EXPECT_TRUE(now() == positions_of(held));
@@ -165,15 +155,14 @@ TEST_P(ComparisonOn, GhostOfARobotWithAHeldNeuronHasItsWholeBrain) {
 }
 
 TEST_P(ComparisonOn, GhostOfAMutantIsItsParent) {
-  LiveScene scene(options());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1, options());
   const RobotId parent = test::ids_of(scene)[0];
   scene.mutate({parent}, {.seed = 3});
   scene.wait_until_done();
   const RobotId child = test::ids_of(scene)[1];
   EXPECT_EQ(scene.show_ghosts({child}), 1u);
   EXPECT_TRUE(scene.ghosts()[0].of_parent);
-  make_steps(scene, 90);
+  test::step_and_wait(scene, 90);
   const auto first = scene.snapshot().positions_of(0);
   EXPECT_TRUE(ghost_positions(scene) == Positions(first.begin(), first.end()));
   // Once the mutant is changed, its ghost is the mutant as it was made, unless the parent is asked for.
@@ -186,12 +175,11 @@ TEST_P(ComparisonOn, GhostOfAMutantIsItsParent) {
 }
 
 TEST_P(ComparisonOn, TheTimelineShowsEveryMomentOfBothAgain) {
-  LiveScene scene(options());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2, options());
   const RobotId robot = test::ids_of(scene)[0];
-  make_steps(scene, 30);
+  test::step_and_wait(scene, 30);
   const Positions common = positions_of(scene.snapshot());
-  make_steps(scene, 10);
+  test::step_and_wait(scene, 10);
   scene.set_second(SideDifference("solver=xpbd"));
   scene.show_ghosts({robot});
   stiffen(scene, robot);
@@ -204,47 +192,42 @@ TEST_P(ComparisonOn, TheTimelineShowsEveryMomentOfBothAgain) {
     moments.push_back(
         {scene.snapshot().time, positions_of(scene.snapshot()), second_positions(scene), ghost_positions(scene)});
   };
-  make_steps(scene, 25);
+  test::step_and_wait(scene, 25);
   keep();
   Configuration configuration = scene.configuration();
   configuration.dt = 7e-4;
   scene.set_configuration(configuration);
-  make_steps(scene, 35);
+  test::step_and_wait(scene, 35);
   keep();
-  make_steps(scene, 5);
+  test::step_and_wait(scene, 5);
   scene.duplicate({robot});
-  make_steps(scene, 20);
+  test::step_and_wait(scene, 20);
   keep();
   for (const std::size_t i : {0u, 1u, 0u, 2u, 1u}) {
-    scene.seek(moments[i].time);
-    scene.wait_until_done();
+    test::seek_and_wait(scene, moments[i].time);
     EXPECT_TRUE(positions_of(scene.snapshot()) == moments[i].first) << i;
     EXPECT_TRUE(second_positions(scene) == moments[i].second) << i;
     EXPECT_TRUE(ghost_positions(scene) == moments[i].ghosts) << i;
   }
   // Before the comparison began, both sides were one.
-  scene.seek(0.03);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, 0.03);
   EXPECT_TRUE(positions_of(scene.snapshot()) == common);
   EXPECT_TRUE(second_positions(scene) == common);
   // Playing on from there comes to the same moments.
-  make_steps(scene, 35);
+  test::step_and_wait(scene, 35);
   EXPECT_TRUE(second_positions(scene) == moments[0].second);
   EXPECT_TRUE(ghost_positions(scene) == moments[0].ghosts);
 }
 
 TEST_P(ComparisonOn, AComparisonThatBeginsAtAnEarlierMomentKeepsWhatCameAfter) {
-  LiveScene scene(options());
-  test::make_robots(scene, 2);
-  make_steps(scene, 100);
+  test::RobotScene scene(2, options());
+  test::step_and_wait(scene, 100);
   const Positions end = positions_of(scene.snapshot());
-  scene.seek(0.04);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, 0.04);
   scene.set_second(SideDifference("damping=2"));
   scene.wait_until_done();
   EXPECT_TRUE(scene.snapshot().timeline.viewing);
-  scene.seek(0.1);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, 0.1);
   EXPECT_TRUE(positions_of(scene.snapshot()) == end);
   Simulation second = alone(scene, scene.configuration());
   second.step(40);
@@ -254,8 +237,7 @@ TEST_P(ComparisonOn, AComparisonThatBeginsAtAnEarlierMomentKeepsWhatCameAfter) {
 }
 
 TEST(Comparison, BothSidesAreAtTheSameStepAfterEachPause) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   scene.set_second(SideDifference("solver=xpbd"));
   scene.set_speed(unlimited_speed);
   for (int i = 0; i < 4; ++i) {
@@ -273,11 +255,10 @@ TEST(Comparison, BothSidesAreAtTheSameStepAfterEachPause) {
 }
 
 TEST(Comparison, EditsActOnBothSides) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   scene.set_second(SideDifference("damping=1"));
   const std::vector<RobotId> robots = test::ids_of(scene);
-  make_steps(scene, 20);
+  test::step_and_wait(scene, 20);
   stiffen(scene, robots[0]);
   scene.remove({robots[1]});
   Configuration configuration = scene.configuration();
@@ -290,19 +271,17 @@ TEST(Comparison, EditsActOnBothSides) {
   EXPECT_EQ(second.configuration.solver, Solver::xpbd);
   EXPECT_EQ(second.configuration.damping, 1);
   scene.undo();
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_EQ(scene.snapshot().second->robots->size(), 2u);
 }
 
 TEST(Comparison, GhostsCountNowhere) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   const std::vector<RobotId> robots = test::ids_of(scene);
-  make_steps(scene, 30);
+  test::step_and_wait(scene, 30);
   const std::vector<render::Bounds> boxes(scene.drawn().camera_boxes().begin(), scene.drawn().camera_boxes().end());
   scene.show_ghosts({robots[0]});
-  make_steps(scene, 1);
+  test::step_and_wait(scene, 1);
   EXPECT_EQ(scene.drawn().scene().ghosts.size(), 1u);
   EXPECT_EQ(scene.robot_count(), 2u);
   EXPECT_EQ(scene.entries().size(), 2u);
@@ -319,20 +298,19 @@ TEST(Comparison, GhostsCountNowhere) {
 
 // The ghost begins at the step at which its robot was made; then the robots go on without it from that step.
 TEST(Comparison, AGhostGoesWithARobotThatIsForgotten) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
-  make_steps(scene, 100);
+  test::RobotScene scene(1);
+  test::step_and_wait(scene, 100);
   scene.duplicate(test::ids_of(scene));
   scene.wait_until_done();
   const RobotId robot = test::ids_of(scene)[0], copy = test::ids_of(scene)[1];
   EXPECT_EQ(scene.show_ghosts({copy}), 1u);
-  make_steps(scene, 50);
+  test::step_and_wait(scene, 50);
   ASSERT_EQ(scene.snapshot().ghosts->robots->size(), 1u);
   scene.seek(0.09);
-  make_steps(scene, 10);
+  test::step_and_wait(scene, 10);
   ASSERT_EQ(scene.snapshot().robots->size(), 1u);
   scene.go_on();
-  make_steps(scene, 50);
+  test::step_and_wait(scene, 50);
   EXPECT_EQ(scene.snapshot().steps, 150);
   EXPECT_EQ(scene.snapshot().ghosts->robots->size(), 0u);
   ASSERT_EQ(scene.ranking().size(), 1u);
@@ -343,12 +321,11 @@ TEST(Comparison, AGhostGoesWithARobotThatIsForgotten) {
 TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
   LiveSceneOptions options = test::on_cpu();
   options.view.layout = Layout::grid;
-  LiveScene scene(options);
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1, options);
   const RobotId robot = test::ids_of(scene)[0];
   scene.show_ghosts({robot});
   stiffen(scene, robot);
-  make_steps(scene, 400);
+  test::step_and_wait(scene, 400);
   const render::Ghost& ghost = scene.drawn().scene().ghosts[0];
   EXPECT_EQ(ghost.offset, scene.drawn().offsets()[0]);
   EXPECT_EQ(ghost.positions.size(), scene.drawn().scene().positions.size());
@@ -361,12 +338,11 @@ TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
 }
 
 TEST(Comparison, SeriesAreSharedUntilTheComparisonBegins) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   const RobotId robot = test::ids_of(scene)[0];
-  make_steps(scene, 200);
+  test::step_and_wait(scene, 200);
   scene.set_second(SideDifference("solver=xpbd"));
-  make_steps(scene, 200);
+  test::step_and_wait(scene, 200);
   const Series first = scene.series(robot), second = scene.second_series(robot);
   ASSERT_EQ(first.times.size(), second.times.size());
   for (std::size_t i = 0; i < first.times.size(); ++i) {
@@ -382,8 +358,7 @@ TEST(Comparison, SeriesAreSharedUntilTheComparisonBegins) {
 TEST(Comparison, TheSettingOfTheViewIsTheSecondSide) {
   LiveSceneOptions options = test::on_cpu();
   options.view = view_settings({.compare = "solver=xpbd,damping=0.5"});
-  LiveScene scene(options);
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1, options);
   ASSERT_TRUE(scene.snapshot().second);
   EXPECT_EQ(scene.snapshot().second->configuration.solver, Solver::xpbd);
   EXPECT_THAT(scene.command().text, testing::HasSubstr("--compare=solver=xpbd,damping=0.5"));
@@ -396,10 +371,9 @@ TEST(Comparison, TheSettingOfTheViewIsTheSecondSide) {
 }
 
 TEST(Comparison, ASecondSideThatWouldHoldUpTheWindowEndsWithAMessage) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   scene.set_second(SideDifference("dt=1e-9"));
-  make_steps(scene, 3);
+  test::step_and_wait(scene, 3);
   EXPECT_FALSE(scene.snapshot().second);
   EXPECT_FALSE(scene.second()) << "the key that switches it on would be needed twice";
   const std::vector<Message> messages = scene.take_messages();
@@ -415,13 +389,9 @@ TEST(Comparison, TheCommandNamesAValueThatCannotBeUsed) {
 
 TEST(SideDifference, NamesWhatCannotBeUsed) {
   const auto problem_of = [](const char* text) {
-    try {
-      SideDifference{std::string(text)};
-      return std::string();
-    } catch (const ParameterError& error) {
-      EXPECT_EQ(error.parameter(), "compare");
-      return error.problem();
-    }
+    const std::string message = refusal<ParameterError>([&] { SideDifference{std::string(text)}; });
+    EXPECT_TRUE(message.empty() || message.starts_with("compare: ")) << message;
+    return message;
   };
   EXPECT_THAT(problem_of("solver=fast"), testing::HasSubstr("force"));
   EXPECT_THAT(problem_of("xpbd"), testing::HasSubstr("solver=xpbd"));

@@ -10,12 +10,9 @@ namespace mercury {
 namespace {
 
 using test::ids_of;
-using test::make_robots;
-using test::on_cpu;
 
 TEST(DrawnScene, BodiesChangeOnlyWhenRobotsChange) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 2);
+  test::RobotScene scene(2);
   const auto revision = scene.drawn().bodies_revision();
   scene.step(10);
   ViewSettings view = scene.view();
@@ -39,11 +36,9 @@ TEST(DrawnScene, BodiesChangeOnlyWhenRobotsChange) {
 }
 
 TEST(DrawnScene, EachRobotOfALargeGroupGlowsByItsOwnMaterials) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 120);
+  test::RobotScene scene(120);
   const auto ids = ids_of(scene);
-  scene.step(300);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 300);
   const auto revision = scene.drawn().bodies_revision();
   const render::Scene& drawn = scene.drawn().scene();
   // From the muscle law: +1 where the muscle is shortest.
@@ -78,8 +73,7 @@ TEST(DrawnScene, EachRobotOfALargeGroupGlowsByItsOwnMaterials) {
 }
 
 TEST(DrawnScene, EditReusesTheShapesOfRobotsThatStay) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 3);
+  test::RobotScene scene(3);
   const auto before = scene.hold_snapshot();
   scene.duplicate({ids_of(scene)[1]});
   scene.remove({ids_of(scene)[0]});

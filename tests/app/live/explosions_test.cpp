@@ -51,10 +51,7 @@ Robot chain(std::size_t unstable, float stiffness = 4e6f) {
   return with_unstable_spring("chain", masses, ends, unstable, stiffness);
 }
 
-void explode(LiveScene& scene) {
-  scene.step(200);
-  scene.wait_until_done();
-}
+void explode(LiveScene& scene) { test::step_and_wait(scene, 200); }
 
 TEST(LiveExplosion, UnstableSpringAmongSeparatePairsIsShown) {
   LiveScene scene(in_space());
@@ -181,8 +178,7 @@ TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   ASSERT_TRUE(scene.set_configuration(finer));
   scene.end_edit();
   scene.undo();
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   const auto stops = scene.snapshot().stops;
   const auto after = scene.exploded();
   ASSERT_THAT(after, SizeIs(1)) << "no step was made since";
@@ -197,15 +193,13 @@ TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   scene.redo();
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), IsEmpty());
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_THAT(scene.exploded(), SizeIs(1));
   // A copy is a new robot at rest. A reset removes explosions.
   scene.duplicate({ids[0]});
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), SizeIs(1));
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   EXPECT_THAT(scene.exploded(), IsEmpty());
   EXPECT_FALSE(scene.drawn().scene().placements[0].faulty);
 }

@@ -20,8 +20,7 @@ TEST_F(LiveImports, RobotsOfOtherSimulatorsAreOpenedAndTheirReportIsSummedUp) {
   write("crawler.vxa", VxaParts{}.text());
   write("bad.vxa", "<VXA/>");
   LiveScene scene(test::on_cpu());
-  scene.open({path("crawler.vxa"), path("bad.vxa")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("crawler.vxa"), path("bad.vxa")});
   EXPECT_THAT(test::names_of(scene), ElementsAre("crawler"));
   EXPECT_EQ(*scene.document().robots[0].body.robot, import_file(path("crawler.vxa")).robots.front());
   EXPECT_TRUE(scene.entries()[0].unsaved);
@@ -36,8 +35,7 @@ TEST_F(LiveImports, FoldersAreSearchedForThemToo) {
   std::filesystem::create_directories(path("evolved"));
   write("evolved/base.vxa", VxaParts{}.text());
   LiveScene scene(test::on_cpu());
-  scene.open({path("evolved")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("evolved")});
   EXPECT_THAT(test::names_of(scene), ElementsAre("base"));
 }
 

@@ -33,11 +33,9 @@ class Cells : public testing::TestWithParam<const char*> {
 
 TEST_P(Cells, ARobotThatMovesStaysAndIsPickedWhereItIsDrawn) {
   make_robots(scene_, 3);
-  scene_.step(1);
-  scene_.wait_until_done();
+  test::step_and_wait(scene_, 1);
   const Vector3 before = shown(scene_, 1), offset = scene_.drawn().offsets()[1];
-  scene_.step(2000);
-  scene_.wait_until_done();
+  test::step_and_wait(scene_, 2000);
   const Vector3 after = shown(scene_, 1);
   EXPECT_LT((after - before).xy().norm(), 1e-3f);
   EXPECT_GT((scene_.drawn().offsets()[1] - offset).norm(), 1e-3f) << "it has moved";
@@ -49,16 +47,14 @@ TEST_P(Cells, ARobotThatMovesStaysAndIsPickedWhereItIsDrawn) {
 
 TEST_P(Cells, APulledRobotFollowsTheMouseAndReturnsToItsCell) {
   make_robots(scene_, 2);
-  scene_.step(300);
-  scene_.wait_until_done();
+  test::step_and_wait(scene_, 300);
   const Vector3 cell = shown(scene_, 0);
   scene_.begin_perturbation({.robot = ids_of(scene_)[0], .index = 0, .mass = 1});
   scene_.frame();
   const Vector3 offset = scene_.drawn().offsets()[0];
   const Vector3 target = scene_.perturbation()->at + Vector3(0.4f, 0.2f, 0.1f);
   scene_.move_perturbation(target);
-  scene_.step(300);
-  scene_.wait_until_done();
+  test::step_and_wait(scene_, 300);
   EXPECT_LT((scene_.drawn().offsets()[0] - offset).norm(), 1e-5f) << "nothing is subtracted of a pull";
   EXPECT_LT((scene_.perturbation()->target - target).norm(), 1e-4f) << "the target stays under the mouse";
   EXPECT_GT((shown(scene_, 0) - cell).norm(), 1e-3f);

@@ -26,15 +26,12 @@ INSTANTIATE_TEST_SUITE_P(All, LiveOn, every_device, BackendTest::name);
 
 TEST_P(LiveOn, StepsAndEditsGiveTheStatesOfTheSimulation) {
   for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})}) {
-    LiveScene scene(options(environment));
-    test::make_robots(scene, 3);
-    scene.step(130);
-    scene.wait_until_done();
+    test::RobotScene scene(3, options(environment));
+    test::step_and_wait(scene, 130);
     const auto ids = test::ids_of(scene);
     scene.scale_materials({ids[2]}, {.stiffness = 1.25f, .frequency = 2});
     scene.remove({ids[0]});
-    scene.step(70);
-    scene.wait_until_done();
+    test::step_and_wait(scene, 70);
     Simulation simulation(options(environment).configuration, random_voxel_robots({}, 5, 3));
     simulation.step(130);
     const auto table = scene.materials(ids[2]);
@@ -46,16 +43,14 @@ TEST_P(LiveOn, StepsAndEditsGiveTheStatesOfTheSimulation) {
       EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(robot - 1), state.positions)) << robot;
       EXPECT_TRUE(std::ranges::equal(scene.snapshot().velocities_of(robot - 1), state.velocities)) << robot;
     }
-    scene.undo();
-    scene.wait_until_done();
+    test::undo_and_wait(scene);
     EXPECT_EQ(scene.snapshot().robots->size(), 3u);
     EXPECT_THAT(scene.take_messages(), testing::IsEmpty());
   }
 }
 
 TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
-  LiveScene scene(options());
-  test::make_robots(scene, 4);
+  test::RobotScene scene(4, options());
   scene.set_speed(unlimited_speed);
   scene.play();
   std::uint64_t pictures = 0;
@@ -85,20 +80,16 @@ TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
 }
 
 TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
-  LiveScene scene(options());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2, options());
   const RobotId robot = test::ids_of(scene)[1];
-  scene.step(50);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 50);
   scene.begin_perturbation({.robot = robot, .index = 1, .mass = 2}, 30);
   scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.3f, 0, 0));
-  scene.step(50);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 50);
   Configuration coarse = scene.configuration();
   coarse.dt = 0.4;
   scene.set_configuration(coarse);
-  scene.step(300);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 300);
   const auto exploded = scene.exploded();
   const auto found = std::ranges::find(exploded, robot, &ExplodedRobot::robot);
   ASSERT_NE(found, exploded.end());
@@ -108,8 +99,7 @@ TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
                                  scene.snapshot().positions_of(index).end());
   scene.remove({robot});
   scene.wait_until_done();
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   const auto back = scene.exploded();
   const auto again = std::ranges::find(back, robot, &ExplodedRobot::robot);
   ASSERT_NE(again, back.end());
@@ -119,16 +109,13 @@ TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
 }
 
 TEST_P(LiveOn, APushAddsItsVelocityToAllRobotsOnce) {
-  LiveScene scene(options());
-  test::make_robots(scene, 2);
-  scene.step(50);
-  scene.wait_until_done();
+  test::RobotScene scene(2, options());
+  test::step_and_wait(scene, 50);
   const std::vector<Telemetry> before = scene.snapshot().telemetry;
   EXPECT_FALSE(scene.push({NAN, 0, 0}));
   ASSERT_TRUE(scene.push({3, 0, -1}));
   EXPECT_EQ(scene.undo_name(), "change parameters");
-  scene.step(3);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 3);
   const std::vector<Telemetry> after = scene.snapshot().telemetry;
   // What forces did meanwhile is little: no robot reaches 0.3 m/s in three steps.
   for (std::size_t i = 0; i < 2; ++i) {

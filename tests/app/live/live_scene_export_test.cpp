@@ -39,8 +39,7 @@ class LiveExport : public test::FolderTest {
 };
 
 TEST_F(LiveExport, PoseIsThatOfTheSnapshot) {
-  scene_.step(50);
-  scene_.wait_until_done();
+  test::step_and_wait(scene_, 50);
   ASSERT_EQ(scene_.snapshot().steps, 50);
   ASSERT_TRUE(scene_.export_pose(robot_, path("new/robot.stl")).ok());
   const std::string stl = read("new/robot.stl");

@@ -72,8 +72,7 @@ TEST_F(LiveFiles, OpensReadableFilesAndReportsTheOthers) {
   write("broken.json", "{");
   write("run.h5", "");
   LiveScene scene(test::on_cpu());
-  scene.open({folder_, path("missing.json"), path("run.h5")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {folder_, path("missing.json"), path("run.h5")});
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-1-1", "voxel-1-0"));
   EXPECT_FALSE(scene.entries()[0].unsaved);
   EXPECT_EQ(scene.entries()[1].file, path("b.json"));
@@ -85,21 +84,17 @@ TEST_F(LiveFiles, OpensReadableFilesAndReportsTheOthers) {
 }
 
 TEST_F(LiveFiles, PlaysARecordingAloneAndOpensItsRobotsAtRestBesideOthers) {
-  const test::Outcome run = test::mercury(
-      {"run", "--random", "voxel:2:5", "--seconds", "0.1", "--device", "cpu", "--record", path("swim.h5"), "--quiet"});
-  ASSERT_EQ(run.status, 0) << run.messages;
+  test::succeeded(test::mercury(
+      {"run", "--random", "voxel:2:5", "--seconds", "0.1", "--device", "cpu", "--record", path("swim.h5"), "--quiet"}));
   LiveScene scene(test::on_cpu());
-  scene.open({path("swim.h5")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("swim.h5")});
   EXPECT_TRUE(scene.snapshot().timeline.recording);
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1"));
   EXPECT_THAT(scene.take_messages().at(0).text, HasSubstr("2 robots, recorded on"));
   scene.clear();
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   save_robot(path("other.json"), random_voxel_robot({}, 1, 0));
-  scene.open({path("swim.h5"), path("other.json")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("swim.h5"), path("other.json")});
   EXPECT_FALSE(scene.snapshot().timeline.recording);
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1", "voxel-1-0"));
   EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
@@ -121,9 +116,8 @@ TEST_F(LiveFiles, DroppedFilesAreOpenedOrReported) {
   write("scene.toml", "dt = 0.01\n");
   write("cut.cbor", read("many/two.cbor").substr(0, 100));
   LiveScene scene(test::on_cpu());
-  scene.open({path("a b%20\xc3\xa9 '#?.json"), folder_ / "many", folder_ / "empty", path("picture.png"),
-              path("scene.toml"), path("cut.cbor")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("a b%20\xc3\xa9 '#?.json"), folder_ / "many", folder_ / "empty", path("picture.png"),
+                              path("scene.toml"), path("cut.cbor")});
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-1-0", "voxel-1-1", "voxel-1-2"));
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(4));
@@ -131,24 +125,21 @@ TEST_F(LiveFiles, DroppedFilesAreOpenedOrReported) {
   EXPECT_THAT(messages[1].text, HasSubstr("picture.png"));
   EXPECT_THAT(messages[2].text, HasSubstr("scene.toml: is not a scene: format = \"mercury-scene\" is missing"));
   EXPECT_THAT(messages[3].text, HasSubstr("cut.cbor"));
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_THAT(scene.entries(), IsEmpty()) << "one drop is one edit";
 }
 
 TEST_F(LiveFiles, ManyUnreadableFilesMakeFewMessages) {
   for (int i = 0; i < 30; ++i) write("broken-" + std::to_string(i) + ".json", "{");
   LiveScene scene(test::on_cpu());
-  scene.open({folder_});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {folder_});
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(4));
   EXPECT_EQ(messages[3].text, "and 27 more files cannot be used");
 }
 
 TEST_F(LiveFiles, SavesTheChangedRobotAndReplacesFilesOnlyOnRequest) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   const auto ids = test::ids_of(scene);
   scene.scale_materials({ids[0]}, {.stiffness = 2});
   scene.rename(ids[0], "strong/one");
@@ -223,8 +214,7 @@ TEST_F(LiveFiles, CommandMakesTheSameScene) {
 }
 
 TEST_F(LiveFiles, CommandNotesWhatItCannotExpress) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   scene.mutate({test::ids_of(scene)[0]}, {});
   scene.wait_until_done();
   scene.scale_materials({test::ids_of(scene)[1]}, {.frequency = 2});
@@ -238,10 +228,8 @@ TEST_F(LiveFiles, CommandNotesWhatItCannotExpress) {
 }
 
 TEST_F(LiveFiles, StepsGiveTheHashesOfTheRunCommand) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
-  scene.step(700);
-  scene.wait_until_done();
+  test::RobotScene scene(2);
+  test::step_and_wait(scene, 700);
   const test::Outcome run =
       test::mercury({"run", "--random", "voxel:2:5", "--seconds", "0.7", "--device", "cpu", "--json", "--quiet"});
   const auto report = nlohmann::json::parse(run.output);

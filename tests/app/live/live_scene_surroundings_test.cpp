@@ -26,21 +26,17 @@ Configuration on_land(const LiveScene& scene, Solver solver) {
 }
 
 TEST(LiveScene, RobotsThatComeToLandAreSetDownAtRestAndUndoTakesThemBack) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 3);
-  scene.step(400);
-  scene.wait_until_done();
+  test::RobotScene scene(3);
+  test::step_and_wait(scene, 400);
   const auto swimming = scene.hold_snapshot();
   EXPECT_TRUE(scene.set_configuration(on_land(scene, Solver::xpbd)));
   EXPECT_EQ(scene.undo_name(), "move to land");
   scene.wait_until_done();
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(lowest(scene.snapshot(), i), 0, 1e-5);
   for (const Vec3 velocity : scene.snapshot().velocities) EXPECT_EQ(velocity, Vec3{});
-  scene.step(200);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 200);
   const auto crawling = scene.hold_snapshot();
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_EQ(scene.configuration().solver, Solver::force);
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions.host(), swimming->positions.host()));
   EXPECT_EQ(scene.snapshot().velocities, swimming->velocities);
@@ -52,48 +48,38 @@ TEST(LiveScene, RobotsThatComeToLandAreSetDownAtRestAndUndoTakesThemBack) {
 
 // Springs of 5,000 N/m and more explode on land, where they are 200 times as stiff: dt must stay below 2 / sqrt(k n).
 TEST(LiveScene, UndoOfAMoveToLandMakesExplodedRobotsWhole) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   scene.scale_materials(ids_of(scene), {.stiffness = 100});
   scene.end_edit();
-  scene.step(100);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 100);
   const auto swimming = scene.hold_snapshot();
   ASSERT_FALSE(scene.entries()[0].exploded);
   scene.set_configuration(on_land(scene, Solver::force));
-  scene.step(100);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 100);
   ASSERT_TRUE(scene.entries()[0].exploded);
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_FALSE(scene.entries()[0].exploded);
   EXPECT_THAT(scene.exploded(), testing::IsEmpty());
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions.host(), swimming->positions.host()));
   // With XPBD they survive, and an explosion after that is seen again.
   scene.set_configuration(on_land(scene, Solver::xpbd));
-  scene.step(500);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 500);
   EXPECT_FALSE(scene.entries()[0].exploded);
 }
 
 TEST(LiveScene, APinHoldsAMassAndFollowsAReset) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   const RobotId id = ids_of(scene).front();
-  scene.step(500);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 500);
   const Vec3 place = scene.snapshot().positions_of(0)[4];
   scene.pin({.robot = id, .index = 0, .mass = 4});
   EXPECT_TRUE(scene.has_attachments({id}));
-  scene.step(1500);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 1500);
   // Forces on a mass are some 10 N, the pin is 0.2 / dt^2 = 200 kN/m.
   EXPECT_LT(length(scene.snapshot().positions_of(0)[4] - place), 1e-3f);
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   scene.frame();
-  scene.step(1500);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 1500);
   EXPECT_LT(length(scene.snapshot().positions_of(0)[4] - scene.document().robots[0].body.robot->masses[4]), 1e-3f);
   scene.remove_attachments({id});
   EXPECT_FALSE(scene.has_attachments({id}));
@@ -101,8 +87,7 @@ TEST(LiveScene, APinHoldsAMassAndFollowsAReset) {
 }
 
 TEST(LiveScene, AnAttachedSpringGoesOnPulling) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   const RobotId id = ids_of(scene).front();
   const Vec3 start = scene.snapshot().telemetry[0].center_of_mass;
   scene.begin_perturbation({.robot = id, .index = 0, .mass = 4});
@@ -111,8 +96,7 @@ TEST(LiveScene, AnAttachedSpringGoesOnPulling) {
   scene.attach_perturbation();
   EXPECT_FALSE(scene.perturbation());
   ASSERT_THAT(scene.attachments(), testing::SizeIs(1));
-  scene.step(3000);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 3000);
   // Drag opposes it, and a spring of rest length 0 that is not in the way ends at its target.
   EXPECT_GT(scene.snapshot().telemetry[0].center_of_mass.x - start.x, 0.5f);
   scene.remove({id});
@@ -121,8 +105,7 @@ TEST(LiveScene, AnAttachedSpringGoesOnPulling) {
 }
 
 TEST(LiveScene, AChildOfTwoIsTheCrossoverOfItsSeed) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   const std::vector<RobotId> parents = ids_of(scene);
   scene.breed(parents[0], parents[1], 9);
   scene.wait_until_done();

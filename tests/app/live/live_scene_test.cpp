@@ -15,7 +15,6 @@ namespace mercury {
 namespace {
 
 using test::ids_of;
-using test::make_robots;
 using test::names_of;
 using test::on_cpu;
 using testing::ElementsAre;
@@ -24,8 +23,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 TEST(LiveScene, RandomRobotsAreThoseOfTheirSeed) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 3);
+  test::RobotScene scene(3);
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1", "voxel-5-2"));
   EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
   EXPECT_EQ(scene.snapshot().robots->size(), 3u);
@@ -34,17 +32,14 @@ TEST(LiveScene, RandomRobotsAreThoseOfTheirSeed) {
 }
 
 TEST(LiveScene, UndoAndRedoRestoreTheStateBitForBit) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 3);
-  scene.step(50);
-  scene.wait_until_done();
+  test::RobotScene scene(3);
+  test::step_and_wait(scene, 50);
   const auto before = scene.hold_snapshot();
   scene.remove({ids_of(scene)[1]});
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().robots->size(), 2u);
   EXPECT_EQ(scene.undo_name(), "remove 1 robot");
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions.host(), before->positions.host()));
   EXPECT_EQ(scene.snapshot().velocities, before->velocities);
   EXPECT_EQ(scene.snapshot().time, before->time);
@@ -52,18 +47,15 @@ TEST(LiveScene, UndoAndRedoRestoreTheStateBitForBit) {
   scene.wait_until_done();
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-2"));
   scene.undo();
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_THAT(scene.entries(), IsEmpty());
   EXPECT_FALSE(scene.can_undo());
   EXPECT_TRUE(scene.can_redo());
 }
 
 TEST(LiveScene, DuplicateStartsAtRestWithItsOwnName) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 1);
-  scene.step(80);
-  scene.wait_until_done();
+  test::RobotScene scene(1);
+  test::step_and_wait(scene, 80);
   scene.duplicate(ids_of(scene));
   scene.wait_until_done();
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-0-2"));
@@ -73,8 +65,7 @@ TEST(LiveScene, DuplicateStartsAtRestWithItsOwnName) {
 }
 
 TEST(LiveScene, ChildOfASymmetricRobotIsSymmetricAndDiffersFromIt) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 1);
+  test::RobotScene scene(1);
   const MutationRequest mutation{.strength = 10, .seed = 3};
   scene.mutate(ids_of(scene), mutation);
   scene.wait_until_done();
@@ -128,8 +119,7 @@ TEST(LiveScene, SavedRobotBecomesUnsavedWhenItChanges) {
 }
 
 TEST(LiveScene, ParametersActAtOnceAndADragIsOneUndo) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 1);
+  test::RobotScene scene(1);
   Configuration configuration = scene.configuration();
   for (int i = 1; i <= 10; ++i) {
     configuration.damping = 0.1 * i;
@@ -154,16 +144,14 @@ TEST(LiveScene, ParametersActAtOnceAndADragIsOneUndo) {
 }
 
 TEST(LiveScene, TunedMaterialsActAsInTheSimulation) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 2);
+  test::RobotScene scene(2);
   const auto ids = ids_of(scene);
   scene.scale_materials({ids[0]}, {.stiffness = 2, .amplitude = 0.5f, .frequency = 3, .phase = 0.1f});
   Material material = scene.materials(ids[0])[1];
   EXPECT_EQ(material.stiffness, 2 * default_materials()[1].stiffness);
   material.phase = 1;
   EXPECT_TRUE(scene.set_material({ids[0]}, 1, material));
-  scene.step(100);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 100);
   Simulation simulation(on_cpu().configuration, random_voxel_robots({}, 5, 2));
   const auto table = scene.materials(ids[0]);
   for (std::size_t id = 1; id < table.size(); ++id) simulation.set_material(0, static_cast<MaterialId>(id), table[id]);
@@ -182,11 +170,9 @@ TEST(LiveScene, WatchedBrainIsThatOfTheSimulation) {
   const Robot hunter = load_robot(sample_or_path("sample:hunter"));
   LiveSceneOptions options = on_cpu();
   options.configuration.environment.target = {-2, 3, 0};
-  LiveScene scene(options);
-  make_robots(scene, 1);
+  test::RobotScene scene(1, options);
   scene.add({hunter});
-  scene.step(150);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 150);
   EXPECT_FALSE(scene.snapshot().brain.has_value());
   scene.watch_brain(ids_of(scene)[1]);
   scene.wait_until_done();
@@ -204,8 +190,7 @@ TEST(LiveScene, WatchedBrainIsThatOfTheSimulation) {
 }
 
 TEST(LiveScene, SelectionKeepsItsOrderAndForgetsRemovedRobots) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 3);
+  test::RobotScene scene(3);
   const auto ids = ids_of(scene);
   scene.select(ids[2]);
   scene.select(ids[0], false);
@@ -239,8 +224,7 @@ TEST(LiveScene, SpeedStepsAreOneTwoFiveUpToUnlimited) {
 }
 
 TEST(LiveScene, PerturbationShowsTheForceOfItsSpring) {
-  LiveScene scene(on_cpu());
-  make_robots(scene, 4);
+  test::RobotScene scene(4);
   const std::size_t last = 3;
   const RobotId id = ids_of(scene)[last];
   const render::Vector3 offset = scene.drawn().offsets()[last];
@@ -253,8 +237,7 @@ TEST(LiveScene, PerturbationShowsTheForceOfItsSpring) {
   EXPECT_NEAR(scene.perturbation()->force, 30 * 0.5f, 1e-4f);
   EXPECT_LT((scene.perturbation()->target - target).norm(), 1e-6f);
   // The perturbation is the only outer force but for the drag of the water, which is small after two steps.
-  scene.step(2);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 2);
   Vec3 momentum;
   for (const Vec3 v : scene.snapshot().velocities_of(last)) momentum += v;
   EXPECT_NEAR(momentum.y, 2e-3f * 30 * 0.3f, 1e-3f);

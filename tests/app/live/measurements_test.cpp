@@ -169,10 +169,8 @@ TEST(Measurements, ExplodedRobotsRankLast) {
 }
 
 TEST(LiveMeasures, RankingAndTablesHoldTheValuesOfTheSimulation) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 3);
-  scene.step(500);
-  scene.wait_until_done();
+  test::RobotScene scene(3);
+  test::step_and_wait(scene, 500);
   const auto rows = scene.ranking();
   ASSERT_EQ(rows.size(), 3u);
   Simulation simulation(test::on_cpu().configuration, random_voxel_robots({}, 5, 3));

@@ -35,10 +35,8 @@ std::optional<double> crossing(const render::Ray& ray, const Vector3d& a, const 
 }
 
 TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 6);
-  scene.step(200);
-  scene.wait_until_done();
+  test::RobotScene scene(6);
+  test::step_and_wait(scene, 200);
   const Snapshot& snapshot = scene.snapshot();
   Random random(1);
   int met = 0;
@@ -98,8 +96,7 @@ TEST(LivePicking, HitsNoWreck) {
   ViewSettings view = scene.view();
   view.shown.springs = view.shown.masses = true;
   scene.set_view(view);
-  scene.step(400);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 400);
   ASSERT_TRUE(scene.snapshot().telemetry[0].exploded);
   const Vector3 mass = Vector3(scene.snapshot().positions_of(0)[0]) + scene.drawn().offsets()[0];
   ASSERT_TRUE(mass.is_finite());
@@ -142,8 +139,7 @@ TEST(LivePicking, HitsSpringsWithinTheRadiusAndReportsTheirForce) {
 }
 
 TEST(LivePicking, IgnoresHiddenRobotsAndPartsCutAway) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   const render::Bounds box = scene.drawn().bounds()[0];
   const render::Ray ray{.origin = box.center() + Vector3(0, 0, 5), .direction = {0, 0, -1}};
   const auto hit = scene.pick(ray);

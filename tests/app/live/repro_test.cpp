@@ -12,6 +12,7 @@
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
+#include "tests/refusal.h"
 
 namespace mercury {
 namespace {
@@ -25,10 +26,7 @@ class LiveRepro : public test::FolderTest {
  protected:
   // All kinds of changes that a user can make, then a time step that lets the robot explode.
   static void torment(LiveScene& scene, RobotId robot) {
-    const auto step = [&](std::int64_t count) {
-      scene.step(count);
-      scene.wait_until_done();
-    };
+    const auto step = [&](std::int64_t count) { test::step_and_wait(scene, count); };
     step(40);
     const std::size_t index = *scene.snapshot().robots->index_of(robot);
     scene.begin_perturbation({.robot = robot, .index = index, .mass = 3}, 40);
@@ -73,10 +71,8 @@ class LiveRepro : public test::FolderTest {
 
 TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
   for (const Environment& environment : {Environment(Ocean{}), Environment(Land{})}) {
-    LiveScene scene(test::on_cpu(environment));
-    test::make_robots(scene, 1);
-    scene.step(25);
-    scene.wait_until_done();
+    test::RobotScene scene(1, test::on_cpu(environment));
+    test::step_and_wait(scene, 25);
     test::make_robots(scene, 2, 9);  // added while the scene is running
     const RobotId robot = ids_of(scene)[1];
     torment(scene, robot);
@@ -89,8 +85,8 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
     EXPECT_EQ(scene.save_repro(robot, folder_ / folder).outcome, SaveResult::Outcome::exists);
 
     const std::string file = path(folder + "/voxel-9-0.repro");
-    const test::Outcome run = test::mercury({"run", file, "--device", "cpu", "--threads", "1", "--json", "--quiet"});
-    ASSERT_EQ(run.status, 0) << run.messages;
+    const test::Outcome run =
+        test::succeeded(test::mercury({"run", file, "--device", "cpu", "--threads", "1", "--json", "--quiet"}));
     const auto reported = nlohmann::json::parse(run.output)["robots"][0];
     EXPECT_TRUE(reported["exploded"]);
     EXPECT_EQ(reported["exploded_at"].get<double>(), it->time);
@@ -98,18 +94,15 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
     EXPECT_EQ(reported["hash"], hash_of(scene, robot)) << "frozen in the same state";
 
     // In the window, twice: a reset returns to the start of the repro.
-    LiveScene again(test::on_cpu());
-    test::make_robots(again, 1);
+    test::RobotScene again(1);
     again.step(10);
     again.play();
-    again.open({file});
-    again.wait_until_done();
+    test::open_and_wait(again, {file});
     EXPECT_FALSE(again.playing()) << "it waits before the explosion";
     EXPECT_EQ(test::names_of(again), std::vector<std::string>{"voxel-9-0"});
     EXPECT_NEAR(again.snapshot().time, 0.025, 1e-12);
     for (int round = 0; round < 2; ++round) {
-      again.step(scene.snapshot().steps - again.snapshot().steps);
-      again.wait_until_done();
+      test::step_and_wait(again, scene.snapshot().steps - again.snapshot().steps);
       ASSERT_THAT(again.exploded(), SizeIs(1));
       EXPECT_EQ(again.exploded()[0].time, it->time);
       EXPECT_EQ(again.exploded()[0].spring->index, it->spring->index);
@@ -117,8 +110,7 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
       // Saving it again gives the same file.
       ASSERT_TRUE(again.save_repro(ids_of(again)[0], folder_ / "again", true).ok());
       EXPECT_TRUE(content("again/voxel-9-0.repro") == content(folder + "/voxel-9-0.repro"));
-      again.reset();
-      again.wait_until_done();
+      test::reset_and_wait(again);
       EXPECT_NEAR(again.snapshot().time, 0.025, 1e-12);
       EXPECT_THAT(again.exploded(), IsEmpty());
     }
@@ -126,25 +118,21 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
 }
 
 TEST_F(LiveRepro, ChangeInTheWindowEndsTheReplay) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   torment(scene, ids_of(scene)[0]);
   ASSERT_TRUE(scene.save_repro(ids_of(scene)[0], folder_).ok());
   LiveScene again(test::on_cpu());
-  again.open({path("voxel-5-0.repro")});
-  again.wait_until_done();
+  test::open_and_wait(again, {path("voxel-5-0.repro")});
   EXPECT_FALSE(again.entries()[0].unsaved);
   again.scale_materials(ids_of(again), {.stiffness = 0.5f});
-  again.step(400);
-  again.wait_until_done();
+  test::step_and_wait(again, 400);
   EXPECT_THAT(again.exploded(), IsEmpty()) << "the recorded change of the time step is not applied";
   EXPECT_EQ(again.snapshot().configuration.dt, 1e-3);
   EXPECT_EQ(again.save_repro(ids_of(again)[0], folder_, true).outcome, SaveResult::Outcome::failed);
   // A repro cannot be opened together with other files; they are opened without it.
   save_robot(path("one.json"), random_voxel_robot({}, 1, 0));
   again.take_messages();
-  again.open({path("voxel-5-0.repro"), path("one.json")});
-  again.wait_until_done();
+  test::open_and_wait(again, {path("voxel-5-0.repro"), path("one.json")});
   EXPECT_THAT(again.entries(), SizeIs(2));
   const auto messages = again.take_messages();
   ASSERT_THAT(messages, SizeIs(1));
@@ -187,18 +175,13 @@ TEST_F(LiveRepro, StartsSomeSecondsBeforeTheExplosionAfterALongRun) {
 }
 
 TEST_F(LiveRepro, InvalidReproIsReportedInOneLine) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   torment(scene, ids_of(scene)[0]);
   ASSERT_TRUE(scene.save_repro(ids_of(scene)[0], folder_).ok());
   const std::string whole = read("voxel-5-0.repro");
   const auto refused = [](const std::string& document) {
-    try {
-      parse_repro(document);
-    } catch (const InputError& error) {
-      return std::string(error.what()).find('\n') == std::string::npos;
-    }
-    return false;
+    const std::string message = refusal([&] { parse_repro(document); });
+    return !message.empty() && message.find('\n') == std::string::npos;
   };
   for (std::size_t size = 0; size + 2 < whole.size(); size += whole.size() / 40)
     EXPECT_TRUE(refused(whole.substr(0, size))) << size;

@@ -137,8 +137,7 @@ TEST_F(SceneText, EveryLookAndCameraComesBack) {
 
 TEST_F(SceneText, RobotsComeBackInTheirOrder) {
   LiveScene scene(test::on_cpu(Land{.friction = 0.4f}));
-  scene.open({path("eel.json")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("eel.json")});
   scene.generate({.count = 2, .seed = 4});  // a changed robot follows, so a seed cannot name them
   scene.wait_until_done();
   Robot mine = random_voxel_robot({}, 9);
@@ -168,8 +167,7 @@ TEST_F(SceneText, RobotsComeBackInTheirOrder) {
 
   LiveScene other(test::on_cpu());
   test::make_robots(other, 1, 20);
-  other.open({file});
-  other.wait_until_done();
+  test::open_and_wait(other, {file});
   EXPECT_EQ(names_of(other), names_of(scene));
   EXPECT_EQ(other.configuration(), scene.configuration());
   EXPECT_EQ(other.view().color->key, "strain");
@@ -190,13 +188,11 @@ TEST_F(SceneText, RobotsComeBackInTheirOrder) {
 }
 
 TEST_F(SceneText, OneThatCannotBeUsedIsReportedInOneLineAndChangesNothing) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   write("bad.toml", "format = \"mercury-scene\"\nversion = 1\nrobots = [\"missing.json\"]\n");
   write("worse.toml", "format = \"mercury-scene\"\nversion = 1\ndt = -1\n");
   for (const char* name : {"bad.toml", "worse.toml"}) {
-    scene.open({path(name)});
-    scene.wait_until_done();
+    test::open_and_wait(scene, {path(name)});
     const std::vector<Message> messages = scene.take_messages();
     ASSERT_EQ(messages.size(), 1u);
     EXPECT_EQ(messages[0].severity, Severity::error);

@@ -50,11 +50,6 @@ void expect_shown(const LiveScene& scene, const Moment& moment) {
   EXPECT_TRUE(same_bits(scene.snapshot().velocities, moment.velocities)) << "velocities at " << moment.time << " s";
 }
 
-void make_steps(LiveScene& scene, std::int64_t count) {
-  scene.step(count);
-  scene.wait_until_done();
-}
-
 class TimelineOn : public BackendTest {
  protected:
   LiveSceneOptions options(Environment environment = Ocean{}) const {
@@ -65,34 +60,34 @@ class TimelineOn : public BackendTest {
     const auto keep = [&] { moments_.push_back(moment_of(scene)); };
     test::make_robots(scene, 3);
     const std::vector<RobotId> robots = test::ids_of(scene);
-    make_steps(scene, 40);
+    test::step_and_wait(scene, 40);
     keep();
     scene.begin_perturbation({.robot = robots[0], .index = 0, .mass = 2}, 30);
     scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.3f, 0, 0));
-    make_steps(scene, 25);
+    test::step_and_wait(scene, 25);
     keep();
     scene.move_perturbation(scene.perturbation()->at + render::Vector3(0, 0.4f, 0));
-    make_steps(scene, 10);
+    test::step_and_wait(scene, 10);
     scene.end_perturbation();
     Configuration configuration = scene.configuration();
     configuration.dt = 7e-4;
     configuration.damping = 0.4;
     scene.set_configuration(configuration);
-    make_steps(scene, 30);
+    test::step_and_wait(scene, 30);
     keep();
     Material stiff = scene.materials(robots[1])[3];
     stiff.stiffness *= 2;
     scene.set_material({robots[1]}, 3, stiff);
-    make_steps(scene, 20);
+    test::step_and_wait(scene, 20);
     keep();
-    make_steps(scene, 5);
+    test::step_and_wait(scene, 5);
     scene.remove({robots[2]});
-    make_steps(scene, 20);
+    test::step_and_wait(scene, 20);
     keep();
-    make_steps(scene, 5);
+    test::step_and_wait(scene, 5);
     scene.undo();
     scene.duplicate({robots[0]});
-    make_steps(scene, 35);
+    test::step_and_wait(scene, 35);
     keep();
   }
   std::vector<Moment> moments_;
@@ -105,8 +100,7 @@ TEST_P(TimelineOn, EveryMomentIsShownAgainBitForBit) {
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
   EXPECT_EQ(scene.snapshot().timeline.begin, 0);
   for (const std::size_t i : {4u, 0u, 2u, 5u, 1u, 3u, 3u, 0u, 4u}) {
-    scene.seek(moments_[i].time);
-    scene.wait_until_done();
+    test::seek_and_wait(scene, moments_[i].time);
     EXPECT_EQ(scene.snapshot().timeline.viewing, i != 5);
     EXPECT_EQ(scene.snapshot().timeline.head, moments_[5].time);
     expect_shown(scene, moments_[i]);
@@ -118,26 +112,24 @@ TEST_P(TimelineOn, EveryMomentIsShownAgainBitForBit) {
 TEST_P(TimelineOn, PlayingFromThePastRepeatsTheChangesAndReturnsToThePresent) {
   LiveScene scene(options()), uninterrupted(options());
   make_history(scene);
-  scene.seek(moments_[0].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments_[0].time);
   for (std::size_t i = 1; i < moments_.size(); ++i) {
-    make_steps(scene, moments_[i].steps - moments_[i - 1].steps);
+    test::step_and_wait(scene, moments_[i].steps - moments_[i - 1].steps);
     expect_shown(scene, moments_[i]);
   }
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
-  make_steps(scene, 50);
+  test::step_and_wait(scene, 50);
   moments_.clear();
   make_history(uninterrupted);
-  make_steps(uninterrupted, 50);
+  test::step_and_wait(uninterrupted, 50);
   expect_shown(scene, moment_of(uninterrupted));
 }
 
 TEST_P(TimelineOn, RobotsThatWereAllRemovedDoNotComeBackToThePresent) {
-  LiveScene scene(options());
-  test::make_robots(scene, 2);
-  make_steps(scene, 20);
+  test::RobotScene scene(2, options());
+  test::step_and_wait(scene, 20);
   const Moment earlier = moment_of(scene);
-  make_steps(scene, 20);
+  test::step_and_wait(scene, 20);
   const std::vector<RobotId> robots = test::ids_of(scene);
   scene.remove(robots);
   scene.wait_until_done();
@@ -147,8 +139,7 @@ TEST_P(TimelineOn, RobotsThatWereAllRemovedDoNotComeBackToThePresent) {
                                                 [&] { scene.step(100); }};
   for (std::size_t i = 0; i < ways.size(); ++i) {
     SCOPED_TRACE(i);
-    scene.seek(earlier.time);
-    scene.wait_until_done();
+    test::seek_and_wait(scene, earlier.time);
     expect_shown(scene, earlier);
     EXPECT_EQ(moment_of(scene).robots, robots);
     ways[i]();
@@ -157,22 +148,19 @@ TEST_P(TimelineOn, RobotsThatWereAllRemovedDoNotComeBackToThePresent) {
     expect_shown(scene, present);
     EXPECT_EQ(moment_of(scene).robots, present.robots);
   }
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_EQ(moment_of(scene).robots, robots);
   EXPECT_EQ(scene.snapshot().steps, 40);
   scene.seek(earlier.time);
-  scene.seek(present.time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, present.time);
   EXPECT_EQ(moment_of(scene).robots, robots);
 }
 
 TEST_P(TimelineOn, StepsBackAreThoseForward) {
-  LiveScene scene(options(Land{}));
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2, options(Land{}));
   std::map<std::int64_t, Moment> moments;
   for (int i = 0; i < 20; ++i) {
-    make_steps(scene, 1);
+    test::step_and_wait(scene, 1);
     moments[scene.snapshot().steps] = moment_of(scene);
   }
   for (std::int64_t step = 19; step > 10; --step) {
@@ -192,8 +180,7 @@ TEST_P(TimelineOn, StepsBackAreThoseForward) {
 TEST_P(TimelineOn, GoingOnForgetsWhatCameLater) {
   LiveScene scene(options());
   make_history(scene);
-  scene.seek(moments_[1].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments_[1].time);
   scene.go_on();
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
@@ -201,12 +188,10 @@ TEST_P(TimelineOn, GoingOnForgetsWhatCameLater) {
   expect_shown(scene, moments_[1]);
   EXPECT_EQ(scene.configuration(), moments_[1].configuration) << "the document has the parameters of that moment";
   EXPECT_EQ(test::ids_of(scene), moments_[1].robots);
-  scene.seek(moments_[5].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments_[5].time);
   expect_shown(scene, moments_[1]);
   EXPECT_EQ(scene.undo_name(), "go back to 0.065 s");
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_EQ(scene.configuration(), moments_[5].configuration);
   EXPECT_EQ(test::ids_of(scene), moments_[5].robots);
 }
@@ -214,8 +199,7 @@ TEST_P(TimelineOn, GoingOnForgetsWhatCameLater) {
 TEST_P(TimelineOn, AnEditInThePastGoesOnFromThere) {
   LiveScene scene(options());
   make_history(scene);
-  scene.seek(moments_[2].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments_[2].time);
   Configuration configuration = scene.configuration();
   configuration.damping = 2;
   scene.set_configuration(configuration);
@@ -224,8 +208,7 @@ TEST_P(TimelineOn, AnEditInThePastGoesOnFromThere) {
   expect_shown(scene, moments_[2]);
   EXPECT_EQ(scene.configuration().damping, 2);
   EXPECT_EQ(test::ids_of(scene), moments_[2].robots);
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_EQ(scene.configuration(), moments_[2].configuration);
 }
 
@@ -234,7 +217,7 @@ TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
   std::vector<Moment> moments;
   for (LiveScene* one : {&scene, &free}) {
     test::make_robots(*one, 2);
-    make_steps(*one, 30);
+    test::step_and_wait(*one, 30);
   }
   const std::vector<RobotId> robots = test::ids_of(scene);
   const auto drives = [&] {
@@ -245,22 +228,20 @@ TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
   moments.push_back(moment_of(scene));
   scene.drive_actuator(robots, name, 0.8f);
   scene.end_edit();
-  make_steps(scene, 30);
-  make_steps(free, 30);
+  test::step_and_wait(scene, 30);
+  test::step_and_wait(free, 30);
   moments.push_back(moment_of(scene));
   EXPECT_FALSE(same_bits(scene.snapshot().positions.host(), free.snapshot().positions.host()));
   scene.drive_actuator(robots, name, {});
   scene.end_edit();
   EXPECT_FALSE(drives()) << "released";
-  make_steps(scene, 30);
+  test::step_and_wait(scene, 30);
   moments.push_back(moment_of(scene));
   for (const std::size_t i : {0, 2, 1}) {
-    scene.seek(moments[i].time);
-    scene.wait_until_done();
+    test::seek_and_wait(scene, moments[i].time);
     expect_shown(scene, moments[i]);
   }
-  scene.seek(moments[2].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments[2].time);
   scene.undo();
   ASSERT_TRUE(drives());
   EXPECT_EQ(drives()->front(), 0.8f);
@@ -269,8 +250,7 @@ TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
   scene.redo();
   ASSERT_TRUE(drives());
   // At an earlier moment, the document takes the drives of that moment before the next edit.
-  scene.seek(moments[0].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments[0].time);
   scene.go_on();
   EXPECT_FALSE(drives());
 }
@@ -278,19 +258,18 @@ TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
 TEST_P(TimelineOn, AForkMovesAsItsOriginalUntilItIsChanged) {
   LiveScene scene(options());
   make_history(scene);
-  scene.seek(moments_[1].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments_[1].time);
   const RobotId original = test::ids_of(scene)[1];
   const std::vector<RobotId> copies = scene.fork({original});
   ASSERT_EQ(copies.size(), 1u);
-  make_steps(scene, 60);
+  test::step_and_wait(scene, 60);
   const Snapshot& snapshot = scene.snapshot();
   const auto a = snapshot.robots->index_of(original), b = snapshot.robots->index_of(copies[0]);
   ASSERT_TRUE(a && b);
   EXPECT_TRUE(std::ranges::equal(snapshot.positions_of(*a), snapshot.positions_of(*b)));
   EXPECT_EQ(snapshot.steps, moments_[1].steps + 60);
   scene.scale_materials(copies, {.stiffness = 0.5f});
-  make_steps(scene, 60);
+  test::step_and_wait(scene, 60);
   EXPECT_FALSE(std::ranges::equal(scene.snapshot().positions_of(*a), scene.snapshot().positions_of(*b)));
 }
 
@@ -310,8 +289,7 @@ TEST_P(TimelineOn, ALoopPlaysBetweenItsEnds) {
   }
   scene.pause();
   scene.set_loop({});
-  scene.seek(moments_[5].time);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moments_[5].time);
   expect_shown(scene, moments_[5]);
 }
 
@@ -331,8 +309,7 @@ TEST_P(TimelineOn, ResetBeginsTheTimelineAgain) {
   LiveScene scene(options());
   make_history(scene);
   scene.seek(moments_[2].time);
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   EXPECT_EQ(scene.snapshot().steps, 0);
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
   EXPECT_EQ(scene.snapshot().timeline.head, 0);
@@ -343,32 +320,28 @@ TEST_P(TimelineOn, PathsEndWhereTheRobotsWereAtTheMomentShown) {
   current.flow = {0.5f, 0, 0};
   LiveSceneOptions wanted = options(current);
   wanted.view.shown.path = true;
-  LiveScene scene(wanted);
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1, wanted);
   const auto points = [&] { return scene.drawn().scene().paths[0].points; };
   std::vector<float> earlier;
   double moment = 0;
   for (int i = 0; i < 40; ++i) {
-    make_steps(scene, 100);
+    test::step_and_wait(scene, 100);
     if (i != 19) continue;
     earlier.assign(points().begin(), points().end());
     moment = scene.snapshot().time;
   }
   const std::vector<float> whole(points().begin(), points().end());
   ASSERT_GT(whole.size(), earlier.size()) << "the robot has moved";
-  scene.seek(moment);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moment);
   scene.frame();
   EXPECT_TRUE(std::ranges::equal(points(), earlier));
-  scene.seek(scene.snapshot().timeline.head);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, scene.snapshot().timeline.head);
   scene.frame();
   EXPECT_TRUE(std::ranges::equal(points(), whole));
   // What came later is forgotten when the robot goes on from an earlier moment.
-  scene.seek(moment);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, moment);
   scene.go_on();
-  make_steps(scene, 1);
+  test::step_and_wait(scene, 1);
   EXPECT_TRUE(std::ranges::equal(points().first(earlier.size()), earlier));
   EXPECT_LE(points().size(), earlier.size() + 3);
 }
@@ -384,10 +357,7 @@ class PlayedRecording : public test::FolderTest, public testing::WithParamInterf
     Simulation simulation({.environment = Land{}, .device = {.kind = GetParam()}}, robots_);
     test::record(simulation, path("walk.h5"), 100, 10);
   }
-  void open(LiveScene& scene) {
-    scene.open({path("walk.h5")});
-    scene.wait_until_done();
-  }
+  void open(LiveScene& scene) { test::open_and_wait(scene, {path("walk.h5")}); }
   std::vector<Robot> robots_;
 };
 INSTANTIATE_TEST_SUITE_P(All, PlayedRecording, every_device, BackendTest::name);
@@ -400,13 +370,11 @@ TEST_P(PlayedRecording, ShowsItsFramesAndStraightLinesBetween) {
   EXPECT_TRUE(has_ground(scene.configuration().environment));
   TrajectoryReader reader(path("walk.h5"));
   for (const std::size_t frame : {3u, 10u, 0u, 7u}) {
-    scene.seek(reader.time(frame));
-    scene.wait_until_done();
+    test::seek_and_wait(scene, reader.time(frame));
     EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions.host(), reader.positions(frame)));
     EXPECT_EQ(scene.snapshot().steps, reader.step(frame));
   }
-  scene.seek((reader.time(3) + reader.time(4)) / 2);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, (reader.time(3) + reader.time(4)) / 2);
   const std::vector<Vec3> before(reader.positions(3).begin(), reader.positions(3).end());
   const auto after = reader.positions(4);
   for (std::size_t i = 0; i < before.size(); ++i)
@@ -421,14 +389,13 @@ TEST_P(PlayedRecording, GoesOnFromAFrameAsTheRobotsDid) {
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().timeline.recording);
   EXPECT_EQ(scene.snapshot().steps, 40);
-  make_steps(scene, 210);
+  test::step_and_wait(scene, 210);
   Simulation simulation({.environment = Land{}, .device = {.kind = GetParam()}}, robots_);
   simulation.step(250);
   std::vector<Vec3> positions(simulation.mass_count());
   simulation.read_positions(positions);
   EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), positions));
-  scene.seek(0.04);
-  scene.wait_until_done();
+  test::seek_and_wait(scene, 0.04);
   EXPECT_EQ(scene.snapshot().steps, 40) << "the live run has a timeline of its own";
 }
 
@@ -438,8 +405,7 @@ TEST_P(PlayedRecording, ShowsTheSensesAndNeuronsOfTheWatchedRobotAndGoesOnWithTh
   Simulation simulation(configuration, robots);
   test::record(simulation, path("think.h5"), 100, 10, {.brains = true});
   LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
-  scene.open({path("think.h5")});
-  scene.wait_until_done();
+  test::open_and_wait(scene, {path("think.h5")});
   const std::vector<RobotId> ids = test::ids_of(scene);
   scene.watch_brain(ids[0]);  // it has none
   scene.wait_until_done();
@@ -466,7 +432,7 @@ TEST_P(PlayedRecording, ShowsTheSensesAndNeuronsOfTheWatchedRobotAndGoesOnWithTh
 
   scene.seek(0.05);
   scene.go_on();
-  make_steps(scene, 100);
+  test::step_and_wait(scene, 100);
   EXPECT_FALSE(scene.snapshot().brain_history);
   simulation.step(50);
   EXPECT_EQ(scene.snapshot().brain->neurons, simulation.brain_state(1).neurons) << "as if it had not been recorded";
@@ -480,17 +446,15 @@ TEST_P(PlayedRecording, UndoBringsBackTheSceneAndItsClock) {
   LiveScene scene(options), uninterrupted(options);
   for (LiveScene* one : {&scene, &uninterrupted}) {
     test::make_robots(*one, 2);
-    make_steps(*one, 70);
+    test::step_and_wait(*one, 70);
   }
   open(scene);
-  scene.seek(0.045);
-  scene.wait_until_done();
-  scene.undo();
-  scene.wait_until_done();
+  test::seek_and_wait(scene, 0.045);
+  test::undo_and_wait(scene);
   EXPECT_FALSE(scene.snapshot().timeline.recording);
   EXPECT_EQ(scene.snapshot().steps, 70);
   EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), uninterrupted.snapshot().positions.host()));
-  for (LiveScene* one : {&scene, &uninterrupted}) make_steps(*one, 30);
+  for (LiveScene* one : {&scene, &uninterrupted}) test::step_and_wait(*one, 30);
   EXPECT_TRUE(same_bits(scene.snapshot().positions.host(), uninterrupted.snapshot().positions.host()));
 }
 
@@ -506,11 +470,9 @@ TEST_P(PlayedRecording, PlaysToItsEndAndPausesThere) {
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().steps, 100);
   EXPECT_TRUE(scene.snapshot().timeline.recording);
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   EXPECT_EQ(scene.snapshot().steps, 0);
-  scene.step();
-  scene.wait_until_done();
+  test::step_and_wait(scene);
   EXPECT_EQ(scene.snapshot().steps, 10) << "a step is a frame";
   scene.step_back();
   scene.wait_until_done();

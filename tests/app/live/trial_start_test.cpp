@@ -48,11 +48,6 @@ std::vector<float> distances_in(const LiveScene& scene, Vec3 from = target) {
   return distances;
 }
 
-void make_steps(LiveScene& scene, std::int64_t count) {
-  scene.step(count);
-  scene.wait_until_done();
-}
-
 class StartOn : public BackendTest {
  protected:
   LiveSceneOptions options(const TrialStart& start, Environment environment = Ocean{}) const {
@@ -71,10 +66,9 @@ TEST_P(StartOn, RobotsAreAroundTheTargetAtTheStartAndAfterAReset) {
     if (has_ground(environment)) {
       EXPECT_NEAR(std::ranges::min(start, {}, &Vec3::z).z, 0, 1e-6);
     }
-    make_steps(scene, 150);
+    test::step_and_wait(scene, 150);
     EXPECT_FALSE(same_bits(positions_of(scene), start));
-    scene.reset();
-    scene.wait_until_done();
+    test::reset_and_wait(scene);
     EXPECT_EQ(scene.snapshot().steps, 0);
     EXPECT_TRUE(same_bits(positions_of(scene), start));
   }
@@ -86,39 +80,35 @@ TEST_P(StartOn, TheTimelineShowsTheStartAndAllAfterIt) {
   test::make_robots(scene, 2);
   std::vector<std::vector<Vec3>> played{positions_of(scene)};
   for (int k = 0; k < 3; ++k) {
-    make_steps(scene, 100);
+    test::step_and_wait(scene, 100);
     played.push_back(positions_of(scene));
   }
   for (const std::size_t k : {std::size_t{0}, std::size_t{2}, std::size_t{1}, std::size_t{3}}) {
-    scene.seek(0.1 * static_cast<double>(k));
-    scene.wait_until_done();
+    test::seek_and_wait(scene, 0.1 * static_cast<double>(k));
     EXPECT_EQ(scene.snapshot().steps, 100 * static_cast<std::int64_t>(k));
     EXPECT_TRUE(same_bits(positions_of(scene), played[k])) << k;
   }
   scene.reset();
-  make_steps(scene, 200);
+  test::step_and_wait(scene, 200);
   EXPECT_TRUE(same_bits(positions_of(scene), played[2]));
 }
 
 TEST_P(StartOn, AChangeActsAtOnceAtTimeZeroAndElseAfterAReset) {
-  LiveScene scene(options({}));
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1, options({}));
   const std::vector<Vec3> rest = positions_of(scene);
   ASSERT_TRUE(scene.set_start(around(0.6)));
   scene.wait_until_done();
   EXPECT_THAT(distances_in(scene), ElementsAre(FloatNear(0.6f, 1e-5f)));
   EXPECT_EQ(scene.undo_name(), "change the start");
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_TRUE(same_bits(positions_of(scene), rest));
   scene.redo();
-  make_steps(scene, 100);
+  test::step_and_wait(scene, 100);
   const std::vector<Vec3> later = positions_of(scene);
   ASSERT_TRUE(scene.set_start(around(0.9)));
   scene.wait_until_done();
   EXPECT_TRUE(same_bits(positions_of(scene), later));
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   EXPECT_THAT(distances_in(scene), ElementsAre(FloatNear(0.9f, 1e-5f)));
   TrialStart bad = around(0.6);
   bad.trials.target_spread = 2;
@@ -141,9 +131,8 @@ TEST_P(StartOn, ATargetThatIsMovedByHandStaysThere) {
   const Vec3 apart = scene.snapshot().second->positions.host()[0] - start[0];
   EXPECT_EQ(apart.x, 0);
   EXPECT_EQ(apart.y, 0);
-  make_steps(scene, 100);
-  scene.reset();
-  scene.wait_until_done();
+  test::step_and_wait(scene, 100);
+  test::reset_and_wait(scene);
   EXPECT_EQ(scene.configuration().environment.target, (Vec3{-2, 1, 0}));
   EXPECT_THAT(distances_in(scene, {-2, 1, 0}), ElementsAre(FloatNear(0.6f, 1e-5f)));
 }
@@ -156,12 +145,11 @@ TEST_P(StartOn, RobotsThatComeLaterAndTheSecondSideBeginThereToo) {
   scene.wait_until_done();
   ASSERT_TRUE(scene.snapshot().second);
   EXPECT_TRUE(same_bits(scene.snapshot().second->positions.host(), start));
-  make_steps(scene, 100);
+  test::step_and_wait(scene, 100);
   scene.add({*scene.document().robots.front().body.robot});
   scene.wait_until_done();
   EXPECT_TRUE(same_bits(std::span<const Vec3>(positions_of(scene)).subspan(start.size()), start));
-  scene.reset();
-  scene.wait_until_done();
+  test::reset_and_wait(scene);
   EXPECT_TRUE(same_bits(scene.snapshot().second->positions.host().first(start.size()), start));
 }
 
@@ -176,8 +164,7 @@ class Start : public test::FolderTest {
   // The first frame of a recording by the program.
   std::vector<Vec3> recorded(const test::Arguments& words) {
     const std::vector<std::string> record{"--record", path("first.h5"), "--seconds", "0.01", "--device=cpu", "--force"};
-    const test::Outcome outcome = test::mercury(test::joined(words, record));
-    EXPECT_EQ(outcome.status, 0) << outcome.messages;
+    test::succeeded(test::mercury(test::joined(words, record)));
     TrajectoryReader reader(path("first.h5"));
     const std::span<const Vec3> positions = reader.positions(0);
     return {positions.begin(), positions.end()};
@@ -191,8 +178,7 @@ TEST_F(Start, AScenesRobotsBeginWhereTheWindowsDidInEveryCommand) {
     const std::vector<Vec3> start = positions_of(scene);
     ASSERT_TRUE(scene.save_scene(path("around.toml"), true).ok());
     LiveScene again(test::on_cpu());
-    again.open({path("around.toml")});
-    again.wait_until_done();
+    test::open_and_wait(again, {path("around.toml")});
     EXPECT_EQ(again.start(), scene.start());
     EXPECT_TRUE(same_bits(positions_of(again), start));
     EXPECT_TRUE(same_bits(recorded({"run", path("around.toml")}), start));
@@ -236,12 +222,12 @@ TEST_F(Start, PinsHoldMassesWhereTheyBegin) {
   scene.hold_opened({.attached = {{.robot = 0, .mass = 2, .spring = {}}}});
   test::make_robots(scene, 1);
   const Vec3 start = positions_of(scene)[2];
-  make_steps(scene, 500);
+  test::step_and_wait(scene, 500);
   EXPECT_LT(length(positions_of(scene)[2] - start), 0.02f);
 }
 
 TEST_F(Start, TheWindowRefusesToBeginARecordingElsewhere) {
-  ASSERT_EQ(test::mercury({"run", "--random", "voxel:1", "--seconds", "0.01", "--record", path("a.h5")}).status, 0);
+  test::succeeded(test::mercury({"run", "--random", "voxel:1", "--seconds", "0.01", "--record", path("a.h5")}));
   for (const test::Arguments& option :
        {std::vector<std::string>{"--target-radius", "1"}, std::vector<std::string>{"--turned"}}) {
     const test::Outcome outcome = test::mercury(test::joined({"view", path("a.h5")}, option));

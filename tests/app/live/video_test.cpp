@@ -80,8 +80,7 @@ TEST_F(LiveVideo, FailedRecordingReportsWhyAndCanceledOneLeavesNoFile) {
 }
 
 TEST_F(LiveVideo, GroupVideoIsMadeWhileTheSceneContinues) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 2);
+  test::RobotScene scene(2);
   scene.step(10);
   const auto video = scene.export_video({.output = path("group.mp4"),
                                          .size = {160, 90},
@@ -113,8 +112,7 @@ TEST_F(LiveVideo, APictureHasThePixelsOfTheCommands) {
     ViewSettings view = scene.view();
     view.layout = Layout::grid;
     scene.set_view(view);
-    scene.open({robot});
-    scene.wait_until_done();
+    test::open_and_wait(scene, {robot});
     ASSERT_EQ(scene.entries().size(), 1u);
     const auto as_window = [&](const std::string& name, bool hero, float aperture) {
       const auto picture = scene.export_video({.output = path(name),

@@ -131,11 +131,9 @@ TEST(CarriedState, MassesGoOnWhereTheyAreAndNewOnesMoveWithTheirNeighbors) {
 }
 
 TEST(LiveScene, AnEditedBodyGoesOnWhereItIsAndUndoBringsTheOldOneBack) {
-  LiveScene scene(test::on_cpu());
-  test::make_robots(scene, 1);
+  test::RobotScene scene(1);
   const RobotId id = test::ids_of(scene).front();
-  scene.step(300);
-  scene.wait_until_done();
+  test::step_and_wait(scene, 300);
   const auto before = scene.hold_snapshot();
   const Robot robot = *scene.document().robots[0].body.robot;
   ASSERT_TRUE(scene.has_voxels(id));
@@ -152,8 +150,7 @@ TEST(LiveScene, AnEditedBodyGoesOnWhereItIsAndUndoBringsTheOldOneBack) {
     EXPECT_EQ(scene.snapshot().positions_of(0)[static_cast<std::size_t>(same - edited.masses.begin())],
               before->positions_of(0)[i]);
   }
-  scene.undo();
-  scene.wait_until_done();
+  test::undo_and_wait(scene);
   EXPECT_EQ(*scene.document().robots[0].body.robot, robot);
   for (std::size_t i = 0; i < robot.masses.size(); ++i)
     EXPECT_LT(length(scene.snapshot().positions_of(0)[i] - before->positions_of(0)[i]), 1e-5f);
