@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders a frame of a robot's motion with Cycles: under water, sunlit, framed by the camera.
 
-    mercury run squid.json --seconds 7 --record squid.h5
-    mercury export squid.h5 -o squid.pc2
-    blender --background --python render_motion.py -- squid.pc2 --frame 190 -o squid.png
+    mercury run sample:ray --seconds 4 --record ray.h5
+    mercury export ray.h5 -o ray.pc2
+    blender --background --python render_motion.py -- ray.pc2 --frame 100 -o ray.png
 
-squid.pc2 moves the vertices of squid.obj, which lies beside it. Save the scene with --save squid.blend and open it in
+ray.pc2 moves the vertices of ray.obj, which lies beside it. Save the scene with --save ray.blend and open it in
 Blender to change it, or to render all frames.
 """
 
@@ -32,6 +32,11 @@ def arguments():
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
 
 
+# A soft, slightly wet skin; the second names are those of Blender 4.
+WET = {"Roughness": 0.38, "Specular": 0.4, "Specular IOR Level": 0.4, "Clearcoat": 0.25, "Coat Weight": 0.25,
+       "Clearcoat Roughness": 0.2, "Coat Roughness": 0.2}
+
+
 def robot_of(cache):
     """The mesh with its point cache: z is up in both, and vertex i of the mesh is point i of the cache."""
     bpy.ops.wm.obj_import(filepath=os.path.splitext(cache)[0] + ".obj", forward_axis="Y", up_axis="Z")
@@ -42,14 +47,13 @@ def robot_of(cache):
     modifier.frame_start = 0
     for polygon in robot.data.polygons:
         polygon.use_smooth = True
-    robot.data.use_auto_smooth = True
-    robot.data.auto_smooth_angle = math.radians(40)
-    for slot in robot.material_slots:  # soft, slightly wet
+    round_off = robot.modifiers.new("Round", "SUBSURF")  # as Mercury draws skins
+    round_off.levels = round_off.render_levels = 2
+    for slot in robot.material_slots:
         skin = slot.material.node_tree.nodes["Principled BSDF"].inputs
-        skin["Roughness"].default_value = 0.38
-        skin["Specular"].default_value = 0.4
-        skin["Clearcoat"].default_value = 0.25
-        skin["Clearcoat Roughness"].default_value = 0.2
+        for name, value in WET.items():
+            if name in skin:
+                skin[name].default_value = value
     return robot
 
 
