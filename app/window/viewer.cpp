@@ -446,10 +446,11 @@ bool Viewer::draw_picture(double dt) {
       live.scene().surroundings == render::Surroundings::none ? std::nullopt : std::optional(live.scene().floor);
   const auto share = [](float covered, float whole) { return std::clamp(covered / std::max(1.0f, whole), 0.0f, 0.4f); };
   const Box &legend = context_.legend, &steps = context_.first_steps;
-  camera_.free.right = legend.high.x > legend.low.x ? share(area_.high.x - legend.low.x, area_.width()) : 0;
+  // Of two sides, the second has the legend; both show the same.
+  camera_.free.right = legend.empty() ? 0 : share(whole_area_.high.x - legend.low.x, area_.width());
   // A caption or a message has its place above the robots.
   camera_.free.top = share(std::max(Toasts::line_height(), context_.message.high.y - area_.low.y), area_.height());
-  camera_.free.bottom = steps.high.y > steps.low.y ? share(area_.high.y - steps.low.y, area_.height()) : 0;
+  camera_.free.bottom = steps.empty() ? 0 : share(area_.high.y - steps.low.y, area_.height());
   const render::Camera camera = camera_.at(live.camera_boxes(), area_.aspect(), dt);
   if (drawn_ == 0 && expects_robots_ && live.bounds().empty() && since(run_begin_) < longest_blank) return false;
   // A glide ends with moves too small to see, which must not keep the view coarse.

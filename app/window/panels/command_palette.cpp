@@ -202,7 +202,9 @@ void add_number(PanelContext& context, std::vector<PaletteEntry>& entries, const
 // A number of the view, within limits.
 void add_view_number(PanelContext& context, std::vector<PaletteEntry>& entries, const std::string& name, double now,
                      const std::string& unit, std::pair<double, double> limits, std::function<void(double)> set) {
-  entries.push_back({name, "View", fmt::format("{:.4g}{}{}", now, unit.empty() ? "" : " ", unit),
+  const bool automatic = name.ends_with("automatic)") && now == 0;
+  entries.push_back({name, "View",
+                     automatic ? "automatic" : fmt::format("{:.4g}{}{}", now, unit.empty() ? "" : " ", unit),
                      [&context, name, now, unit, limits, set = std::move(set)] {
                        ask_number(context, name, now, unit, [&context, name, limits, set](double value) {
                          if (value >= limits.first && value <= limits.second) return set(value);
@@ -245,18 +247,17 @@ void add_environments(PanelContext& context, std::vector<PaletteEntry>& entries)
     const bool has_safe = !offer.adjust && std::ranges::any_of(offers, [&](const EnvironmentOffer& other) {
       return other.adjust && other.environment == offer.environment;
     });
-    entries.push_back(
-        {fmt::format("environment {}{}", offer.name,
-                     has_safe ? " with solver and time step as they are, which tear robots made for water apart" : ""),
-         "Tune", is_now ? "on" : "",
-         [&context, offer] {
-           change_configuration(context, [&](Configuration& changed) {
-             changed.environment = environment_named(offer.environment);
-             if (offer.adjust) offer.adjust(changed);
-           });
-         },
-         has_water(environment_named(offer.environment)) ? "world sea water swim underwater"
-                                                         : "world ground floor walk crawl"});
+    entries.push_back({fmt::format("environment {}{}", offer.name,
+                                   has_safe ? ", solver and step kept: tears robots made for water" : ""),
+                       "Tune", is_now ? "on" : "",
+                       [&context, offer] {
+                         change_configuration(context, [&](Configuration& changed) {
+                           changed.environment = environment_named(offer.environment);
+                           if (offer.adjust) offer.adjust(changed);
+                         });
+                       },
+                       has_water(environment_named(offer.environment)) ? "world sea water swim underwater"
+                                                                       : "world ground floor walk crawl"});
   }
 }
 
@@ -402,7 +403,10 @@ void CommandPalette::draw(PanelContext& context) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetFontSize(), top = 0.12f * screen.y;
   ImGui::SetNextWindowPos({screen.x / 2, top}, ImGuiCond_Always, {0.5f, 0});
-  ImGui::SetNextWindowSize({std::min(0.94f * screen.x, 36 * text), std::min(0.8f * screen.y, 26 * text)});
+  const float lines =
+      static_cast<float>(std::max<std::size_t>(1, found_.size())) * ImGui::GetTextLineHeightWithSpacing();
+  const float height = ImGui::GetFrameHeightWithSpacing() + lines + 2 * ImGui::GetStyle().WindowPadding.y;
+  ImGui::SetNextWindowSize({std::min(0.94f * screen.x, 36 * text), std::min({0.8f * screen.y, 26 * text, height})});
   ImGui::SetNextWindowBgAlpha(1);
   ImGui::SetNextWindowFocus();
   ImGui::Begin("##palette", nullptr,

@@ -100,8 +100,8 @@ void export_run(PanelContext& context);
 
 // On the evolution that the window has open (evolution_commands.cpp).
 
-// The dialog "Evolve these robots": asks for the settings of a new run, and starts it in the background from the
-// selected robots.
+// The dialog "Evolve": asks for the settings of a new run, and starts it in the background from the selected robots, or
+// all if none is selected.
 void ask_evolve(PanelContext& context);
 
 // Opens what was dropped or chosen: a run (its folder, or the run.toml in it), and robots.

@@ -262,7 +262,7 @@ void show_panel(PanelContext& context) {
 
 void ask_evolve(PanelContext& context) {
   std::vector<LiveRobot> founders;
-  for (const RobotId id : context.scene.selection())
+  for (const RobotId id : selected_or_all(context.scene))
     if (const DocumentRobot* robot = context.scene.document().find(id)) founders.push_back(robot->body);
   if (founders.empty()) return;
   const std::string what = founders.size() == 1 ? founders.front().name : fmt::format("{} robots", founders.size());
@@ -345,8 +345,8 @@ ImTextureID thumbnail_of_individual(PanelContext& context, std::uint64_t id) {
 }
 
 void evolve_selected(PanelContext& context) {
-  if (context.scene.selection().empty())
-    context.toasts.show(Tone::info, "select the robots to evolve first");
+  if (context.scene.robot_count() == 0)
+    context.toasts.show(Tone::info, "there are no robots to evolve");
   else if (context.run.activity() != LiveRun::Activity::none)
     context.toasts.show(Tone::info, "an evolution is running already; stop it in the Evolution panel first");
   else

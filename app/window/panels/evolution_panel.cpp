@@ -65,17 +65,20 @@ void draw_commands(PanelContext& context) {
   context.log.item("evolution.open");
   tooltip("open the folder of an evolution, running or finished; or drop it on the window");
   ImGui::SameLine();
-  if (primary_button("Evolve these...", {width, 0})) evolve_selected(context);
+  ImGui::BeginDisabled(context.scene.robot_count() == 0);
+  if (primary_button("Evolve...", {width, 0})) evolve_selected(context);
   context.log.item("evolution.evolve");
-  tooltip(with_keys(context.keys, "start an evolution from the selected robots, in the background", Action::evolve)
-              .c_str());
+  tooltip(
+      with_keys(context.keys, "start an evolution from the selected robots, or all, in the background", Action::evolve)
+          .c_str());
+  ImGui::EndDisabled();
 }
 
 void draw_empty(PanelContext& context) {
   draw_problem(context.run.problem());
   note(
-      "An evolution makes children of robots, tries them, and keeps the best, generation after generation. Select "
-      "robots and evolve them, or open the folder of an earlier evolution.");
+      "An evolution makes children of robots, tries them, and keeps the best, generation after generation. It "
+      "begins with the selected robots, or all. You can also open the folder of an earlier one.");
   draw_commands(context);
 }
 

@@ -93,7 +93,7 @@ void Panels::draw_edit_menu() {
     menu_item("Edit the body", Action::edit_body, selected, context_.body_edit.robot != 0);
     menu_item("Mutate", Action::mutate, selected);
     menu_item("Breed from two", Action::breed, scene.selection().size() == 2);
-    menu_item("Evolve...", Action::evolve, selected);
+    menu_item("Evolve...", Action::evolve, scene.robot_count() > 0);
     menu_item("Remove", Action::remove, selected);
     menu_item("Keep only the selected", Action::keep_selected, selected);
     menu_item("Keep the best...", Action::keep_best, scene.robot_count() > 1);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of Panels that executes the commands of menus and keys.
 #include <fmt/format.h>
-#include <imgui.h>
 
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,7 @@
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/video_recorder.h"
+#include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
 
@@ -345,14 +345,13 @@ void Panels::quit() {
 }
 
 void Panels::escape() {
+  if (close_list()) return;
   if (context_.dialogs.open())
     context_.dialogs.close();
   else if (palette_.is_open())
     palette_.close();
   else if (help_open_)
     help_open_ = false;
-  else if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
-    ImGui::SetWindowFocus(nullptr);  // closes menus and lists
   else if (context_.body_edit.robot != 0)
     context_.body_edit.robot = 0;
   else

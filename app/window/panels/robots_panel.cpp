@@ -263,10 +263,12 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   ImGui::EndDisabled();
   context.log.item("breed");
   explain("add a child of the two selected robots", Action::breed);
+  ImGui::EndDisabled();
   ImGui::SameLine();
-  if (primary_button("Evolve these...", {half, 0})) evolve_selected(context);
+  ImGui::BeginDisabled(scene.robot_count() == 0);
+  if (primary_button("Evolve...", {half, 0})) evolve_selected(context);
   context.log.item("evolve");
-  explain("let the selected robots evolve, in the background", Action::evolve);
+  explain("let the selected robots evolve, or all, in the background", Action::evolve);
   ImGui::EndDisabled();
   draw_strengths(context);
 }

@@ -63,20 +63,13 @@ void Toasts::remember(Tone tone, const std::string& text) {
 void Toasts::show(Tone tone, std::string text) {
   remember(tone, text);
   const double duration = (tone == Tone::error ? 10 : 4) + 0.03 * static_cast<double>(std::min(text.size(), longest));
-  for (Toast& toast : toasts_)
-    if (toast.text == text) {
-      toast.seconds_left = duration;
-      ++toast.count;
-      toast.logged = false;
-      return;
-    }
-  // A second "picture saved: ..." replaces the first.
-  const std::string kind = text.substr(0, text.find(": "));
+  // Warnings and errors stay below a newer message.
+  int count = 1;
   std::erase_if(toasts_, [&](const Toast& toast) {
-    return tone == Tone::success && toast.tone == tone && toast.logged &&
-           toast.text.substr(0, toast.text.find(": ")) == kind;
+    if (toast.text == text) count += toast.count;
+    return toast.text == text || (toast.logged && (toast.tone == Tone::info || toast.tone == Tone::success));
   });
-  toasts_.push_back({tone, std::move(text), duration});
+  toasts_.push_back({tone, std::move(text), duration, count});
   if (toasts_.size() > max_count) toasts_.pop_front();
 }
 
@@ -92,7 +85,9 @@ void Toasts::draw(ImVec2 left, float right, EventLog& log) {
   if (toasts_.size() > 1) more += fmt::format("  ({} more)", toasts_.size() - 1);
   std::string text = brief(newest.text, longest);
   std::ranges::replace(text, '\n', ' ');
-  text = shortened(text, right - left.x - 2 * side - ImGui::CalcTextSize(more.c_str()).x) + more;
+  const std::string fitting = shortened(text, right - left.x - 2 * side - ImGui::CalcTextSize(more.c_str()).x);
+  const bool whole = fitting == newest.text && toasts_.size() == 1;
+  text = fitting + more;
   const float width = ImGui::CalcTextSize(text.c_str()).x;
   const float x = std::max(left.x + side, std::round((left.x + right - width) / 2));
   const ImVec2 low{x - side, left.y - above}, high{x + width + side, left.y + line + above};
@@ -110,7 +105,7 @@ void Toasts::draw(ImVec2 left, float right, EventLog& log) {
                      ImDrawFlags_RoundCornersLeft);
   list.AddText({x, left.y}, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
   ImGui::PopStyleVar();
-  if (hovered) {
+  if (hovered && !whole) {
     std::string all;
     for (const Toast& toast : toasts_) all += (all.empty() ? "" : "\n\n") + brief(toast.text, longest);
     tooltip_now(all);

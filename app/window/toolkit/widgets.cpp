@@ -147,6 +147,14 @@ void tooltip_now(const std::string& text) {
   ImGui::EndTooltip();
 }
 
+bool close_list() {
+  const ImVector<ImGuiPopupData>& open = ImGui::GetCurrentContext()->OpenPopupStack;
+  const ImGuiWindow* const last = open.empty() ? nullptr : open.back().Window;
+  if (!last || (last->Flags & ImGuiWindowFlags_Modal) != 0) return false;
+  ImGui::ClosePopupToLevel(open.Size - 1, true);
+  return true;
+}
+
 void hide_tooltip() {
   ImGuiWindow* const window = ImGui::FindWindowByName("##Tooltip_00");
   if (!window || !window->Active) return;

@@ -33,6 +33,9 @@ void tooltip(const char* text);
 // The same at once, whatever the pointer is over. Long lines are wrapped, and long texts cut (brief()).
 void tooltip_now(const std::string& text);
 
+// Closes the list or menu that was opened last. Returns whether one was open.
+bool close_list();
+
 // Hides the tooltip of this frame: what the mouse rests on is below something else. Call after all that have tooltips.
 void hide_tooltip();
 

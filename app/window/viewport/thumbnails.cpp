@@ -105,7 +105,7 @@ bool thumbnail_row(const char* id, ImTextureID thumbnail, const std::string& tex
   for (std::size_t begin = 0; begin <= text.size(); y += font) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     ImGui::GetWindowDrawList()->AddText({low.x + width + 0.5f * font, y}, ImGui::GetColorU32(ImGuiCol_Text),
-                                        shortened(text.substr(begin, end - begin), room).c_str());
+                                        shortened(text.substr(begin, end - begin), room, true).c_str());
     begin = end + 1;
   }
   return clicked;

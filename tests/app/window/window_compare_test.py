@@ -50,6 +50,23 @@ class CompareTest(WindowCase):
         window.until("one view", lambda: "title.first" not in window.items)
         self.finish(window)
 
+    def test_the_legend_covers_no_robot_of_the_second_view(self):
+        window = self.small("--paused", "--camera", "group")
+        window.key("3", "i")  # colors by strain
+        window.frame(lambda frame: frame["second"])
+        window.place("legend")
+        frame = window.standing()
+        area, legend = window.items["second"], window.items["legend"]
+        to_second = area["x"] - window.items["title.first"]["x"]
+        left = legend["x"] - legend["width"] / 2
+        picture = window.screenshot()
+        background = picture[int(area["y"]) + 5, int(area["x"])]
+        for x, y in frame["where"]:
+            row = numpy.abs(picture[round(y), :int(left)] - background).max(axis=1) > 0.1
+            end = max(column for column in range(round(x + to_second), int(left)) if row[column])
+            self.assertLess(end, left - 2, "the robot ends before the legend")
+        self.finish(window)
+
     def test_the_mouse_selects_robots_on_either_side(self):
         window = self.small("--paused")
         window.key("i")

@@ -150,10 +150,12 @@ class EvolutionTest(WindowCase):
     def evolve_form(self, aim, **fields):
         """A window whose two robots are about to evolve for the entry `aim` of the list of objectives."""
         window = self.small("--paused")
-        window.key("ctrl+a")
-        window.frame(lambda frame: frame["selected"] == 2)
-        window.key("e")
+        window.key("e")  # all robots, as none is selected
         window.place("evolve.name")
+        window.click("evolve.algorithm")
+        window.key("Escape")  # closes the list, not the dialog
+        window.frame()
+        window.frame()
         window.click("evolve.aim")
         window.choose("evolve.aim", aim)
         for name, value in fields.items():

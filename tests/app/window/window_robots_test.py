@@ -29,6 +29,13 @@ class RobotsTest(WindowCase):
 
     def test_the_palette_finds_commands_robots_and_settings(self):
         window = self.small("--paused")
+        window.key("ctrl+k")
+        window.place("palette.9")
+        whole = window.items["panel.Palette"]["height"]
+        window.type("turntable")
+        window.until("it is as low as its rows", lambda: window.frame() and window.items["panel.Palette"]["height"] < whole / 2)
+        window.key("Escape")
+        window.until("closed", lambda: "panel.Palette" not in window.items)
         self.assertEqual(self.palette(window, "dark or light"), "dark or light theme")
         window.frame(lambda frame: frame["theme"] == "light")
         self.assertEqual(self.palette(window, "strain"), "color by Strain")
