@@ -47,7 +47,8 @@ class Display:
 class Window:
     """`surroundings`: with the water or the land around robots, which take a third of the drawing."""
 
-    def __init__(self, program, display, folder, *arguments, size="{}x{}".format(*SIZE), first_start=False, surroundings=False):
+    def __init__(self, program, display, folder, *arguments, size="{}x{}".format(*SIZE), first_start=False, surroundings=False,
+                 quality="low"):
         self.folder = Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
         self.report = self.folder / "report.jsonl"
@@ -61,7 +62,7 @@ class Window:
             settings.write_text('{"right_open": true}')
         self.messages = open(self.folder / "messages", "w+")
         self.process = subprocess.Popen(
-            [program, "view", "--device", "cpu", "--quality", "low", "--size", size, "--report", str(self.report),
+            [program, "view", "--device", "cpu", "--quality", quality, "--size", size, "--report", str(self.report),
              *([] if first_start or surroundings else ["--plain"]), *arguments],
             cwd=self.folder, env=self.environment, stderr=self.messages)
         self.items, self.events, self.file, self.rest = {}, [], None, ""

@@ -2,6 +2,7 @@
 """Messages, columns, keys and other tools of the real window: window_tools_test.py PROGRAM SAMPLE-FOLDER [TEST...]"""
 import shutil
 import subprocess
+import time
 from pathlib import Path
 
 from window_case import PROGRAM, SAMPLES, WindowCase, main, numpy
@@ -349,6 +350,16 @@ class ToolsTest(WindowCase):
             below = toast["y"] - toast["height"] / 2 > caption["y"] + caption["height"] / 2
             self.assertTrue({"beside": beside, "below": below}[place], (place, caption, toast))
             self.finish(window)
+
+    def test_a_window_on_land_ends_in_order_at_sigterm(self):
+        for delay in (0, 0.05, 0.3):
+            window = self.open(str(SAMPLES.parent / "dog.json"), "--environment", "land", surroundings=True, quality="medium")
+            # Footprints are drawn from this quality on, while the physics looks for the next ones.
+            window.frame(lambda frame: frame["time"] > 0.2)
+            time.sleep(delay)  # other moments of steps and frames
+            window.process.terminate()
+            # In order, or at once after half a second (app/base/interrupt.h), and never by a crash.
+            self.assertIn(window.process.wait(60), (0, 128 + 15), window.stderr())
 
     def test_the_button_that_makes_robots_is_in_view(self):
         window = self.small("--paused")
