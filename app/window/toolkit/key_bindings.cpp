@@ -45,7 +45,7 @@ constexpr KeyBinding table[] = {
     {Action::new_random, "new_random", "N", "new random robots", "Robots"},
     {Action::mutate, "mutate", "M", "mutate: a changed copy of each selected robot", "Robots"},
     {Action::breed, "breed", "J", "breed: a child of the two selected robots", "Robots"},
-    {Action::evolve, "evolve", "E", "evolve the selected robots, in the background", "Robots"},
+    {Action::evolve, "evolve", "E", "evolve the selected robots, or all, in the background", "Robots"},
     {Action::edit_body, "edit_body", "Ctrl E", "edit the body of the selected robot, or stop", "Robots"},
     {Action::rename, "rename", "Ctrl R", "rename the selected robot", "Robots"},
     {Action::duplicate, "duplicate", "Ctrl D", "duplicate the selected robots", "Robots"},
