@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/cpu_lattice.h"
 
-#include <algorithm>
 #include <array>
 #include <numeric>
 #include <random>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "sim/physics/contact.h"
 #include "sim/physics/fixed_point.h"

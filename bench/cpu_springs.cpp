@@ -16,7 +16,6 @@
 #include <ctime>
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bench/cpu_lattice.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares Mercury with the published kernel in one run on one GPU: bench_published [robots] [voxels per side]
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "mercury/cuda_devices.h"
-#include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "sim/devices.h"
 #include "sim/evaluator_parts.h"

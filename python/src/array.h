@@ -6,7 +6,6 @@
 #include <nanobind/ndarray.h>
 
 #include <atomic>
-#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <span>

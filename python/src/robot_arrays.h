@@ -7,7 +7,6 @@
 #include <nanobind/nanobind.h>
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "mercury/robot.h"

@@ -8,7 +8,6 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
-#include <optional>
 
 #include "mercury/evaluator.h"
 #include "python/src/bindings.h"

@@ -5,7 +5,6 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "mercury/error.h"
 #include "python/src/bindings.h"

@@ -2,7 +2,6 @@
 // Mutation and crossover of painted voxel robots.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "mercury/cppn.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
-#include <utility>
 
 #include "mercury/error.h"
 #include "robots/file/whole_file.h"

@@ -9,7 +9,6 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <optional>
 
 #include "mercury/error.h"
 

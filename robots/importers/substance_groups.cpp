@@ -23,7 +23,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <map>
 #include <unordered_map>
 #include <utility>

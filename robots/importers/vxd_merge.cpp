@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "mercury/error.h"
 #include "robots/importers/report_builder.h"
 #include "robots/importers/xml_document.h"
 

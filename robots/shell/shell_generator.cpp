@@ -2,12 +2,9 @@
 #include "mercury/shell.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "mercury/error.h"
 #include "mercury/random.h"

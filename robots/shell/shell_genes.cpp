@@ -2,7 +2,6 @@
 #include <array>
 
 #include "mercury/error.h"
-#include "mercury/random.h"
 #include "mercury/shell.h"
 #include "robots/genes.h"
 

@@ -2,7 +2,6 @@
 // The numbers of a tapered robot's genome as data, and its cells.
 #pragma once
 
-#include <span>
 #include <string_view>
 #include <vector>
 

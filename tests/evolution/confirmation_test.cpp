@@ -9,7 +9,6 @@
 
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
-#include "mercury/samples.h"
 #include "mercury/voxel.h"
 #include "tests/sim/backend.h"
 

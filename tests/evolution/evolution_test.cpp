@@ -2,7 +2,6 @@
 // The loop of generations on a search whose optimum is known.
 #include "mercury/evolution.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <map>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>

@@ -15,7 +15,6 @@
 #include "mercury/quantity.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
-#include "mercury/samples.h"
 #include "mercury/spread.h"
 #include "mercury/voxel.h"
 #include "tests/sim/backend.h"

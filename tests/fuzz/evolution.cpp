@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Run folders of evolutions: run.toml, the journal, encoded genomes.
-#include <array>
 #include <filesystem>
 #include <fstream>
 

@@ -2,9 +2,7 @@
 // Files of other simulators.
 #include <cmath>
 
-#include "mercury/error.h"
 #include "mercury/import.h"
-#include "mercury/origin.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "mercury/voxel.h"

@@ -4,7 +4,6 @@
 #include "mercury/origin.h"
 
 #include <exception>
-#include <utility>
 
 #include "mercury/error.h"
 #include "mercury/generator.h"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recordings.
 #include <algorithm>
-#include <cstring>
 
 #include "app/recording/trajectory_reader.h"
 #include "app/recording/trajectory_writer.h"
-#include "mercury/error.h"
 #include "tests/fuzz/target.h"
 #include "tests/same_bits.h"
 

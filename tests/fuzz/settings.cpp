@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Configuration files, camera files, scenes, results, keys, and what the window remembers.
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/live/scene_text.h"

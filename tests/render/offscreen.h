@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "render/context/context.h"
 #include "render/readback.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/passes/print_pass.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "tests/render/offscreen.h"

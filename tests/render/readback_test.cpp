@@ -4,7 +4,6 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "render/context/gl_objects.h"
 #include "tests/render/offscreen.h"

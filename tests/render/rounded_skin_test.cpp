@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scene::rounded: skins that are finer than their masses.
-#include <algorithm>
 
 #include "tests/render/offscreen.h"
 #include "tests/render/triangle.h"

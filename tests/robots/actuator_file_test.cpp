@@ -5,7 +5,6 @@
 
 #include <sstream>
 
-#include "mercury/error.h"
 #include "mercury/robot_file.h"
 #include "robots/file/document.h"
 #include "tests/refusal.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ancestry in a robot's origin.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

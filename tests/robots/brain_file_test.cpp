@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mercury/error.h"
 #include "mercury/robot_file.h"
 #include "robots/carried_points.h"
 #include "robots/file/document.h"

@@ -13,7 +13,6 @@
 #include <iterator>
 #include <sstream>
 
-#include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "robots/file/document.h"
 #include "robots/file/whole_file.h"

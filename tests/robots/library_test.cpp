@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sample robots: each stays whole and gets somewhere in the environment that its origin names.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -12,7 +11,6 @@
 #include <vector>
 
 #include "mercury/cppn.h"
-#include "mercury/error.h"
 #include "mercury/generator.h"
 #include "mercury/inspect.h"
 #include "mercury/random.h"

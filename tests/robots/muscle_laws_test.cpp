@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/muscle_laws.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "mercury/error.h"
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
 #include "robots/mutation_step.h"

@@ -7,7 +7,6 @@
 #include <set>
 #include <string>
 
-#include "mercury/error.h"
 #include "tests/refusal.h"
 #include "tests/robots/nn_bodies.h"
 

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include "mercury/error.h"
 #include "tests/refusal.h"
 #include "tests/robots/surface.h"
 

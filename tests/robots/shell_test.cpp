@@ -9,7 +9,6 @@
 #include <cmath>
 #include <set>
 
-#include "mercury/error.h"
 #include "mercury/inspect.h"
 #include "mercury/random.h"
 #include "robots/portable_math.h"

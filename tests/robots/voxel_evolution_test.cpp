@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "mercury/error.h"
 #include "mercury/origin.h"
 #include "tests/refusal.h"
 #include "tests/robots/surface.h"

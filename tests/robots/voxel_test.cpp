@@ -4,13 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
 
-#include "mercury/error.h"
 #include "mercury/random.h"
 #include "tests/refusal.h"
 #include "tests/robots/surface.h"

@@ -9,7 +9,6 @@
 
 #include "backend.h"
 #include "bodies.h"
-#include "mercury/error.h"
 #include "plain_backend.h"
 #include "same_telemetry.h"
 #include "tests/refusal.h"

@@ -9,7 +9,6 @@
 #include <functional>
 
 #include "bodies.h"
-#include "mercury/error.h"
 #include "shared_batch.h"
 #include "sim/physics/brain_plan.h"
 #include "tests/refusal.h"

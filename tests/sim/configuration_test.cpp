@@ -4,11 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 
 #include "mercury/backend.h"
-#include "mercury/error.h"
 #include "mercury/threads.h"
 #include "tests/refusal.h"
 

@@ -2,7 +2,6 @@
 // On each instruction set, the CPU computes the bits of a plain loop over one spring after the other.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 
 #include "bench/cpu_lattice.h"

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <set>
 
-#include "mercury/error.h"
 #include "tests/refusal.h"
 
 namespace mercury {

@@ -2,7 +2,6 @@
 #include "sim/cpu/grouping/group_plan.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace mercury::cpu {

@@ -6,7 +6,6 @@
 // 3. There are several batches per thread, so that the threads finish at about the same time.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <unordered_set>
 #include <vector>

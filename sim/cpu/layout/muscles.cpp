@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cpu/layout/muscles.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace mercury::cpu {

@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 
 #include "app/base/file_name.h"
-#include "mercury/error.h"
 #include "mercury/file_links.h"
 #include "robots/file/whole_file.h"
 #include "tests/app/program.h"

@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 
-#include "app/export/export.h"
 #include "app/scene/appearance.h"
 #include "mercury/error.h"
 #include "tests/app/export/export_bodies.h"

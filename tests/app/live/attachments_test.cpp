@@ -7,7 +7,6 @@
 #include <set>
 
 #include "app/options/scene_file.h"
-#include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "tests/app/live/live_scene_setup.h"

@@ -8,7 +8,6 @@
 
 #include "app/live/replay_log.h"
 #include "app/recording/repro.h"
-#include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"

@@ -2,8 +2,6 @@
 // What the window shows of a run, against the run's own history.
 #include "app/live/run_view.h"
 
-#include <gmock/gmock.h>
-
 #include <set>
 
 #include "mercury/error.h"

@@ -9,7 +9,6 @@
 
 #include "app/options/scene_file.h"
 #include "app/recording/trajectory_reader.h"
-#include "mercury/error.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/refusal.h"

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "app/live/group_video.h"
 #include "mercury/robot_file.h"
 #include "mercury/voxel.h"

@@ -2,10 +2,6 @@
 // The robots that a command works on, loaded at once or made on demand.
 #include "app/options/robot_options.h"
 
-#include <gmock/gmock.h>
-
-#include <algorithm>
-
 #include "mercury/error.h"
 #include "mercury/robot_file.h"
 #include "tests/app/program.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recording with one change gives valid robots or an InputError of one line. The reader allocates no memory for what
 // the file does not have.
-#include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <array>

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
-#include <span>
 
 #include "app/recording/trajectory_reader.h"
 #include "mercury/cuda_devices.h"

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <new>
 #include <set>

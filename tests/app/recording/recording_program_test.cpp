@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "app/recording/trajectory_reader.h"
 #include "mercury/simulation.h"

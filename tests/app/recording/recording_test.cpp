@@ -4,12 +4,10 @@
 #include <sys/stat.h>
 
 #include <array>
-#include <cstring>
 
 #include "app/recording/trajectory_hdf5.h"
 #include "app/recording/trajectory_playback.h"
 #include "app/recording/trajectory_reader.h"
-#include "mercury/error.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
 #include "tests/refusal.h"

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "app/scene/camera_controller.h"
 
 namespace mercury::test {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/camera_plan.h"
 
-#include <gmock/gmock.h>
-
 #include "mercury/error.h"
 #include "tests/app/program.h"
 #include "tests/refusal.h"

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "mercury/error.h"
 
 namespace mercury::test {

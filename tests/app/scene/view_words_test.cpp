@@ -8,7 +8,6 @@
 #include <functional>
 #include <numbers>
 
-#include "mercury/error.h"
 #include "tests/refusal.h"
 
 namespace mercury::test {

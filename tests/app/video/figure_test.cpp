@@ -5,9 +5,6 @@
 #include <gmock/gmock.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "app/base/output_files.h"
 #include "app/video/picture_file.h"
 #include "mercury/file_links.h"

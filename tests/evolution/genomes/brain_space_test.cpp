@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "mercury/error.h"
 #include "mercury/evolution.h"
 #include "mercury/genome.h"
 #include "mercury/random_voxel.h"

@@ -11,7 +11,6 @@
 #include <set>
 #include <string>
 
-#include "mercury/error.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
 #include "mercury/simulation.h"

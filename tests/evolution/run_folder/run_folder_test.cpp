@@ -7,8 +7,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <ctime>
-#include <fstream>
 
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/journal.h"

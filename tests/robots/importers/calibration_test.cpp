@@ -12,7 +12,6 @@
 #include <optional>
 #include <vector>
 
-#include "mercury/error.h"
 #include "mercury/voxel.h"
 #include "tests/refusal.h"
 #include "tests/sim/backend.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <string>
 
-#include "mercury/error.h"
 #include "mercury/import.h"
 #include "tests/refusal.h"
 
