@@ -98,12 +98,6 @@ void change_configuration(PanelContext& context, const std::function<void(Config
   context.scene.end_edit();
 }
 
-void change_view(PanelContext& context, const std::function<void(ViewSettings&)>& change) {
-  ViewSettings view = context.scene.view();
-  change(view);
-  context.scene.set_view(view);
-}
-
 void add_switches(PanelContext& context, std::vector<PaletteEntry>& entries) {
   ViewSettings view = context.scene.view();
   for (const Switch& one : switches)

@@ -54,6 +54,8 @@ void with_window_camera(PanelContext& context, const std::function<void()>& act)
 // Copies the command line that makes this scene to the clipboard. `subcommand`: "view" or "render".
 void copy_as_command(PanelContext& context, const char* subcommand);
 
+void change_view(PanelContext& context, const std::function<void(ViewSettings& view)>& change);
+
 // Switches the arrows of a command on or off.
 void toggle_arrows(PanelContext& context, Action action);
 
@@ -140,8 +142,14 @@ void begin_scrub(PanelContext& context);
 void scrub_to(PanelContext& context, double time);  // [s]
 void end_scrub(PanelContext& context);
 
-// Executes the commands of the timeline: step back, start, present, loop, bookmarks, go on, fork. Others do nothing.
-void change_timeline(PanelContext& context, Action action);
+// Begins a loop at the moment shown, closes it there, or ends it.
+void mark_loop(PanelContext& context);
+// Sets or removes a bookmark at the moment shown.
+void toggle_bookmark(PanelContext& context);
+// Goes on from the moment shown, if it is an earlier one.
+void go_on(PanelContext& context);
+// Copies the selected robots in the state of the moment shown, which goes on.
+void fork(PanelContext& context);
 
 // Environments (tune_panel.cpp).
 

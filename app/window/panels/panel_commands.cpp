@@ -14,296 +14,161 @@
 
 namespace mercury::window {
 
-void Panels::execute(Action action) {
-  switch (action) {
-    case Action::play_pause:
-    case Action::step:
-    case Action::faster:
-    case Action::slower:
-    case Action::real_time:
-    case Action::fastest:
-    case Action::reset:
-      change_time(action);
-      break;
-    case Action::step_back:
-    case Action::first_moment:
-    case Action::present:
-    case Action::loop:
-    case Action::bookmark:
-    case Action::next_bookmark:
-    case Action::previous_bookmark:
-    case Action::go_on:
-    case Action::fork:
-      change_timeline(context_, action);
-      break;
-    case Action::new_random:
-    case Action::duplicate:
-    case Action::remove:
-    case Action::mutate:
-    case Action::breed:
-    case Action::evolve:
-    case Action::edit_body:
-    case Action::rename:
-    case Action::keep_selected:
-    case Action::keep_best:
-    case Action::detach:
-    case Action::select_all:
-    case Action::invert_selection:
-    case Action::undo:
-    case Action::redo:
-    case Action::open:
-    case Action::save_scene:
-    case Action::save:
-      change_robots(action);
-      break;
-    case Action::frame:
-    case Action::follow:
-    case Action::turntable:
-    case Action::top_view:
-    case Action::look_along_x:
-    case Action::look_along_y:
-    case Action::bookmark_1:
-    case Action::bookmark_2:
-    case Action::bookmark_3:
-    case Action::bookmark_4:
-    case Action::set_bookmark_1:
-    case Action::set_bookmark_2:
-    case Action::set_bookmark_3:
-    case Action::set_bookmark_4:
-      change_camera(action);
-      break;
-    case Action::drag_arrows:
-    case Action::contact_arrows:
-    case Action::force_arrows:
-    case Action::color_material:
-    case Action::color_activation:
-    case Action::color_strain:
-    case Action::color_force:
-    case Action::color_speed:
-    case Action::color_pressure:
-    case Action::color_energy:
-    case Action::color_stiffness:
-    case Action::color_power:
-    case Action::cells:
-    case Action::springs:
-    case Action::labels:
-    case Action::legend:
-    case Action::theme:
-      change_view(action);
-      break;
-    case Action::compare:
-      toggle_second_view(context_);
-      break;
-    case Action::ghosts:
-      toggle_ghosts(context_);
-      break;
-    case Action::left_panels:
-    case Action::right_panels: {
-      const Side side = action == Action::left_panels ? Side::left : Side::right;
-      open_column(side, !context_.preferences.panels || !column_open(side));
-      context_.preferences.panels = true;
-      break;
-    }
-    case Action::larger_text:
-      change_text_size(context_, 1);
-      break;
-    case Action::smaller_text:
-      change_text_size(context_, -1);
-      break;
-    case Action::palette:
-      open_palette();
-      break;
-    case Action::messages:
-      show("Messages");
-      break;
-    case Action::hide_panels:
-      context_.preferences.panels = !context_.preferences.panels;
-      break;
-    case Action::full_screen:
-      context_.window.toggle_full_screen();
-      break;
-    case Action::screenshot:
-      context_.screenshot_requested = true;
-      break;
-    case Action::record:
-      context_.recorder.toggle(context_);
-      break;
-    case Action::deselect:
-      escape();
-      break;
-    case Action::help:
-      help_open_ = !help_open_;
-      break;
-    case Action::quit:
-      quit();
-      break;
-  }
-}
-
-void Panels::change_time(Action action) {
-  LiveScene& scene = context_.scene;
-  if (action == Action::play_pause) scene.toggle();
-  if (action == Action::step) scene.step();
-  if (action == Action::faster) scene.change_speed(1);
-  if (action == Action::slower) scene.change_speed(-1);
-  if (action == Action::real_time) scene.set_speed(1);
-  if (action == Action::fastest) scene.set_speed(scene.speed() == unlimited_speed ? 1 : unlimited_speed);
-  if (action == Action::reset) scene.reset();
-}
-
-void Panels::change_robots(Action action) {
-  LiveScene& scene = context_.scene;
-  if (action == Action::new_random) generate_robots(context_);
-  if (action == Action::duplicate) scene.duplicate(scene.selection());
-  if (action == Action::remove) scene.remove(scene.selection());
-  if (action == Action::mutate) mutate_selected(context_);
-  if (action == Action::breed) breed_selected(context_);
-  if (action == Action::evolve) evolve_selected(context_);
-  if (action == Action::edit_body) toggle_body_editor(context_);
-  if (action == Action::rename) rename_selected(context_);
-  if (action == Action::keep_selected) keep_only(context_, scene.selection());
-  if (action == Action::keep_best) ask_for_best(context_);
-  if (action == Action::detach) scene.remove_attachments(selected_or_all(scene));
-  if (action == Action::select_all) scene.select_all();
-  if (action == Action::invert_selection) invert_selection(context_);
-  if (action == Action::open) open_robots(context_);
-  if (action == Action::save_scene) save_scene(context_);
-  if (action == Action::save) save_robots(context_);
-  if (action == Action::undo) {
-    if (scene.can_undo()) context_.toasts.show(Tone::info, "undone: " + scene.undo_name());
-    scene.undo();
-  }
-  if (action == Action::redo) {
-    if (scene.can_redo()) context_.toasts.show(Tone::info, "redone: " + scene.redo_name());
-    scene.redo();
-  }
-}
-
-void Panels::change_view(Action action) {
-  ViewSettings view = context_.scene.view();
-  const Environment& environment = context_.scene.configuration().environment;
-  if (const ColorQuantity* quantity = quantity_of(action)) {
-    if (!quantity->exists_in(environment)) return;
-    color_by(view, *quantity);
-    context_.toasts.show(Tone::info, fmt::format("colored by {}", quantity->key));
-  }
-  switch (action) {
-    case Action::drag_arrows:
-    case Action::contact_arrows:
-    case Action::force_arrows:
-      toggle_arrows(context_, action);
-      return;
-    case Action::cells:
-      set_layout(view, view.layout == Layout::cells ? Layout::grid : Layout::cells);
-      context_.toasts.show(Tone::info, view.layout == Layout::cells ? "robots stay in their cells" : "robots travel");
-      context_.log.write("layout", {{"layout", name_of(view.layout)}});
-      break;
-    case Action::springs:
-      view.shown.springs = !view.shown.springs;
-      view.shown.skin = !view.shown.springs;
-      break;
-    case Action::labels:
-      view.shown.labels = !view.shown.labels;
-      break;
-    case Action::legend:
-      view.shown.legend = !view.shown.legend;
-      break;
-    case Action::theme:
-      view.theme = view.theme == render::Theme::dark ? render::Theme::light : render::Theme::dark;
-      break;
-    default:
-      break;
-  }
-  context_.scene.set_view(view);
-}
-
-void Panels::change_camera(Action action) {
-  OrbitController& camera = context_.camera;
-  const auto toggle_mode = [&](CameraMode mode) { camera.set_mode(camera.mode() == mode ? CameraMode::still : mode); };
-  if (action == Action::frame) frame_robots(context_, context_.scene.selection());
-  if (action == Action::turntable) toggle_mode(CameraMode::turntable);
-  if (action == Action::top_view) toggle_mode(CameraMode::top);
-  if (action == Action::look_along_x) look_along(context_, 0);
-  if (action == Action::look_along_y) look_along(context_, 1);
-  const auto place = [&](Action first) { return static_cast<std::size_t>(action) - static_cast<std::size_t>(first); };
-  if (action >= Action::bookmark_1 && action <= Action::bookmark_4) go_to_bookmark(context_, place(Action::bookmark_1));
-  if (action >= Action::set_bookmark_1 && action <= Action::set_bookmark_4)
-    set_bookmark(context_, place(Action::set_bookmark_1));
-  if (action != Action::follow) return;
-  if (camera.mode() == CameraMode::follow) {
-    camera.set_mode(CameraMode::still);
-    return;
-  }
-  const std::optional<RobotId> current = context_.scene.current();
-  camera.follow(current ? context_.scene.snapshot().robots->index_of(*current) : std::nullopt);
-}
-
 namespace {
 
-// Other words for what a command does.
-std::string_view other_words(Action action) {
-  switch (action) {
-    case Action::play_pause:
-      return "start stop run continue freeze";
-    case Action::slower:
-      return "motion";
-    case Action::edit_body:
-      return "paint voxels draw";
-    case Action::fork:
-      return "branch copy";
-    case Action::turntable:
-      return "spin rotate orbit";
-    case Action::evolve:
-      return "optimize train";
-    case Action::reset:
-      return "restart again";
-    case Action::frame:
-      return "zoom fit center all";
-    case Action::top_view:
-      return "above";
-    case Action::new_random:
-      return "generate create";
-    case Action::remove:
-      return "delete erase";
-    case Action::duplicate:
-      return "copy clone";
-    case Action::undo:
-      return "back revert";
-    case Action::redo:
-      return "again forward";
-    case Action::open:
-      return "load file";
-    case Action::save:
-    case Action::save_scene:
-      return "write file";
-    case Action::labels:
-      return "text captions";
-    case Action::theme:
-      return "appearance";
-    case Action::compare:
-      return "split side";
-    case Action::left_panels:
-    case Action::right_panels:
-      return "columns";
-    case Action::larger_text:
-    case Action::smaller_text:
-      return "font size";
-    case Action::screenshot:
-      return "picture image photo";
-    case Action::record:
-      return "video film movie";
-    case Action::messages:
-      return "log";
-    case Action::help:
-      return "shortcuts manual";
-    case Action::quit:
-      return "exit close";
-    default:
-      return "";
-  }
+void toggle_fastest(PanelContext& context) {
+  context.scene.set_speed(context.scene.speed() == unlimited_speed ? 1 : unlimited_speed);
 }
 
+void undo(PanelContext& context) {
+  LiveScene& scene = context.scene;
+  if (scene.can_undo()) context.toasts.show(Tone::info, "undone: " + scene.undo_name());
+  scene.undo();
+}
+
+void redo(PanelContext& context) {
+  LiveScene& scene = context.scene;
+  if (scene.can_redo()) context.toasts.show(Tone::info, "redone: " + scene.redo_name());
+  scene.redo();
+}
+
+void color_robots(PanelContext& context, const ColorQuantity& quantity) {
+  if (!quantity.exists_in(context.scene.configuration().environment)) return;
+  change_view(context, [&](ViewSettings& view) { color_by(view, quantity); });
+  context.toasts.show(Tone::info, fmt::format("colored by {}", quantity.key));
+}
+
+void toggle_cells(PanelContext& context) {
+  const Layout layout = context.scene.view().layout == Layout::cells ? Layout::grid : Layout::cells;
+  change_view(context, [&](ViewSettings& view) { set_layout(view, layout); });
+  context.toasts.show(Tone::info, layout == Layout::cells ? "robots stay in their cells" : "robots travel");
+  context.log.write("layout", {{"layout", name_of(layout)}});
+}
+
+void toggle_springs(PanelContext& context) {
+  change_view(context, [](ViewSettings& view) {
+    view.shown.springs = !view.shown.springs;
+    view.shown.skin = !view.shown.springs;
+  });
+}
+
+template <bool Shown::*detail>
+void toggle_detail(PanelContext& context) {
+  change_view(context, [](ViewSettings& view) { view.shown.*detail = !(view.shown.*detail); });
+}
+
+void toggle_theme(PanelContext& context) {
+  change_view(context, [](ViewSettings& view) {
+    view.theme = view.theme == render::Theme::dark ? render::Theme::light : render::Theme::dark;
+  });
+}
+
+template <CameraMode mode>
+void toggle_mode(PanelContext& context) {
+  context.camera.set_mode(context.camera.mode() == mode ? CameraMode::still : mode);
+}
+
+void toggle_following(PanelContext& context) {
+  if (context.camera.mode() == CameraMode::follow) return context.camera.set_mode(CameraMode::still);
+  const std::optional<RobotId> current = context.scene.current();
+  context.camera.follow(current ? context.scene.snapshot().robots->index_of(*current) : std::nullopt);
+}
+
+// What the commands do that need no state of Panels.
+struct Deed {
+  Action action;
+  void (*perform)(PanelContext& context);
+};
+constexpr Deed deeds[] = {
+    {Action::play_pause, [](PanelContext& context) { context.scene.toggle(); }},
+    {Action::step, [](PanelContext& context) { context.scene.step(); }},
+    {Action::step_back, [](PanelContext& context) { context.scene.step_back(); }},
+    {Action::first_moment, [](PanelContext& context) { context.scene.seek(context.scene.snapshot().timeline.begin); }},
+    {Action::present, [](PanelContext& context) { context.scene.seek(context.scene.snapshot().timeline.head); }},
+    {Action::loop, mark_loop},
+    {Action::bookmark, toggle_bookmark},
+    {Action::next_bookmark, [](PanelContext& context) { context.scene.seek_bookmark(1); }},
+    {Action::previous_bookmark, [](PanelContext& context) { context.scene.seek_bookmark(-1); }},
+    {Action::go_on, go_on},
+    {Action::fork, fork},
+    {Action::faster, [](PanelContext& context) { context.scene.change_speed(1); }},
+    {Action::slower, [](PanelContext& context) { context.scene.change_speed(-1); }},
+    {Action::real_time, [](PanelContext& context) { context.scene.set_speed(1); }},
+    {Action::fastest, toggle_fastest},
+    {Action::reset, [](PanelContext& context) { context.scene.reset(); }},
+
+    {Action::frame, [](PanelContext& context) { frame_robots(context, context.scene.selection()); }},
+    {Action::follow, toggle_following},
+    {Action::turntable, toggle_mode<CameraMode::turntable>},
+    {Action::top_view, toggle_mode<CameraMode::top>},
+    {Action::look_along_x, [](PanelContext& context) { look_along(context, 0); }},
+    {Action::look_along_y, [](PanelContext& context) { look_along(context, 1); }},
+    {Action::bookmark_1, [](PanelContext& context) { go_to_bookmark(context, 0); }},
+    {Action::bookmark_2, [](PanelContext& context) { go_to_bookmark(context, 1); }},
+    {Action::bookmark_3, [](PanelContext& context) { go_to_bookmark(context, 2); }},
+    {Action::bookmark_4, [](PanelContext& context) { go_to_bookmark(context, 3); }},
+    {Action::set_bookmark_1, [](PanelContext& context) { set_bookmark(context, 0); }},
+    {Action::set_bookmark_2, [](PanelContext& context) { set_bookmark(context, 1); }},
+    {Action::set_bookmark_3, [](PanelContext& context) { set_bookmark(context, 2); }},
+    {Action::set_bookmark_4, [](PanelContext& context) { set_bookmark(context, 3); }},
+
+    {Action::new_random, generate_robots},
+    {Action::duplicate, [](PanelContext& context) { context.scene.duplicate(context.scene.selection()); }},
+    {Action::remove, [](PanelContext& context) { context.scene.remove(context.scene.selection()); }},
+    {Action::mutate, mutate_selected},
+    {Action::breed, breed_selected},
+    {Action::evolve, evolve_selected},
+    {Action::edit_body, toggle_body_editor},
+    {Action::rename, rename_selected},
+    {Action::keep_selected, [](PanelContext& context) { keep_only(context, context.scene.selection()); }},
+    {Action::keep_best, [](PanelContext& context) { ask_for_best(context); }},
+    {Action::detach, [](PanelContext& context) { context.scene.remove_attachments(selected_or_all(context.scene)); }},
+    {Action::select_all, [](PanelContext& context) { context.scene.select_all(); }},
+    {Action::invert_selection, invert_selection},
+    {Action::undo, undo},
+    {Action::redo, redo},
+    {Action::open, open_robots},
+    {Action::save_scene, save_scene},
+    {Action::save, save_robots},
+
+    {Action::drag_arrows, [](PanelContext& context) { toggle_arrows(context, Action::drag_arrows); }},
+    {Action::contact_arrows, [](PanelContext& context) { toggle_arrows(context, Action::contact_arrows); }},
+    {Action::force_arrows, [](PanelContext& context) { toggle_arrows(context, Action::force_arrows); }},
+    {Action::cells, toggle_cells},
+    {Action::springs, toggle_springs},
+    {Action::labels, toggle_detail<&Shown::labels>},
+    {Action::legend, toggle_detail<&Shown::legend>},
+    {Action::theme, toggle_theme},
+    {Action::compare, toggle_second_view},
+    {Action::ghosts, [](PanelContext& context) { toggle_ghosts(context); }},
+
+    {Action::hide_panels, [](PanelContext& context) { context.preferences.panels = !context.preferences.panels; }},
+    {Action::larger_text, [](PanelContext& context) { change_text_size(context, 1); }},
+    {Action::smaller_text, [](PanelContext& context) { change_text_size(context, -1); }},
+    {Action::full_screen, [](PanelContext& context) { context.window.toggle_full_screen(); }},
+    {Action::screenshot, [](PanelContext& context) { context.screenshot_requested = true; }},
+    {Action::record, [](PanelContext& context) { context.recorder.toggle(context); }},
+};
+
 }  // namespace
+
+void Panels::execute(Action action) {
+  if (const ColorQuantity* quantity = quantity_of(action)) return color_robots(context_, *quantity);
+  const auto* deed = std::ranges::find(deeds, action, &Deed::action);
+  if (deed != std::end(deeds)) return deed->perform(context_);
+  if (action == Action::left_panels || action == Action::right_panels) {
+    const Side side = action == Action::left_panels ? Side::left : Side::right;
+    open_column(side, !context_.preferences.panels || !column_open(side));
+    context_.preferences.panels = true;
+  }
+  if (action == Action::palette) open_palette();
+  if (action == Action::messages) show("Messages");
+  if (action == Action::deselect) escape();
+  if (action == Action::help) help_open_ = !help_open_;
+  if (action == Action::quit) quit();
+  constexpr std::size_t of_panels = 7, colors = 9;  // commands above, and those of quantity_of()
+  static_assert(std::size(deeds) + of_panels + colors == static_cast<std::size_t>(Action::quit) + 1);
+}
 
 // Commands that only menus have, and those with keys.
 std::vector<PaletteEntry> Panels::palette_entries() {
@@ -312,7 +177,7 @@ std::vector<PaletteEntry> Panels::palette_entries() {
     const Action action = binding.action;
     if (quantity_of(action) || action == Action::deselect || action == Action::palette) continue;
     entries.push_back({binding.meaning, binding.group, context_.keys.keys_of(action),
-                       [this, action] { execute(action); }, fmt::format("{} {}", binding.name, other_words(action))});
+                       [this, action] { execute(action); }, fmt::format("{} {}", binding.name, binding.words)});
   }
   entries.push_back({"open a run of an evolution", "File", "", [this] { choose_run(context_); }});
   entries.push_back({"export the pose for other programs", "File", "", [this] { export_pose(context_); }});

@@ -96,10 +96,6 @@ class Panels {
   void draw_edit_menu();
   void draw_view_menu();
   void menu_item(const char* name, Action action, bool enabled = true, bool checked = false);
-  void change_time(Action action);
-  void change_robots(Action action);
-  void change_view(Action action);
-  void change_camera(Action action);
   void frame_new_robots();
   bool is_narrow() const;
   bool column_open(Side side) const;

@@ -264,57 +264,23 @@ void draw_actions(PanelContext& context, const TimelineState& timeline) {
   ImGui::BeginDisabled(!timeline.viewing);
   if (strip_button(context, "Go on", "timeline.go_on",
                    with_keys(context.keys, "go on from this moment; forget what came after it", Action::go_on), false))
-    change_timeline(context, Action::go_on);
+    go_on(context);
   ImGui::EndDisabled();
   if (strip_button(context, "Fork", "timeline.fork",
                    with_keys(context.keys, "go on from this moment, with copies of the selected robots", Action::fork),
                    false))
-    change_timeline(context, Action::fork);
+    fork(context);
   if (strip_button(context, "Loop", "timeline.loop",
                    with_keys(context.keys, "begin a loop here, close it here, end it", Action::loop),
                    timeline.looping || context.scene.loop_begin()))
-    change_timeline(context, Action::loop);
+    mark_loop(context);
   if (strip_button(context, "Mark", "timeline.mark",
                    with_keys(context.keys, "set or remove a bookmark here", Action::bookmark), false))
-    change_timeline(context, Action::bookmark);
+    toggle_bookmark(context);
 }
 
 float actions_width() {
   return button_width("Go on") + button_width("Fork") + button_width("Loop") + button_width("Mark");
-}
-
-void fork(PanelContext& context) {
-  LiveScene& scene = context.scene;
-  const std::vector<RobotId> selected = scene.selection();
-  if (selected.empty()) {
-    context.toasts.show(Tone::info, "select the robots to fork first");
-    return;
-  }
-  const std::vector<RobotId> copies = scene.fork(selected);
-  scene.clear_selection();
-  for (const RobotId id : copies) scene.select(id, false);
-  // Those that part are seen together.
-  std::vector<RobotId> both = selected;
-  both.insert(both.end(), copies.begin(), copies.end());
-  if (context.camera.mode() == CameraMode::still) context.to_frame = both;
-  context.toasts.show(Tone::info, fmt::format("{} forked at {}",
-                                              copies.size() == 1 ? "1 robot" : fmt::format("{} robots", copies.size()),
-                                              moment_text(scene.snapshot().time)));
-}
-
-void mark_loop(PanelContext& context) {
-  const std::string now = moment_text(context.scene.snapshot().time);
-  switch (context.scene.mark_loop()) {
-    case LoopMark::begun:
-      context.toasts.show(Tone::info, "a loop begins at " + now + "; go to its end and press again");
-      break;
-    case LoopMark::closed:
-      context.toasts.show(Tone::info, "the loop ends at " + now);
-      break;
-    case LoopMark::ended:
-      context.toasts.show(Tone::info, "no loop any more");
-      break;
-  }
 }
 
 }  // namespace
@@ -388,23 +354,50 @@ void end_scrub(PanelContext& context) {
   if (std::exchange(context.scrub.plays_on, false)) context.scene.play();
 }
 
-void change_timeline(PanelContext& context, Action action) {
+void fork(PanelContext& context) {
   LiveScene& scene = context.scene;
-  const TimelineState& timeline = scene.snapshot().timeline;
-  if (action == Action::step_back) scene.step_back();
-  if (action == Action::first_moment) scene.seek(timeline.begin);
-  if (action == Action::present) scene.seek(timeline.head);
-  if (action == Action::loop) mark_loop(context);
-  if (action == Action::bookmark)
-    context.toasts.show(Tone::info, (scene.toggle_bookmark() ? "bookmark at " : "no bookmark any more at ") +
-                                        moment_text(scene.snapshot().time));
-  if (action == Action::next_bookmark) scene.seek_bookmark(1);
-  if (action == Action::previous_bookmark) scene.seek_bookmark(-1);
-  if (action == Action::go_on && timeline.viewing) {
-    scene.go_on();
-    context.toasts.show(Tone::info, "goes on from " + moment_text(scene.snapshot().time));
+  const std::vector<RobotId> selected = scene.selection();
+  if (selected.empty()) {
+    context.toasts.show(Tone::info, "select the robots to fork first");
+    return;
   }
-  if (action == Action::fork) fork(context);
+  const std::vector<RobotId> copies = scene.fork(selected);
+  scene.clear_selection();
+  for (const RobotId id : copies) scene.select(id, false);
+  // Those that part are seen together.
+  std::vector<RobotId> both = selected;
+  both.insert(both.end(), copies.begin(), copies.end());
+  if (context.camera.mode() == CameraMode::still) context.to_frame = both;
+  context.toasts.show(Tone::info, fmt::format("{} forked at {}",
+                                              copies.size() == 1 ? "1 robot" : fmt::format("{} robots", copies.size()),
+                                              moment_text(scene.snapshot().time)));
+}
+
+void mark_loop(PanelContext& context) {
+  const std::string now = moment_text(context.scene.snapshot().time);
+  switch (context.scene.mark_loop()) {
+    case LoopMark::begun:
+      context.toasts.show(Tone::info, "a loop begins at " + now + "; go to its end and press again");
+      break;
+    case LoopMark::closed:
+      context.toasts.show(Tone::info, "the loop ends at " + now);
+      break;
+    case LoopMark::ended:
+      context.toasts.show(Tone::info, "no loop any more");
+      break;
+  }
+}
+
+void toggle_bookmark(PanelContext& context) {
+  LiveScene& scene = context.scene;
+  context.toasts.show(Tone::info, (scene.toggle_bookmark() ? "bookmark at " : "no bookmark any more at ") +
+                                      moment_text(scene.snapshot().time));
+}
+
+void go_on(PanelContext& context) {
+  if (!context.scene.snapshot().timeline.viewing) return;
+  context.scene.go_on();
+  context.toasts.show(Tone::info, "goes on from " + moment_text(context.scene.snapshot().time));
 }
 
 }  // namespace mercury::window

@@ -153,6 +153,12 @@ void copy_as_command(PanelContext& context, const char* subcommand) {
   for (const std::string& line : command.notes) context.toasts.show(Tone::warning, line);
 }
 
+void change_view(PanelContext& context, const std::function<void(ViewSettings& view)>& change) {
+  ViewSettings view = context.scene.view();
+  change(view);
+  context.scene.set_view(view);
+}
+
 void toggle_arrows(PanelContext& context, Action action) {
   struct Kind {
     Action action;

@@ -102,7 +102,8 @@ struct KeyBinding {
   const char* keys;     // by default, alternatives with " or " between them: "Right or ."; empty = none
   const char* meaning;  // "play or pause"
   const char* group;
-  bool repeats = false;  // again while the key is held down
+  bool repeats = false;    // again while the key is held down
+  const char* words = "";  // other words that find it in the command palette
 };
 
 // All commands; those of a group stand together.
