@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "app/live/recording_player.h"
@@ -65,6 +66,11 @@ class Exchange {
     const std::lock_guard lock(mutex_);
     change(pending_);
     wake_.notify_all();
+  }
+  // The same, for a command that replaces the pending one of its kind.
+  template <class Command>
+  void set(std::optional<Command> PendingCommands::*kind, std::type_identity_t<Command> command) {
+    request([&](PendingCommands& pending) { pending.*kind = std::move(command); });
   }
   std::shared_ptr<const Snapshot> newest() {
     const std::lock_guard lock(mutex_);
@@ -236,22 +242,18 @@ void PhysicsThread::go_on() {
   });
 }
 void PhysicsThread::set_loop(std::optional<std::pair<double, double>> times) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.loop = times; });
+  parts_->exchange.set(&PendingCommands::loop, times);
 }
 void PhysicsThread::set_timeline_budget(std::size_t bytes) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.timeline_budget = bytes; });
+  parts_->exchange.set(&PendingCommands::timeline_budget, bytes);
 }
-void PhysicsThread::set_start(const TrialStart& start) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.start = start; });
-}
-void PhysicsThread::set_view(const ViewSettings& settings) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.view = settings; });
-}
+void PhysicsThread::set_start(const TrialStart& start) { parts_->exchange.set(&PendingCommands::start, start); }
+void PhysicsThread::set_view(const ViewSettings& settings) { parts_->exchange.set(&PendingCommands::view, settings); }
 void PhysicsThread::set_perturbations(std::vector<LivePerturbation> perturbations) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.perturbations = std::move(perturbations); });
+  parts_->exchange.set(&PendingCommands::perturbations, std::move(perturbations));
 }
 void PhysicsThread::set_bridge(std::shared_ptr<PositionBridge> bridge) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.bridge = std::move(bridge); });
+  parts_->exchange.set(&PendingCommands::bridge, std::move(bridge));
 }
 int PhysicsThread::cuda_device() const { return parts_->cuda_device; }
 void PhysicsThread::play() {
@@ -269,7 +271,7 @@ void PhysicsThread::pause() {
 }
 void PhysicsThread::set_speed(double speed) {
   if (!(speed > 0)) return;
-  parts_->exchange.request([&](PendingCommands& pending) { pending.speed = speed; });
+  parts_->exchange.set(&PendingCommands::speed, speed);
 }
 void PhysicsThread::step(std::int64_t count) {
   parts_->exchange.request([&](PendingCommands& pending) {
@@ -285,22 +287,20 @@ void PhysicsThread::reset() {
   });
 }
 void PhysicsThread::pause_on_explosion(bool pause) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.pause_on_explosion = pause; });
+  parts_->exchange.set(&PendingCommands::pause_on_explosion, pause);
 }
 
 void PhysicsThread::set_second(std::optional<SideDifference> difference) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.difference = std::move(difference); });
+  parts_->exchange.set(&PendingCommands::difference, std::move(difference));
 }
 void PhysicsThread::set_ghosts(std::vector<LiveRobot> ghosts) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.ghosts = std::move(ghosts); });
+  parts_->exchange.set(&PendingCommands::ghosts, std::move(ghosts));
 }
 const Measurements& PhysicsThread::second_measurements() const { return parts_->comparison.second_measurements(); }
 const Measurements& PhysicsThread::ghost_measurements() const { return parts_->comparison.ghost_measurements(); }
 
 void PhysicsThread::watch_velocities(bool watch) { parts_->velocities_wanted = watch; }
-void PhysicsThread::watch_brain(RobotId robot) {
-  parts_->exchange.request([&](PendingCommands& pending) { pending.brain = robot; });
-}
+void PhysicsThread::watch_brain(RobotId robot) { parts_->exchange.set(&PendingCommands::brain, robot); }
 
 std::shared_ptr<const Snapshot> PhysicsThread::newest() { return parts_->exchange.newest(); }
 std::vector<Explosion> PhysicsThread::take_explosions() { return parts_->explosions.take(); }

@@ -11,15 +11,25 @@ namespace {
 
 using nlohmann::json;
 
-template <class Value>
-void read(const json& document, const char* name, Value& value) {
-  const auto found = document.find(name);
-  if (found == document.end()) return;
-  try {
-    value = found->get<Value>();
-  } catch (const json::exception&) {
-    // A value of another type: keep the default.
-  }
+// Calls visit(name, value) for each member of the file but the quality, which is a word in it.
+void for_each_member(auto& preferences, auto visit) {
+  visit("width", preferences.size.width);
+  visit("height", preferences.size.height);
+  visit("text_scale", preferences.text_scale);
+  visit("panels", preferences.panels);
+  visit("left_open", preferences.left_open);
+  visit("right_open", preferences.right_open);
+  visit("left_width", preferences.left_width);
+  visit("right_width", preferences.right_width);
+  visit("left_panel", preferences.left_panel);
+  visit("right_panel", preferences.right_panel);
+  visit("folder", preferences.folder);
+  visit("open_folder", preferences.open_folder);
+  visit("save_folder", preferences.save_folder);
+  visit("pause_on_explosion", preferences.pause_on_explosion);
+  visit("timeline_megabytes", preferences.timeline_megabytes);
+  visit("compared", preferences.compared);
+  visit("gestures_used", preferences.gestures_used);
 }
 
 }  // namespace
@@ -35,25 +45,18 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
   std::ifstream stream(file);
   const json document = json::parse(stream, nullptr, false);
   if (!document.is_object()) return;
-  read(document, "width", preferences.size.width);
-  read(document, "height", preferences.size.height);
-  read(document, "text_scale", preferences.text_scale);
-  read(document, "panels", preferences.panels);
-  read(document, "left_open", preferences.left_open);
-  read(document, "right_open", preferences.right_open);
-  read(document, "left_width", preferences.left_width);
-  read(document, "right_width", preferences.right_width);
-  read(document, "left_panel", preferences.left_panel);
-  read(document, "right_panel", preferences.right_panel);
-  read(document, "folder", preferences.folder);
-  read(document, "open_folder", preferences.open_folder);
-  read(document, "save_folder", preferences.save_folder);
-  read(document, "pause_on_explosion", preferences.pause_on_explosion);
-  read(document, "timeline_megabytes", preferences.timeline_megabytes);
-  read(document, "compared", preferences.compared);
-  read(document, "gestures_used", preferences.gestures_used);
+  const auto read = [&]<class Value>(const char* name, Value& value) {
+    const auto found = document.find(name);
+    if (found == document.end()) return;
+    try {
+      value = found->get<Value>();
+    } catch (const json::exception&) {
+      // A value of another type: keep the default.
+    }
+  };
+  for_each_member(preferences, read);
   std::string quality;
-  read(document, "quality", quality);
+  read("quality", quality);
   try {
     if (!quality.empty()) preferences.quality = render::quality_named(quality);
   } catch (const std::invalid_argument&) {
@@ -69,24 +72,8 @@ void load(Preferences& preferences, const std::filesystem::path& file) {
 }
 
 void save(const Preferences& preferences, const std::filesystem::path& file) {
-  const json document{{"width", preferences.size.width},
-                      {"height", preferences.size.height},
-                      {"text_scale", preferences.text_scale},
-                      {"panels", preferences.panels},
-                      {"left_open", preferences.left_open},
-                      {"right_open", preferences.right_open},
-                      {"left_width", preferences.left_width},
-                      {"right_width", preferences.right_width},
-                      {"left_panel", preferences.left_panel},
-                      {"right_panel", preferences.right_panel},
-                      {"quality", name_of(preferences.quality)},
-                      {"folder", preferences.folder},
-                      {"open_folder", preferences.open_folder},
-                      {"save_folder", preferences.save_folder},
-                      {"pause_on_explosion", preferences.pause_on_explosion},
-                      {"timeline_megabytes", preferences.timeline_megabytes},
-                      {"compared", preferences.compared},
-                      {"gestures_used", preferences.gestures_used}};
+  json document{{"quality", name_of(preferences.quality)}};
+  for_each_member(preferences, [&](const char* name, const auto& value) { document[name] = value; });
   std::error_code ignored;
   std::filesystem::create_directories(file.parent_path(), ignored);
   const std::filesystem::path temporary = file.string() + ".new";
