@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -15,6 +14,7 @@
 #include "app/base/file_name.h"
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
+#include "app/scene/view_words.h"
 
 namespace mercury {
 namespace {
@@ -62,27 +62,6 @@ void add_parameters(Options& options, const Environment& environment) {
   for_each_parameter_pair(environment, usual, [&](const auto& parameter, const auto& part, const auto& usual_part) {
     add_parameter(options, parameter, part.*parameter.member, usual_part.*parameter.member);
   });
-}
-
-std::string shown_text(const Shown& shown) {
-  const std::pair<const char*, bool> items[] = {{"skin", shown.skin},
-                                                {"springs", shown.springs},
-                                                {"masses", shown.masses},
-                                                {"drag", shown.arrows.drag},
-                                                {"lift", shown.arrows.lift},
-                                                {"velocity", shown.arrows.velocity},
-                                                {"gravity", shown.arrows.gravity},
-                                                {"contact", shown.arrows.contact},
-                                                {"path", shown.path},
-                                                {"labels", shown.labels},
-                                                {"captions", shown.captions},
-                                                {"legend", shown.legend},
-                                                {"clock", shown.clock},
-                                                {"scale", shown.scale_bar}};
-  std::vector<std::string> words;
-  for (const auto& [name, on] : items)
-    if (on) words.push_back(name);
-  return words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ","));
 }
 
 std::string cut_text(const render::Cut& cut) {

@@ -33,8 +33,7 @@ void ViewOptions::add_to(const Command& command) {
                 "Exactly what is shown, of skin,springs,masses, arrows drag,lift,velocity,gravity,contact,force, and "
                 "path,labels,captions,legend,clock,scale (default skin,clock)",
                 "LIST", text_from)
-          .offering({"skin", "springs", "masses", "drag", "lift", "velocity", "gravity", "contact", "force", "path",
-                     "labels", "captions", "legend", "clock", "scale"}));
+          .offering(shown_words()));
   add(add_number(command, "--arrow-length", words_.arrow_length, "Above 1: longer arrows (default 1)", "X"));
   add(add_number(command, "--arrow-density", words_.arrow_density, "Share of the arrows that is drawn (default 1)",
                  "X"));

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
+#include <iterator>
 #include <numbers>
 #include <string_view>
 #include <vector>
@@ -85,6 +85,28 @@ render::Cut cut_from(const std::string& text) {
   return cut;
 }
 
+struct ShownItem {
+  std::string_view word;
+  bool& (*of)(Shown& shown);
+};
+constexpr ShownItem shown_items[] = {
+    {"skin", [](Shown& shown) -> bool& { return shown.skin; }},
+    {"springs", [](Shown& shown) -> bool& { return shown.springs; }},
+    {"masses", [](Shown& shown) -> bool& { return shown.masses; }},
+    {"drag", [](Shown& shown) -> bool& { return shown.arrows.drag; }},
+    {"lift", [](Shown& shown) -> bool& { return shown.arrows.lift; }},
+    {"velocity", [](Shown& shown) -> bool& { return shown.arrows.velocity; }},
+    {"gravity", [](Shown& shown) -> bool& { return shown.arrows.gravity; }},
+    {"contact", [](Shown& shown) -> bool& { return shown.arrows.contact; }},
+    {"force", [](Shown& shown) -> bool& { return shown.arrows.force; }},
+    {"path", [](Shown& shown) -> bool& { return shown.path; }},
+    {"labels", [](Shown& shown) -> bool& { return shown.labels; }},
+    {"captions", [](Shown& shown) -> bool& { return shown.captions; }},
+    {"legend", [](Shown& shown) -> bool& { return shown.legend; }},
+    {"clock", [](Shown& shown) -> bool& { return shown.clock; }},
+    {"scale", [](Shown& shown) -> bool& { return shown.scale_bar; }},
+};
+
 void validate(const ViewWords& words) {
   if (words.scale) {
     const auto [low, high] = *words.scale;
@@ -129,34 +151,30 @@ void set_layout(ViewSettings& view, Layout layout) {
   if (layout == Layout::race) view.shown.labels = true;
 }
 
+std::vector<std::string> shown_words() {
+  std::vector<std::string> words;
+  for (const ShownItem& item : shown_items) words.emplace_back(item.word);
+  return words;
+}
+
+std::string shown_text(Shown shown) {
+  std::vector<std::string_view> words;
+  for (const ShownItem& item : shown_items)
+    if (item.of(shown)) words.push_back(item.word);
+  return words.empty() ? "nothing" : fmt::format("{}", fmt::join(words, ","));
+}
+
 Shown shown_from(const std::string& text) {
   Shown shown{.skin = false, .clock = false};
   if (text == "nothing") return shown;
-  const std::vector<std::pair<std::string_view, bool*>> items{{"skin", &shown.skin},
-                                                              {"springs", &shown.springs},
-                                                              {"masses", &shown.masses},
-                                                              {"drag", &shown.arrows.drag},
-                                                              {"lift", &shown.arrows.lift},
-                                                              {"velocity", &shown.arrows.velocity},
-                                                              {"gravity", &shown.arrows.gravity},
-                                                              {"contact", &shown.arrows.contact},
-                                                              {"force", &shown.arrows.force},
-                                                              {"path", &shown.path},
-                                                              {"labels", &shown.labels},
-                                                              {"captions", &shown.captions},
-                                                              {"legend", &shown.legend},
-                                                              {"clock", &shown.clock},
-                                                              {"scale", &shown.scale_bar}};
   for (std::size_t start = 0, end = 0; end != std::string::npos; start = end + 1) {
     end = text.find(',', start);
     const std::string_view word = std::string_view(text).substr(start, end - start);
-    const auto item = std::ranges::find(items, word, [](const auto& known) { return known.first; });
-    if (item == items.end()) {
-      std::vector<std::string_view> known;
-      for (const auto& entry : items) known.push_back(entry.first);
-      throw ParameterError("show", fmt::format("\"{}\" is not accepted; give some of {}", word, fmt::join(known, ",")));
-    }
-    *item->second = true;
+    const auto* item = std::ranges::find(shown_items, word, &ShownItem::word);
+    if (item == std::end(shown_items))
+      throw ParameterError("show",
+                           fmt::format("\"{}\" is not accepted; give some of {}", word, fmt::join(shown_words(), ",")));
+    item->of(shown) = true;
   }
   return shown;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/scene/view_settings.h"
 
@@ -42,5 +43,8 @@ ViewSettings view_settings(const ViewWords& words, Layout usual = Layout::grid);
 
 // "skin,labels,clock": shows exactly these. Throws ParameterError("show", ...) that lists the possible words.
 Shown shown_from(const std::string& text);
+std::vector<std::string> shown_words();
+// As shown_from() reads it; without the sizes of arrows.
+std::string shown_text(Shown shown);
 
 }  // namespace mercury

@@ -101,5 +101,12 @@ TEST(ViewWords, ErrorsNameTheParameter) {
             "grid");
 }
 
+TEST(ViewWords, WhatIsShownIsWrittenAsItIsRead) {
+  for (const std::string& word : shown_words()) EXPECT_EQ(shown_text(shown_from(word)), word);
+  EXPECT_EQ(shown_text(Shown{}), "skin,clock");
+  EXPECT_EQ(shown_text(shown_from("nothing")), "nothing");
+  EXPECT_EQ(shown_text(Shown{.arrows = {.contact = true, .force = true}}), "skin,contact,force,clock");
+}
+
 }  // namespace
 }  // namespace mercury::test
