@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include "app/commands/description.h"
 #include "app/commands/run_film.h"
@@ -109,7 +108,7 @@ std::string algorithm_text(const EvolutionSettings& settings) {
 
 struct Totals {
   std::size_t born = 0;
-  std::map<Fate, std::size_t> fates;
+  FateCounts fates;
   double seconds = 0;
   std::vector<std::string> devices;
 };
@@ -118,12 +117,7 @@ Totals totals_of(const RunHistory& run) {
   Totals totals;
   for (const GenerationSummary& generation : run.generations()) {
     totals.born += generation.born;
-    totals.fates[Fate::exploded] += generation.exploded;
-    totals.fates[Fate::overstretched] += generation.overstretched;
-    totals.fates[Fate::too_small] += generation.too_small;
-    totals.fates[Fate::undefined] += generation.undefined;
-    totals.fates[Fate::stopped] += generation.stopped;
-    totals.fates[Fate::failed] += generation.failed;
+    totals.fates += generation.fates;
     totals.seconds += generation.times.seconds;
     const std::string& device = generation.times.device;
     if (!device.empty() && std::ranges::find(totals.devices, device) == totals.devices.end())
@@ -135,7 +129,9 @@ Totals totals_of(const RunHistory& run) {
 std::string individuals_text(const RunHistory& run, const Totals& totals) {
   std::string text = fmt::format("{}, of which {} live", grouped(totals.born), grouped(run.living().size()));
   std::string separator = "; ";
-  for (const auto& [fate, count] : totals.fates) {
+  for (const Fate fate :
+       {Fate::stopped, Fate::exploded, Fate::overstretched, Fate::failed, Fate::too_small, Fate::undefined}) {
+    const std::size_t count = totals.fates[fate];
     if (count == 0) continue;
     text += fmt::format("{}{} {} ({:.1f} %)", separator, grouped(count), name_of(fate),
                         100 * static_cast<double>(count) / static_cast<double>(totals.born));

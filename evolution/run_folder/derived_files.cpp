@@ -264,15 +264,10 @@ void write_generations(const RunHistory& run) {
     csv.cell(generation.number).cell(generation.born).cell(generation.living).cell(generation.best);
     for (const ScoreSpread& scores : generation.scores)
       csv.cell(scores.highest).cell(scores.upper_quartile).cell(scores.median).cell(scores.lower_quartile);
-    csv.cell(generation.born - generation.stopped - generation.exploded - generation.overstretched -
-             generation.too_small - generation.undefined - generation.failed)
-        .cell(generation.stopped)
-        .cell(generation.exploded)
-        .cell(generation.overstretched)
-        .cell(generation.too_small)
-        .cell(generation.undefined)
-        .cell(generation.failed)
-        .cell(generation.lines)
+    for (const Fate fate : {Fate::sound, Fate::stopped, Fate::exploded, Fate::overstretched, Fate::too_small,
+                            Fate::undefined, Fate::failed})
+      csv.cell(generation.fates[fate]);
+    csv.cell(generation.lines)
         .cell(species.empty() ? std::string() : std::to_string(species[static_cast<std::size_t>(generation.number)]));
     if (has_map(run))
       csv.cell(generation.scored).cell(generation.coverage).cell(generation.score_sum);

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace mercury {
@@ -296,18 +297,15 @@ std::string subtitle_of(const RunHistory& run) {
 
 // How many robots did not end well.
 std::string footer_of(const RunHistory& run) {
-  std::uint64_t exploded = 0, overstretched = 0, too_small = 0, failed = 0;
-  for (const GenerationSummary& generation : run.generations()) {
-    exploded += generation.exploded;
-    overstretched += generation.overstretched;
-    too_small += generation.too_small;
-    failed += generation.failed;
-  }
+  FateCounts fates;
+  for (const GenerationSummary& generation : run.generations()) fates += generation.fates;
   std::string text = with_commas(run.individuals().size()) + " robots were tried";
-  if (exploded > 0) text += "; " + with_commas(exploded) + " exploded";
-  if (overstretched > 0) text += "; " + with_commas(overstretched) + " were overstretched";
-  if (too_small > 0) text += "; " + with_commas(too_small) + " were too small";
-  if (failed > 0) text += "; " + with_commas(failed) + " failed";
+  constexpr std::pair<Fate, const char*> ends[] = {{Fate::exploded, " exploded"},
+                                                   {Fate::overstretched, " were overstretched"},
+                                                   {Fate::too_small, " were too small"},
+                                                   {Fate::failed, " failed"}};
+  for (const auto& [fate, what] : ends)
+    if (fates[fate] > 0) text += "; " + with_commas(fates[fate]) + what;
   return text;
 }
 

@@ -97,15 +97,7 @@ GenerationSummary summary_of(int number, GenerationTimes times, std::span<const 
                              std::span<const std::uint64_t> living, std::span<const Individual> individuals,
                              std::span<const std::uint64_t> first_ancestors, std::size_t objectives) {
   GenerationSummary summary{.number = number, .born = born.size(), .living = living.size()};
-  for (const Individual& individual : born) {
-    const Fate fate = individual.assessment.fate;
-    summary.exploded += fate == Fate::exploded;
-    summary.overstretched += fate == Fate::overstretched;
-    summary.too_small += fate == Fate::too_small;
-    summary.undefined += fate == Fate::undefined;
-    summary.stopped += fate == Fate::stopped;
-    summary.failed += fate == Fate::failed;
-  }
+  for (const Individual& individual : born) ++summary.fates[individual.assessment.fate];
   if (!living.empty()) {
     summary.best = living.front();
     summary.best_scores = individuals[living.front()].assessment.scores;

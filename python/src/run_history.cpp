@@ -88,12 +88,12 @@ nb::dict generations_of(const RunHistory& self) {
     spread("upper_quartile", &ScoreSpread::upper_quartile);
     spread("highest", &ScoreSpread::highest);
   }
-  column("exploded", Integer{}, [](const GenerationSummary& one) { return one.exploded; });
-  column("overstretched", Integer{}, [](const GenerationSummary& one) { return one.overstretched; });
-  column("too_small", Integer{}, [](const GenerationSummary& one) { return one.too_small; });
-  column("undefined", Integer{}, [](const GenerationSummary& one) { return one.undefined; });
-  column("stopped", Integer{}, [](const GenerationSummary& one) { return one.stopped; });
-  column("failed", Integer{}, [](const GenerationSummary& one) { return one.failed; });
+  constexpr std::pair<const char*, Fate> fates[] = {
+      {"exploded", Fate::exploded},   {"overstretched", Fate::overstretched},
+      {"too_small", Fate::too_small}, {"undefined", Fate::undefined},
+      {"stopped", Fate::stopped},     {"failed", Fate::failed}};
+  for (const auto& [name, fate] : fates)
+    column(name, Integer{}, [fate = fate](const GenerationSummary& one) { return one.fates[fate]; });
   column("lines", Integer{}, [](const GenerationSummary& one) { return one.lines; });
   if (const std::vector<std::size_t> species = self.species(); !species.empty())
     column("species", Integer{},

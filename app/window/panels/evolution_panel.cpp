@@ -158,37 +158,27 @@ void draw_summary(const RunView& view) {
                    settings.trials.seconds, name_of(settings.configuration.environment), objectives)
            .c_str());
   tooltip(fmt::format("{}: {}", settings.algorithm.name, algorithm_named(settings.algorithm.name).help).c_str());
-  std::size_t born = 0, exploded = 0, overstretched = 0, too_small = 0, undefined = 0, failed = 0;
+  std::size_t born = 0;
+  FateCounts fates;
   for (const GenerationSummary& generation : view.generations) {
     born += generation.born;
-    exploded += generation.exploded;
-    overstretched += generation.overstretched;
-    too_small += generation.too_small;
-    undefined += generation.undefined;
-    failed += generation.failed;
+    fates += generation.fates;
   }
   if (born == 0) return;
-  std::string text = fmt::format("{} robots were tried", born);
-  const auto add = [&](std::size_t count, const char* what) {
-    if (count > 0) text += fmt::format(", {} {}", count, what);
+  std::string text = fmt::format("{} robots were tried", born), meaning;
+  const auto add = [&](Fate fate, const char* what, const std::string& explanation) {
+    if (fates[fate] == 0) return;
+    text += fmt::format(", {} {}", fates[fate], what);
+    meaning += fmt::format("{}{}: {}", meaning.empty() ? "" : "\n", what, explanation);
   };
-  add(exploded, "exploded");
-  add(overstretched, "overstretched");
-  add(too_small, "too small");
-  add(undefined, "without a score");
-  add(failed, "failed");
+  add(Fate::exploded, "exploded", "the simulation of the robot failed; a smaller time step may help");
+  add(Fate::overstretched, "overstretched",
+      fmt::format("a spring was stretched or compressed by more than {:.3g} % of its length",
+                  100 * settings.trials.strain_limit));
+  add(Fate::too_small, "too small", "fewer masses than robots of this run must have");
+  add(Fate::undefined, "without a score", "the formula of the objective has no value for the robot");
+  add(Fate::failed, "failed", "the robot could not be made or tried");
   note(text.c_str());
-  std::string meaning;
-  const auto explain = [&](std::size_t count, const std::string& what) {
-    if (count > 0) meaning += (meaning.empty() ? "" : "\n") + what;
-  };
-  explain(exploded, "exploded: the simulation of the robot failed; a smaller time step may help");
-  explain(overstretched,
-          fmt::format("overstretched: a spring was stretched or compressed by more than {:.3g} % of its length",
-                      100 * settings.trials.strain_limit));
-  explain(too_small, "too small: fewer masses than robots of this run must have");
-  explain(undefined, "without a score: the formula of the objective has no value for the robot");
-  explain(failed, "failed: the robot could not be made or tried");
   if (!meaning.empty()) tooltip((meaning + "\nthey rank after all others").c_str());
 }
 

@@ -10,6 +10,7 @@
 //     progress.svg     scores over time, or the map of elites
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -47,11 +48,25 @@ struct ScoreSpread {
   double lower_quartile = worst_score, median = worst_score, upper_quartile = worst_score, highest = worst_score;
 };
 
+// How many robots had each fate.
+class FateCounts {
+ public:
+  std::size_t& operator[](Fate fate) { return counts_[static_cast<std::size_t>(fate)]; }
+  std::size_t operator[](Fate fate) const { return counts_[static_cast<std::size_t>(fate)]; }
+  FateCounts& operator+=(const FateCounts& other) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+    return *this;
+  }
+
+ private:
+  std::array<std::size_t, static_cast<std::size_t>(last_fate) + 1> counts_{};
+};
+
 // A summary of a generation, computed from its individuals.
 struct GenerationSummary {
   int number = 0;
   std::size_t born = 0, living = 0;
-  std::size_t exploded = 0, overstretched = 0, too_small = 0, undefined = 0, stopped = 0, failed = 0;  // born in it
+  FateCounts fates;                 // of those born in it
   std::uint64_t best = 0;           // id of the best living individual
   std::vector<double> best_scores;  // its scores
   double median_score = 0;          // of the living, first objective
