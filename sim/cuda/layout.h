@@ -37,10 +37,6 @@ namespace mercury::cuda {
 // Rest lengths in a robot's table.
 inline constexpr std::uint32_t max_lengths = 64;
 
-// Rows of springs that a warp loads and computes together. After the rows of the last robot come as many unused ones,
-// since a warp reads ahead.
-inline constexpr int rows_at_once = 4;
-
 struct RobotHeader {
   std::uint32_t masses, tiles, face_pairs, springs;
   float force_scale, correction_scale;  // FixedPointScale

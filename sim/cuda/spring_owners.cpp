@@ -33,6 +33,7 @@ class OwnerSearch {
     if (partly_empty_) add_to_last_lanes(-head_start);
     list_candidates();
     lower_peaks();
+    group_rows();
   }
 
   OwnedSprings take() {
@@ -130,6 +131,39 @@ class OwnerSearch {
       open.pop_back();
     }
     while (!open.empty()) std::erase_if(open, [&](std::uint32_t tile) { return !lower(tile); });
+  }
+
+  // Rows are computed rows_at_once at a time, so limits become multiples of it where that takes no rows more: tiles
+  // whose limits rise take springs of tiles whose limits fall, first of those that are little above a multiple. What is
+  // too many in the end comes off single rows. A partly empty tile keeps its limit.
+  void group_rows() {
+    constexpr auto group = static_cast<std::uint32_t>(rows_at_once);
+    std::vector<std::uint32_t> above(tiles_), order(tiles_);
+    std::uint32_t too_many = 0;
+    for (std::uint32_t tile = 0; tile < tiles_ - partly_empty_; ++tile) {
+      above[tile] = limit_[tile] % group;
+      if (above[tile] == 0) continue;
+      change_limit(tile, static_cast<int>(group - above[tile]));
+      too_many += group - above[tile];
+    }
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t tile) { return above[tile]; });
+    for (const std::uint32_t step : {group, 1u})
+      for (const std::uint32_t tile : order)
+        while (above[tile] > 0 && too_many >= step && lower_by(tile, step)) {
+          too_many -= step;
+          if (step == group) break;
+        }
+  }
+
+  // lower(), all of these times or not at all.
+  bool lower_by(std::uint32_t tile, std::uint32_t rows) {
+    for (std::uint32_t lowered = 0; lowered < rows; ++lowered)
+      if (!lower(tile)) {
+        change_limit(tile, static_cast<int>(lowered));
+        return false;
+      }
+    return true;
   }
 
   // From here on loads are relative to the limit of their tile.

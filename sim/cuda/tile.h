@@ -33,6 +33,10 @@ namespace mercury::cuda {
 inline constexpr std::uint32_t lanes = 32;
 inline constexpr std::uint32_t field_bytes = lanes * 4;
 
+// Rows of springs that a warp loads and computes together. After the rows of the last robot come as many unused ones,
+// since a warp reads ahead.
+inline constexpr int rows_at_once = 4;
+
 enum Field : std::uint32_t { field_x = 0, field_v = 3, field_sum = 6, field_valence = 9 };
 
 // Fields of a tile in device memory: positions and velocities.
