@@ -18,9 +18,8 @@ class BlockRobot {
 
   __device__ BlockRobot(const StepArguments& arguments, const ThreadContext<Memory>& context)
       : arguments_(arguments), header_(header_of(arguments.batch, context.robot)), context_(context) {
-    const std::uint32_t tiles_per_warp = (header_.tiles + warps() - 1) / warps();
-    first_tile_ = min(context.warp * tiles_per_warp, header_.tiles);
-    last_tile_ = min(first_tile_ + tiles_per_warp, header_.tiles);
+    first_tile_ = first_tile_of(context.warp, header_.tiles, warps());
+    last_tile_ = first_tile_of(context.warp + 1, header_.tiles, warps());
   }
 
   __device__ const StepArguments& arguments() const { return arguments_; }
@@ -43,12 +42,13 @@ class BlockRobot {
     return {context_.masses + tile * tile_bytes + context_.lane * 4};
   }
   __device__ Mass<Memory> mass_at(std::uint32_t slot) const { return {context_.masses + byte_offset(slot)}; }
-  // The mass at a corner of a face (layout.h).
-  __device__ Mass<Memory> corner(std::uint32_t address) const {
+  // The mass at a corner of a face (layout.h), whose address is in the lower or the higher half of a word.
+  template <bool higher>
+  __device__ Mass<Memory> corner(std::uint32_t word) const {
     if constexpr (Memory::on_chip)
-      return {context_.masses + address * 4};
+      return {__dp2a_lo(word, higher ? 0x0400u : 0x0004u, context_.masses)};  // masses + 4 times the half
     else
-      return mass_at(address);
+      return mass_at(higher ? word >> 16 : word & 0xffff);
   }
   __device__ static std::uint32_t slot_of_corner(std::uint32_t address) {
     return slot_at_offset(address, Memory::on_chip ? fields : 0);
@@ -126,7 +126,7 @@ class BlockRobot {
   // constraint ratio are multiplied by it instead of the stiffnesses, so that robots can share a material table.
   __device__ float scale() const { return solver == Solver::force ? header_.force_scale : header_.correction_scale; }
 
-  // What a spring record says. __byte_perm extracts a field in one instruction.
+  // What a spring record says. A dot product of bytes multiplies a field and adds an address in one instruction.
   __device__ Mass<Memory> partner_of(const SpringRecord& record) const {
     if constexpr (Memory::on_chip)
       return {context_.masses + (record.x >> 14)};  // 4 (record.x >> 16), since the bits between are 0
@@ -135,7 +135,7 @@ class BlockRobot {
   }
   __device__ float scaled_rest_length_of(const SpringRecord& record) const {
     if constexpr (record_words == 1)
-      return OnChip::load(context_.lengths + __byte_perm(record.x, 0, 0x4441) * 4, 0);  // record.x >> 8 & 0xff
+      return OnChip::load(__dp4a(record.x, 0x0400u, context_.lengths), 0);  // lengths + 4 (record.x >> 8 & 0xff)
     else
       return scale() * __uint_as_float(record.y);
   }
@@ -215,7 +215,7 @@ class BlockRobot {
 
   __device__ float2 table_entry_of(const SpringRecord& record) const {
     const std::uint32_t bytes_per_material = parameter_bytes << arguments_.launch.table_copy_bits;
-    return load_pair(context_.material_table + material_of(record) * bytes_per_material);
+    return load_pair(__dp4a(record.x, bytes_per_material, context_.material_table));  // of the lowest byte
   }
 
   // Bypasses the L1 cache, which is left to data that is read again.

@@ -21,28 +21,34 @@ class FacePass {
   template <class Robot, class EnvironmentModel>
   __device__ void add(const Robot& robot, const EnvironmentModel& model, float units_per_newton, std::uint32_t step,
                       std::uint32_t dither, Failure& failure) const {
+    // Normals will be twice as long as of_sums() expects them.
+    const FaceCoefficients<float> by = model.of_sums(0.5f * units_per_newton);
     uint2 next = first_;
     if (!prefetches && first_pair(robot) < robot.header().face_pairs) next = load(robot, first_pair(robot));
     for (std::uint32_t p = first_pair(robot); p < robot.header().face_pairs; p += robot.threads()) {
-      const Corners corners{next.x & 0xffff, next.x >> 16, next.y & 0xffff, next.y >> 16};
+      const Corners corners{next.x, next.y};
       if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
-      if (corners.a == corners.c) continue;  // padding; a single face may have a = b or a = d
-      if (!add_pair(robot, model, units_per_newton, corners, dither + dither_of(robot, p)))
+      if (corners.are_padding()) continue;
+      if (!add_pair(robot, model, by, corners, dither + dither_of(robot, p)))
         failure.report<typename Robot::Memory>(robot.arguments().launch, step, phase_environment,
                                                lowest_mass(robot, corners));
     }
   }
 
  private:
-  // Their addresses (layout.h).
+  // Their addresses (layout.h), as in a FacePair.
   struct Corners {
-    std::uint32_t a, b, c, d;
+    std::uint32_t ab, cd;
+    // A single face may have a = b or a = d.
+    __device__ bool are_padding() const { return ((ab ^ cd) & 0xffff) == 0; }
   };
 
-  // The last warps begin, since the first ones are busy with the material table.
+  // The warps begin that have less to do: the first ones if the last have more tiles, or else the last ones, of which
+  // one has the tile that may be partly empty.
   template <class Robot>
   __device__ static std::uint32_t first_pair(const Robot& robot) {
-    return (robot.warps() - 1 - robot.context().warp) * lanes + robot.context().lane;
+    const std::uint32_t warp = robot.context().warp;
+    return (robot.arguments().launch.even_tiles ? robot.warps() - 1 - warp : warp) * lanes + robot.context().lane;
   }
   template <class Robot>
   __device__ static uint2 load(const Robot& robot, std::uint32_t p) {
@@ -61,31 +67,21 @@ class FacePass {
 
   // Returns false if a force is too large for its fixed-point sum, or NaN.
   template <class Robot, class EnvironmentModel>
-  __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, float units_per_newton,
+  __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, const FaceCoefficients<float>& by,
                                   Corners corners, std::uint32_t dither) {
-    const auto a = robot.corner(corners.a), b = robot.corner(corners.b), c = robot.corner(corners.c),
-               d = robot.corner(corners.d);
+    const auto a = robot.template corner<false>(corners.ab), b = robot.template corner<true>(corners.ab),
+               c = robot.template corner<false>(corners.cd), d = robot.template corner<true>(corners.cd);
     const Vec3 xa = a.vector(field_x), xb = b.vector(field_x), xc = c.vector(field_x), xd = d.vector(field_x);
     // 2 (xb - xa) x (xc - xa) = ((xb - xa) + (xb - xc)) x (xc - xa). To exchange a and c, or b and d, changes at most
     // the sign of the right side, and of no bit else. So no force depends on the vertex order.
     const Vec3 shared_edge = xc - xa;
     const Vec3 first_normal = cross((xb - xa) + (xb - xc), shared_edge);
     const Vec3 second_normal = cross((xd - xa) + (xd - xc), shared_edge);
-    const Vec3 shared = a.vector(field_v) + c.vector(field_v);
-    Vec3 first, second;
-    if (model.sums_apart()) {
-      // These normals are twice as long as of_sums() expects them.
-      const FaceCoefficients<float> by = model.of_sums(0.5f * units_per_newton);
-      const Vec3 relative = shared - model.thrice_flow;
-      const Vec3 first_sum = relative + b.vector(field_v), second_sum = relative + d.vector(field_v);
-      first = model.on_face(first_normal, first_sum, inner(first_sum, first_sum), by);
-      second = model.on_face(second_normal, second_sum, inner(second_sum, second_sum), by);
-    } else {
-      const float third = 1.0f / 3.0f;
-      const float scale = third * units_per_newton;
-      first = scale * model.on_face(0.25f * first_normal, third * (shared + b.vector(field_v)));
-      second = scale * model.on_face(0.25f * second_normal, third * (shared + d.vector(field_v)));
-    }
+    Vec3 relative = a.vector(field_v) + c.vector(field_v);
+    if constexpr (EnvironmentModel::has_flow) relative = relative - model.thrice_flow;
+    const Vec3 first_sum = relative + b.vector(field_v), second_sum = relative + d.vector(field_v);
+    Vec3 first = model.on_face(first_normal, first_sum, inner(first_sum, first_sum), by);
+    Vec3 second = model.on_face(second_normal, second_sum, inner(second_sum, second_sum), by);
     if (!fits(first) || !fits(second)) return false;
     if constexpr (EnvironmentModel::real_bodies) {
       first = dithered(first, dither, model.dither());
@@ -102,8 +98,9 @@ class FacePass {
 
   template <class Robot>
   __device__ static std::uint32_t lowest_mass(const Robot& robot, Corners corners) {
-    const auto number = [&](std::uint32_t corner) { return robot.number_of(Robot::slot_of_corner(corner)); };
-    return min(min(number(corners.a), number(corners.b)), min(number(corners.c), number(corners.d)));
+    const auto number = [&](std::uint32_t address) { return robot.number_of(Robot::slot_of_corner(address)); };
+    return min(min(number(corners.ab & 0xffff), number(corners.ab >> 16)),
+               min(number(corners.cd & 0xffff), number(corners.cd >> 16)));
   }
 
   uint2 first_{};

@@ -16,6 +16,11 @@ bool writes_more_than_it_reads(const LaunchConfiguration& launch, std::uint32_t 
   return !launch.shared_table && rows < 16 * launch.table_chunks;
 }
 
+void share_tiles(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t warps) {
+  launch.warps_per_robot = warps;
+  launch.even_tiles = tiles % warps == 0;
+}
+
 // Of near masses that large robots list where there is room: if there are more, each step searches for them.
 constexpr std::uint32_t pairs_per_mass = 2;
 
@@ -64,7 +69,7 @@ bool fit(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fie
 // Small robots: several per block, as long as at least two blocks fill the multiprocessor's warps.
 bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
                  const BrainBytes& brain) {
-  launch.warps_per_robot = even_warps(robots.tile_stride, resident_warps / 2);
+  share_tiles(launch, robots.tile_stride, even_warps(robots.tile_stride, resident_warps / 2));
   for (std::uint32_t n = std::min(resident_warps / 2 / launch.warps_per_robot, robots.robot_count); n > 0; --n) {
     launch.robots_per_block = n;
     if (fit(launch, robots, fields, limits, resident_warps / (n * launch.warps_per_robot), brain)) return true;
@@ -77,7 +82,7 @@ bool fit_one(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t
              const BrainBytes& brain) {
   const std::uint32_t tiles = robots.tile_stride;
   launch.robots_per_block = 1;
-  launch.warps_per_robot = divide_up(tiles, divide_up(tiles, resident_warps));
+  share_tiles(launch, tiles, divide_up(tiles, divide_up(tiles, resident_warps)));
   return fit(launch, robots, fields, limits, 1, brain);
 }
 
@@ -128,7 +133,8 @@ std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& c
   launch.table_chunks = table_chunks;
   launch.record_words = parts.record_words;
   launch.fits_cache = parts.robot_count == batch_size;
-  launch.warps_per_robot = divide_up(parts.tile_stride, divide_up(parts.tile_stride, resident_warps / blocks));
+  share_tiles(launch, parts.tile_stride,
+              divide_up(parts.tile_stride, divide_up(parts.tile_stride, resident_warps / blocks)));
   const std::uint32_t fields = working_fields(configuration.solver, true);
   const std::uint32_t least = launch.listed_pairs, slots = parts.tile_stride * lanes;
   for (const std::uint32_t pairs : {pairs_per_mass * slots, slots, least}) {

@@ -27,6 +27,7 @@ struct BrainBytes {
 struct LaunchConfiguration {
   std::uint32_t robots_per_block = 1;
   std::uint32_t warps_per_robot = 1;                   // or per part of one
+  bool even_tiles = true;                              // all warps have as many tiles, see first_tile_of()
   std::uint32_t parts = 1;                             // of a robot, each in a block of its own (parts.h)
   std::uint32_t table_copy_bits = 0;                   // 2^this many copies of the material table, at most 16
   std::uint32_t table_chunks = max_materials / lanes;  // of 32 materials in a table
@@ -60,9 +61,12 @@ constexpr std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps)
   return divide_up(tiles, turns);
 }
 
-// Tiles that a warp computes in turn if robots of this many tiles fill the device.
-constexpr std::uint32_t tiles_per_warp(std::uint32_t tiles) {
-  return divide_up(tiles, even_warps(tiles, resident_warps / 2));
+// The first tile of each of a robot's warps, if they share its tiles; that of `warps` is the end. The last warps have a
+// tile more than the others, since the last tile may be partly empty.
+MERCURY_HOST_DEVICE constexpr std::uint32_t first_tile_of(std::uint32_t warp, std::uint32_t tiles,
+                                                          std::uint32_t warps) {
+  const std::uint32_t each = tiles / warps, before = warps - tiles % warps;
+  return warp * each + (warp > before ? warp - before : 0);
 }
 
 // The configuration that keeps most robots in flight on the current device, beside the rest of `batch_size` robots.

@@ -97,7 +97,7 @@ class SlotSearch {
   void place_tiles() {
     std::vector<std::uint32_t> work(own_tiles_);
     for (std::uint32_t rank = 0; rank < own_; ++rank) work[rank / lanes] += valence(sorted_[rank]);
-    position_ = deal_tiles(work, tiles_per_warp(own_tiles_));
+    position_ = deal_tiles(work, even_warps(own_tiles_, resident_warps / 2));
     while (position_.size() < tiles_) position_.push_back(static_cast<std::uint32_t>(position_.size()));
   }
 
@@ -163,14 +163,14 @@ SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs, std:
   return SlotSearch(robot, pairs, ghosts).take();
 }
 
-std::vector<std::uint32_t> deal_tiles(std::span<const std::uint32_t> work, std::uint32_t per_warp) {
+std::vector<std::uint32_t> deal_tiles(std::span<const std::uint32_t> work, std::uint32_t warp_count) {
   const auto tiles = static_cast<std::uint32_t>(work.size());
   struct Warp {
     std::uint32_t work = 0, first, end;  // positions that are free
   };
   std::vector<Warp> warps;
-  for (std::uint32_t first = 0; first < tiles; first += per_warp)
-    warps.push_back({0, first, std::min(first + per_warp, tiles)});
+  for (std::uint32_t warp = 0; warp < warp_count; ++warp)
+    warps.push_back({0, first_tile_of(warp, tiles, warp_count), first_tile_of(warp + 1, tiles, warp_count)});
   std::vector<std::uint32_t> position(tiles);
   position.back() = --warps.back().end;
   warps.back().work += work.back();

@@ -42,8 +42,8 @@ struct SlotOrder {
 // (parts.h).
 SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts = 0);
 
-// Positions for tiles whose work is given in descending order, so that the groups of `per_warp` consecutive positions
-// have about the same work. The last tile stays last, because it may be partly empty.
-std::vector<std::uint32_t> deal_tiles(std::span<const std::uint32_t> work, std::uint32_t per_warp);
+// Positions for tiles whose work is given in descending order, so that warps which share them (first_tile_of()) have
+// about the same work. The last tile stays last, because it may be partly empty. No more warps than tiles.
+std::vector<std::uint32_t> deal_tiles(std::span<const std::uint32_t> work, std::uint32_t warp_count);
 
 }  // namespace mercury::cuda

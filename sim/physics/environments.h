@@ -9,8 +9,7 @@
 //   still_water                           on_mass() is zero, so a step leaves it out
 //   on_mass(v, weight)                    force on a mass that has velocity v and this weight (points.h) [N]
 //   acts_on_faces()                       whether on_face() may be other than zero, if has_faces
-//   on_face(area_normal, v)               force on a face, if has_faces [N]
-//   on_face(normal, u, u.u, coefficients) the same with fewer multiplications, see OceanModel::of_sums()
+//   on_face(normal, u, u.u, coefficients) force on a face, if has_faces [N]; see OceanModel::of_sums()
 //   sums_apart()                          whether the forces of the environment are summed apart from those of springs
 //   dither()                              1 or 0, the factor of fixed_point.h's dithered() for forces on faces
 //   acts_on_ground()                      whether there is ground, if has_ground
@@ -79,15 +78,8 @@ struct OceanModel {
   MERCURY_HOST_DEVICE float dither() const { return 0; }
   MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return false; }
 
-  // `area_normal` is A n. Both orientations give the same force.
-  template <class Vector>
-  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
-    const Vector u = flow - velocity;
-    return on_face(area_normal, u, inner(u, u), coefficients());
-  }
-
-  // The same for a normal and a flow of any length, with coefficients scaled to match. Instead of turning n, the terms
-  // take the sign of u . n:
+  // For a normal and a flow of any length, with coefficients scaled to match. Both orientations give the same force:
+  // instead of turning n, the terms take the sign of u . n:
   //
   //   flux  = normal . u
   //   F     = drag |flux| u  +  lift sign(flux) |u|^2 normal
@@ -142,11 +134,6 @@ struct FrictionlessOceanModel : OceanModel {
   static constexpr bool has_tangential_drag = false, has_flow = false;
   static bool fits(const OceanModel& model) { return model.tangential == 0 && model.flow == Vec3{}; }
 
-  template <class Vector>
-  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
-    const Vector u = flow - velocity;
-    return on_face(area_normal, u, inner(u, u), coefficients());
-  }
   template <class Vector, class Real>
   MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
     return drag_and_lift(normal, u, speed_squared, by);
@@ -187,11 +174,6 @@ struct ResistiveModel {
   MERCURY_HOST_DEVICE float dither() const { return 1; }
   MERCURY_HOST_DEVICE static constexpr bool sums_apart() { return true; }
 
-  template <class Vector>
-  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
-    const Vector u = flow - velocity;
-    return on_face(area_normal, u, inner(u, u), coefficients());
-  }
   // |normal| (normal_coefficient |u_n| u_n + tangential_coefficient |u_t| u_t). Both orientations give the same force.
   // A face without area has no direction, and feels none.
   template <class Vector, class Real>
@@ -213,9 +195,6 @@ struct ResistiveModel {
   MERCURY_HOST_DEVICE FaceCoefficients<float> of_sums(float scale) const {
     const float common = -half_density * scale / 54;
     return {0, 0, common * tangential, common * normal};
-  }
-  MERCURY_HOST_DEVICE FaceCoefficients<float> coefficients() const {
-    return {0, 0, half_density * tangential, half_density * normal};
   }
 };
 
@@ -315,6 +294,7 @@ struct GeneralModel : OceanModel {
   MERCURY_HOST_DEVICE bool acts_on_faces() const { return face_drag; }
   MERCURY_HOST_DEVICE float dither() const { return is_resistive ? 1.0f : 0.0f; }
   MERCURY_HOST_DEVICE bool sums_apart() const { return is_resistive; }
+  // `area_normal` is A n, `velocity` the mean of the corners'.
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
     const Vector u = flow - velocity;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/cuda/arrangement.h"
+#include "sim/cuda/launch_configuration.h"
 #include "sim/physics/measures.h"
 #include "tests/sim/bodies.h"
 #include "tests/sim/cuda_passes.h"
@@ -104,22 +105,25 @@ TEST(SlotOrder, TakesNoMorePassesThanTheOrderOfTheMasses) {
 
 TEST(DealTiles, GivesWarpsAboutTheSameWork) {
   for (const std::uint32_t tiles : {1u, 2u, 5u, 33u, 42u, 100u})
-    for (const std::uint32_t per_warp : {1u, 2u, 3u, 4u}) {
+    for (const std::uint32_t warps : {1u, 2u, 3u, 4u, 14u, 28u}) {
+      if (warps > tiles) continue;
       std::vector<std::uint32_t> work;
       for (std::uint32_t tile = 0; tile < tiles; ++tile) work.push_back(2 * tiles - tile);
-      const std::vector<std::uint32_t> position = deal_tiles(work, per_warp);
+      const std::vector<std::uint32_t> position = deal_tiles(work, warps);
       std::vector<std::uint32_t> at(tiles, tiles);  // [position]
       for (std::uint32_t tile = 0; tile < tiles; ++tile) at.at(position[tile]) = tile;
       EXPECT_EQ(std::ranges::count(at, tiles), 0);
       EXPECT_EQ(at.back(), tiles - 1);
       std::vector<std::uint32_t> of_warp;
-      for (std::uint32_t first = 0; first == 0 || first + per_warp <= tiles; first += per_warp) {
+      for (std::uint32_t warp = 0; warp < warps; ++warp) {
+        const std::uint32_t first = first_tile_of(warp, tiles, warps), end = first_tile_of(warp + 1, tiles, warps);
+        EXPECT_TRUE(end - first == tiles / warps || end - first == divide_up(tiles, warps));
         of_warp.push_back(0);
-        for (std::uint32_t i = first; i < std::min(first + per_warp, tiles); ++i) of_warp.back() += work[at[i]];
+        for (std::uint32_t i = first; i < end; ++i) of_warp.back() += work[at[i]];
       }
-      // Warps differ by no more than one tile does from another.
-      ASSERT_FALSE(of_warp.empty());
-      EXPECT_LE(std::ranges::max(of_warp) - std::ranges::min(of_warp), work.front() - work.back());
+      // Warps of as many tiles differ by no more than one tile does from another; others by a tile more.
+      const std::uint32_t one_tile = tiles % warps == 0 ? 0 : work.front();
+      EXPECT_LE(std::ranges::max(of_warp) - std::ranges::min(of_warp), work.front() - work.back() + one_tile);
     }
 }
 
