@@ -20,7 +20,6 @@
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/options/output_options.h"
-#include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/error.h"

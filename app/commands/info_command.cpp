@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <variant>
 
 #include "app/base/messages.h"
 #include "app/base/progress.h"
@@ -26,7 +25,6 @@
 #include "mercury/origin.h"
 #include "mercury/real_body.h"
 #include "mercury/run_folder.h"
-#include "mercury/simulation.h"
 
 namespace mercury {
 namespace {

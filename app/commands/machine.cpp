@@ -12,7 +12,6 @@
 #include "app/video/frame_writer.h"
 #include "app/video/position_bridge.h"
 #include "mercury/cuda_devices.h"
-#include "mercury/simulation.h"
 #include "render/context/context.h"
 
 namespace mercury {

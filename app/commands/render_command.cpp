@@ -13,8 +13,6 @@
 #include "app/commands/description.h"
 #include "app/commands/render_subject.h"
 #include "app/options/command.h"
-#include "app/options/option_values.h"
-#include "app/options/parameter_options.h"
 #include "app/video/figure.h"
 #include "app/video/picture_file.h"
 #include "app/video/video_pipeline.h"

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
 #include <span>
 
 #include "app/options/option_values.h"

@@ -25,7 +25,6 @@
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "mercury/origin.h"
-#include "mercury/real_body.h"
 #include "mercury/run_folder.h"
 
 namespace mercury {

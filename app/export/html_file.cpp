@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -24,7 +23,6 @@
 #include "app/scene/robot_shape.h"
 #include "mercury/error.h"
 #include "mercury/fnv.h"
-#include "mercury/observables.h"
 #include "render/context/shader_source.h"
 #include "render/style.h"
 

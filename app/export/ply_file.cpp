@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLY, binary. Faces have their exact colors; vertices have the mean of their faces, for programs that read only
 // those.
-#include <algorithm>
 
 #include "app/base/version.h"
 #include "app/export/writers.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/export/skin_shape.h"
 
-#include <algorithm>
-
 #include "app/scene/appearance.h"
 #include "mercury/generator.h"
 

@@ -13,9 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "app/base/output_files.h"
 #include "app/export/writers.h"
-#include "mercury/error.h"
 
 namespace mercury {
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <utility>
-#include <variant>
 
 #include "app/base/frame_places.h"
 #include "app/video/group_drawing.h"

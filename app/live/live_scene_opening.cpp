@@ -14,7 +14,6 @@
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/lively.h"
-#include "mercury/origin.h"
 #include "mercury/random.h"
 #include "mercury/real_body.h"
 #include "mercury/robot_file.h"

@@ -17,7 +17,6 @@
 #include "app/export/simulated_motion.h"
 #include "app/live/live_scene_parts.h"
 #include "app/live/scene_text.h"
-#include "mercury/error.h"
 #include "mercury/robot_file.h"
 #include "mercury/simulation.h"
 

@@ -2,7 +2,6 @@
 #include "app/live/picking.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
 
 namespace mercury {

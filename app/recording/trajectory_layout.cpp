@@ -13,7 +13,6 @@
 #include "app/recording/recording_file.h"
 #include "app/recording/trajectory_hdf5_writing.h"
 #include "mercury/error.h"
-#include "mercury/file_links.h"
 
 namespace mercury {
 namespace {

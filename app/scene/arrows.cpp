@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <variant>
 
 #include "app/scene/color_scale.h"
 #include "app/scene/group_layout.h"

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "mercury/error.h"
 #include "render/vector.h"

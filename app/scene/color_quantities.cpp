@@ -3,8 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <utility>
-#include <variant>
 #include <vector>
 
 #include "app/scene/color_quantity.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "app/scene/camera_controller.h"
 #include "app/scene/hero_style.h"

@@ -2,15 +2,11 @@
 #include "app/scene/group_scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <type_traits>
-#include <variant>
 
 #include "app/scene/camera_controller.h"
 #include "app/scene/group_look.h"
 #include "app/scene/hero_style.h"
-#include "mercury/origin.h"
 #include "render/text/overlay.h"
 
 namespace mercury {

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
-
-#include "mercury/observables.h"
 
 namespace mercury {
 

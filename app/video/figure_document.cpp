@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -15,7 +14,6 @@
 #include "app/video/figure.h"
 #include "render/png.h"
 #include "render/text/font.h"
-#include "render/text/scale.h"
 
 namespace mercury {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
 
 #include "app/base/frame_places.h"
 #include "app/scene/group_layout.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <utility>
-#include <variant>
 
 #include "app/scene/scene_details.h"
 #include "app/scene/side_difference.h"

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "app/scene/appearance.h"
-#include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"

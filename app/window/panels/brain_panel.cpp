@@ -20,7 +20,6 @@
 #include "app/window/toolkit/widgets.h"
 #include "mercury/brain.h"
 #include "mercury/samples.h"
-#include "mercury/shared_array.h"
 
 namespace mercury::window {
 
