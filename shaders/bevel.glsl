@@ -3,7 +3,7 @@
 // it to be seen, nothing is blended, which saves small robots a quarter of the time of their skins.
 #include "direction.glsl"
 #include "seen_face.glsl"
-const float bevel = 0.11;                      // of the shorter side
+const float bevel = 0.11;                     // of the shorter side
 const vec2 pixels_beveled = vec2(7.0, 11.0);  // faces of this many pixels are not beveled, and wholly
 
 vec3 normal_of(uint bits) { return normalize(unpacked_direction(bits)); }

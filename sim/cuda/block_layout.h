@@ -3,9 +3,9 @@
 //
 // A block steps `robots_per_block` robots side by side. Each robot has `warps_per_robot` warps, which share its tiles:
 //
-//   block        | robot 2 b                           | robot 2 b + 1                       |    two robots per block,
-//   warps        | warp 0     | warp 1     | warp 2    | warp 3     | warp 4     | warp 5    |    three warps each
-//   tiles        | 0  1  2  3 | 4  5  6  7 | 8  9      | 0  1  2  3 | 4  5  6  7 | 8  9      |
+//   block        | robot 2 b                            | robot 2 b + 1                        |    two robots per
+//   block, warps        | warp 0     | warp 1     | warp 2     | warp 3     | warp 4     | warp 5     |    three warps
+//   each tiles        | 0  1  2    | 3  4  5    | 6  7  8  9 | 0  1  2    | 3  4  5    | 6  7  8  9 |
 //
 //   shared memory, from its first byte to `total`:
 //   +-----------------+----------+--------------+-----------+-----------+-----------+-----------+

@@ -133,7 +133,7 @@ class EdgeColoring {
   std::vector<std::uint8_t> lane_at_bank_;  // [row][bank]
 };
 
-// Rows of tile t are [row_start[t], row_start[t + 1]): as many as its busiest lane or bank has springs. Returns the
+// Rows of tile t are [row_start[t], row_start[t + 1]): as choose_owners() says. Returns the
 // entries of all rows, 32 per row.
 std::vector<ScheduledSpring> color_springs(std::span<const OwnedSpring> springs,
                                            std::span<const std::uint32_t> row_start) {

@@ -133,6 +133,8 @@ class OwnerSearch {
     while (!open.empty()) std::erase_if(open, [&](std::uint32_t tile) { return !lower(tile); });
   }
 
+  // From here on loads are relative to the limit of their tile.
+
   // Rows are computed rows_at_once at a time, so limits become multiples of it where that takes no rows more: tiles
   // whose limits rise take springs of tiles whose limits fall, first of those that are little above a multiple. What is
   // too many in the end comes off single rows. A partly empty tile keeps its limit.
@@ -165,8 +167,6 @@ class OwnerSearch {
       }
     return true;
   }
-
-  // From here on loads are relative to the limit of their tile.
 
   // Lowers the limit of a tile by one and the loads with it. Returns false if that fails. Loads that were lowered by
   // then stay so.

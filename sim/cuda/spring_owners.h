@@ -16,6 +16,8 @@
 //    none, the tile keeps its limit, and is done.
 // 3. A row of the last tile has fewer springs than one of another tile, if that tile is partly empty. So its masses own
 //    as few springs as possible: the search prefers their partners, and lowers the limit of the last tile first.
+// 4. A warp computes four rows at a time (rows_at_once). So limits become multiples of four where the sum of all limits
+//    allows it, by further chains.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +38,7 @@ constexpr std::uint32_t lane_counter(std::uint32_t owner) { return owner / lanes
 
 struct OwnedSprings {
   std::vector<OwnedSpring> springs;  // by their number
-  std::vector<std::uint32_t> rows;   // by tile: the springs of its busiest lane or bank
+  std::vector<std::uint32_t> rows;   // by tile: as many as its busiest lane or bank has springs, or up to three more
   // The numbers of the springs that load counter c, or would if their other mass owned them:
   // candidates[first_candidate[c] .. first_candidate[c + 1]).
   std::vector<std::uint32_t> first_candidate, candidates;
