@@ -20,35 +20,39 @@ void ActuatorReader::refuse(const std::string& what) const {
   throw InputError(std::string(place).append("/").append(field_names[field_]), what);
 }
 
-void ActuatorReader::wrong_type(const std::string& given) const {
+void ActuatorReader::wrong_type(const Event& event) const {
+  const std::string given(name_of(event));
   if (depth_ == 0) refuse("holds " + given + " at " + std::to_string(entries_.size()) + ", not an object");
   if (depth_ == 2) refuse("must hold whole numbers, not " + given);
   refuse(std::string(field_ == name ? "must be a text" : "must be an array") + ", not " + given);
 }
 
-// True under a key that the format does not know.
-bool ActuatorReader::passes_by(int change_of_depth) {
-  const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
-  if (field_ != unknown || inside < 1) return false;
-  depth_ += change_of_depth;
-  return true;
+void ActuatorReader::on(const Event& event) {
+  if (event.kind == Kind::key) return read_key(event.text);
+  const int change = event.change_of_depth(), inside = depth_ - (change < 0 ? 1 : 0);
+  if (field_ == unknown && inside >= 1) {  // under a key that the format does not know
+    depth_ += change;
+  } else if (event.kind == Kind::text && depth_ == 1 && field_ == name) {
+    read_name(event.text);
+  } else if (event.kind == Kind::number && depth_ == 2) {
+    read_index(*event.number);
+  } else if (event.kind == Kind::begin_array && depth_ == 1 && field_ != name) {
+    ++depth_;
+  } else if (event.kind == Kind::begin_object && depth_ == 0) {
+    if (entries_.size() == max_actuators) refuse("more than 255 actuators, at most 255 are accepted");
+    entries_.emplace_back();
+    field_ = unknown;
+    ++depth_;
+  } else if (event.kind == Kind::end_array) {
+    --depth_;
+  } else if (event.kind == Kind::end_object) {
+    end_entry();
+  } else {
+    wrong_type(event);
+  }
 }
 
-void ActuatorReader::null() {
-  if (!passes_by(0)) wrong_type("null");
-}
-
-void ActuatorReader::boolean(bool value) {
-  if (!passes_by(0)) wrong_type(value ? "true" : "false");
-}
-
-void ActuatorReader::bytes(std::string_view) {
-  if (!passes_by(0)) wrong_type("a byte string");
-}
-
-void ActuatorReader::text(std::string_view value) {
-  if (passes_by(0)) return;
-  if (depth_ != 1 || field_ != name) wrong_type("a text");
+void ActuatorReader::read_name(std::string_view value) {
   json_text(value);
   if (value.empty() || value.find('\0') != value.npos) refuse("an actuator needs a name, without NUL characters");
   for (std::size_t i = 0; i + 1 < entries_.size(); ++i)
@@ -56,9 +60,7 @@ void ActuatorReader::text(std::string_view value) {
   entries_.back().name = value;
 }
 
-void ActuatorReader::number(const Number& value) {
-  if (passes_by(0)) return;
-  if (depth_ != 2) wrong_type("a number");
+void ActuatorReader::read_index(const Number& value) {
   const std::string one = field_ == materials ? "material" : "spring";
   if (value.kind == Number::Kind::real) refuse("a " + one + " is given by a whole number");
   if (value.kind == Number::Kind::negative) refuse(one + " " + to_text(value) + " is out of range");
@@ -73,27 +75,7 @@ void ActuatorReader::number(const Number& value) {
   entries_.back().materials.push_back(static_cast<MaterialId>(value.natural));
 }
 
-void ActuatorReader::begin_array(std::size_t) {
-  if (passes_by(1)) return;
-  if (depth_ != 1 || field_ == name) wrong_type("an array");
-  ++depth_;
-}
-
-void ActuatorReader::end_array() {
-  if (passes_by(-1)) return;
-  --depth_;
-}
-
-void ActuatorReader::begin_object(std::size_t) {
-  if (passes_by(1)) return;
-  if (depth_ != 0) wrong_type("an object");
-  if (entries_.size() == max_actuators) refuse("more than 255 actuators, at most 255 are accepted");
-  entries_.emplace_back();
-  field_ = unknown;
-  ++depth_;
-}
-
-void ActuatorReader::key(std::string_view key_name) {
+void ActuatorReader::read_key(std::string_view key_name) {
   if (depth_ != 1) return;
   const auto* const found = std::find(std::begin(field_names), std::end(field_names), key_name);
   field_ = static_cast<Field>(found - std::begin(field_names));
@@ -102,11 +84,7 @@ void ActuatorReader::key(std::string_view key_name) {
   entries_.back().seen |= 1u << field_;
 }
 
-void ActuatorReader::end_object() {
-  if (depth_ > 1) {
-    --depth_;  // under an unknown key
-    return;
-  }
+void ActuatorReader::end_entry() {
   field_ = unknown;
   const Entry& entry = entries_.back();
   if (!entry.has(name)) refuse("name is missing");

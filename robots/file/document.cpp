@@ -50,143 +50,104 @@ Number real_number(float value, std::span<char> room) {
   return number;
 }
 
+std::string_view name_of(const Event& event) {
+  constexpr std::array<std::string_view, 10> names{"null", "",         "a number", "a text",   "a byte string",
+                                                   "",     "an array", "",         "an object"};
+  if (event.kind == Event::Kind::boolean) return event.truth ? "true" : "false";
+  return names[static_cast<std::size_t>(event.kind)];
+}
+
 namespace {
 
 constexpr std::size_t line_width = 100;
 
 }  // namespace
 
-void JsonWriter::before_value() {
-  if (after_key_) {
-    after_key_ = false;
-    return;
-  }
+// What stands before a key or a value.
+void JsonWriter::separate(bool is_key) {
+  if (after_key_) return;
   if (!first_) out_ += ',';
   first_ = false;
+  if (layout_ == Layout::compact) return;
   // Depth 2 holds the rows of a list.
-  if (layout_ == Layout::rows && depth_ == 2 && out_.size() - line_ > line_width) {
-    out_ += '\n';
-    line_ = out_.size();
+  if (is_key ? depth_ != 1 : depth_ != 2 || out_.size() - line_ <= line_width) return;
+  out_ += '\n';
+  line_ = out_.size();
+}
+
+void JsonWriter::on(const Event& event) {
+  if (event.ends()) {
+    first_ = false;
+    if (--depth_ == 0 && layout_ == Layout::rows) out_ += '\n';
+    out_ += event.kind == Kind::end_array ? ']' : '}';
+    return;
   }
-}
-
-void JsonWriter::null() {
-  before_value();
-  out_ += "null";
-}
-
-void JsonWriter::boolean(bool value) {
-  before_value();
-  out_ += value ? "true" : "false";
-}
-
-void JsonWriter::number(const Number& value) {
-  if (!std::isfinite(value.real)) throw InputError("a number is not finite");
-  before_value();
-  out_ += to_text(value);
-}
-
-void JsonWriter::text(std::string_view value) {
-  before_value();
-  out_ += json_text(value);
-}
-
-void JsonWriter::bytes(std::string_view) { throw InputError("JSON cannot hold a byte string"); }
-
-void JsonWriter::begin(char bracket) {
-  before_value();
-  out_ += bracket;
+  if (event.kind == Kind::bytes) throw InputError("JSON cannot hold a byte string");
+  if (event.kind == Kind::number && !std::isfinite(event.number->real)) throw InputError("a number is not finite");
+  separate(event.kind == Kind::key);
+  if (event.kind == Kind::null) out_ += "null";
+  if (event.kind == Kind::boolean) out_ += event.truth ? "true" : "false";
+  if (event.kind == Kind::number) out_ += to_text(*event.number);
+  if (event.kind == Kind::text || event.kind == Kind::key) out_ += json_text(event.text);
+  if (event.kind == Kind::key) out_ += ':';
+  after_key_ = event.kind == Kind::key;
+  if (!event.begins()) return;
+  out_ += event.kind == Kind::begin_array ? '[' : '{';
   ++depth_;
   first_ = true;
 }
 
-void JsonWriter::end(char bracket) {
-  --depth_;
-  first_ = false;
-  if (layout_ == Layout::rows && depth_ == 0) out_ += '\n';
-  out_ += bracket;
-}
-
-void JsonWriter::begin_array(std::size_t) { begin('['); }
-void JsonWriter::end_array() { end(']'); }
-void JsonWriter::begin_object(std::size_t) { begin('{'); }
-void JsonWriter::end_object() { end('}'); }
-
-void JsonWriter::key(std::string_view name) {
-  if (!first_) out_ += ',';
-  first_ = false;
-  if (layout_ == Layout::rows && depth_ == 1) {
-    out_ += '\n';
-    line_ = out_.size();
-  }
-  out_ += json_text(name);
-  out_ += ':';
-  after_key_ = true;
+void CborWriter::big_endian(std::uint64_t value, int bytes) {
+  for (int i = bytes - 1; i >= 0; --i) out_ += static_cast<char>(value >> (8 * i) & 0xff);
 }
 
 void CborWriter::head(unsigned major_type, std::uint64_t value) {
-  const auto put = [&](unsigned low, int bytes) {
-    out_ += static_cast<char>(major_type << 5 | low);
-    for (int i = bytes - 1; i >= 0; --i) out_ += static_cast<char>(value >> (8 * i) & 0xff);
-  };
-  if (value < 24)
-    put(static_cast<unsigned>(value), 0);
-  else if (value <= 0xff)
-    put(24, 1);
-  else if (value <= 0xffff)
-    put(25, 2);
-  else if (value <= 0xffffffff)
-    put(26, 4);
-  else
-    put(27, 8);
+  const unsigned low = value < 24            ? static_cast<unsigned>(value)
+                       : value <= 0xff       ? 24
+                       : value <= 0xffff     ? 25
+                       : value <= 0xffffffff ? 26
+                                             : 27;
+  out_ += static_cast<char>(major_type << 5 | low);
+  if (low >= 24) big_endian(value, 1 << (low - 24));
 }
 
-void CborWriter::null() { out_ += '\xf6'; }
-void CborWriter::boolean(bool value) { out_ += value ? '\xf5' : '\xf4'; }
-
-void CborWriter::number(const Number& value) {
+void CborWriter::number_of(const Number& value) {
   if (value.kind == Number::Kind::natural) return head(0, value.natural);
   if (value.kind == Number::Kind::negative) return head(1, static_cast<std::uint64_t>(-1 - value.negative));
-  const auto put = [&](char first, std::uint64_t bits, int bytes) {
-    out_ += first;
-    for (int i = bytes - 1; i >= 0; --i) out_ += static_cast<char>(bits >> (8 * i) & 0xff);
-  };
   // The cast of a double too large for a float would be undefined.
   const auto narrow = static_cast<float>(std::abs(value.real) <= 3e38 ? value.real : 0.0);
-  if (std::bit_cast<std::uint64_t>(static_cast<double>(narrow)) == std::bit_cast<std::uint64_t>(value.real))
-    put('\xfa', std::bit_cast<std::uint32_t>(narrow), 4);
-  else
-    put('\xfb', std::bit_cast<std::uint64_t>(value.real), 8);
+  if (std::bit_cast<std::uint64_t>(static_cast<double>(narrow)) == std::bit_cast<std::uint64_t>(value.real)) {
+    out_ += '\xfa';
+    big_endian(std::bit_cast<std::uint32_t>(narrow), 4);
+  } else {
+    out_ += '\xfb';
+    big_endian(std::bit_cast<std::uint64_t>(value.real), 8);
+  }
 }
 
-void CborWriter::text(std::string_view value) {
-  json_text(value);  // throws where it is not UTF-8
-  head(3, value.size());
-  out_ += value;
+void CborWriter::on(const Event& event) {
+  if (event.kind == Kind::null) out_ += '\xf6';
+  if (event.kind == Kind::boolean) out_ += event.truth ? '\xf5' : '\xf4';
+  if (event.kind == Kind::number) number_of(*event.number);
+  if (event.kind == Kind::text || event.kind == Kind::key) {
+    json_text(event.text);  // throws where it is not UTF-8
+    head(3, event.text.size());
+    out_ += event.text;
+  }
+  if (event.kind == Kind::bytes) {
+    head(2, event.text.size());
+    out_ += event.text;
+  }
+  if (event.begins()) {
+    const unsigned major_type = event.kind == Kind::begin_array ? 4 : 5;
+    const bool open_ended = event.announced == unknown_length;
+    open_ended_ = open_ended_ << 1 | (open_ended ? 1u : 0u);
+    open_ended ? void(out_ += static_cast<char>(major_type << 5 | 31)) : head(major_type, event.announced);
+  }
+  if (event.ends()) {
+    if ((open_ended_ & 1) != 0) out_ += '\xff';
+    open_ended_ >>= 1;
+  }
 }
-
-void CborWriter::bytes(std::string_view value) {
-  head(2, value.size());
-  out_ += value;
-}
-
-void CborWriter::begin(unsigned major_type, std::size_t announced) {
-  open_ended_ = open_ended_ << 1 | (announced == unknown_length ? 1u : 0u);
-  if (announced == unknown_length)
-    out_ += static_cast<char>(major_type << 5 | 31);
-  else
-    head(major_type, announced);
-}
-
-void CborWriter::end() {
-  if ((open_ended_ & 1) != 0) out_ += '\xff';
-  open_ended_ >>= 1;
-}
-
-void CborWriter::begin_array(std::size_t announced) { begin(4, announced); }
-void CborWriter::end_array() { end(); }
-void CborWriter::begin_object(std::size_t announced) { begin(5, announced); }
-void CborWriter::end_object() { end(); }
-void CborWriter::key(std::string_view name) { text(name); }
 
 }  // namespace mercury

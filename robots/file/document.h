@@ -8,6 +8,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "mercury/error.h"
 
@@ -33,21 +35,41 @@ std::string to_text(const Number& number);
 inline constexpr std::size_t unknown_length = static_cast<std::size_t>(-1);
 inline constexpr int max_depth = 64;  // arrays and objects within each other
 
-// What a document holds, in its order. `announced` is the number of elements that the document says will follow; they
-// may not be there.
+// What a document holds, one after another. A key is followed by its value.
+struct Event {
+  enum class Kind { null, boolean, number, text, bytes, key, begin_array, end_array, begin_object, end_object };
+  Kind kind = Kind::null;
+  bool truth = false;                      // of a boolean
+  const Number* number = nullptr;          // of a number
+  std::string_view text = {};              // of text (UTF-8 in JSON, unchecked in CBOR), bytes (of CBOR) or a key
+  std::size_t announced = unknown_length;  // elements that the document says will follow; they may not be there
+
+  bool begins() const { return kind == Kind::begin_array || kind == Kind::begin_object; }
+  bool ends() const { return kind == Kind::end_array || kind == Kind::end_object; }
+  int change_of_depth() const { return begins() - ends(); }
+};
+
+// "null", "true", "a number", "an array", for messages. Of no key, and of nothing that ends.
+std::string_view name_of(const Event& event);
+
+// What receives a document.
 class DocumentEvents {
  public:
   virtual ~DocumentEvents() = default;
-  virtual void null() = 0;
-  virtual void boolean(bool value) = 0;
-  virtual void number(const Number& value) = 0;
-  virtual void text(std::string_view value) = 0;   // UTF-8 in a JSON document, unchecked in CBOR
-  virtual void bytes(std::string_view value) = 0;  // CBOR only
-  virtual void begin_array(std::size_t announced) = 0;
-  virtual void end_array() = 0;
-  virtual void begin_object(std::size_t announced) = 0;
-  virtual void key(std::string_view name) = 0;
-  virtual void end_object() = 0;
+  using Kind = Event::Kind;
+
+  virtual void on(const Event& event) = 0;
+
+  void null() { on({.kind = Kind::null}); }
+  void boolean(bool value) { on({.kind = Kind::boolean, .truth = value}); }
+  void number(const Number& value) { on({.kind = Kind::number, .number = &value}); }
+  void text(std::string_view value) { on({.kind = Kind::text, .text = value}); }
+  void bytes(std::string_view value) { on({.kind = Kind::bytes, .text = value}); }
+  void key(std::string_view name) { on({.kind = Kind::key, .text = name}); }
+  void begin_array(std::size_t announced) { on({.kind = Kind::begin_array, .announced = announced}); }
+  void end_array() { on({.kind = Kind::end_array}); }
+  void begin_object(std::size_t announced) { on({.kind = Kind::begin_object, .announced = announced}); }
+  void end_object() { on({.kind = Kind::end_object}); }
 };
 
 // Sends the whole document's events. Throw InputError ("line 3, column 7: not valid JSON: ...", "byte 17: ...") for a
@@ -57,9 +79,13 @@ class DocumentEvents {
 void read_json(std::string_view document, DocumentEvents& events);
 void read_cbor(std::string_view document, DocumentEvents& events);
 
-// Of the outermost object of a JSON document, the member `name` as JSON text, the last of several; empty if there is
-// none. Throws as read_json(). A parser that builds a tree of the rest, the weights of a network say, takes more time
-// and memory, and one that drops what it has built takes time with the square of what is there.
+// Keys and values of an object, as JSON text.
+using MemberTexts = std::vector<std::pair<std::string, std::string>>;
+// Of the outermost object of a JSON document. Throws as read_json().
+MemberTexts members_of(std::string_view document);
+// One of them, the last of several with this name; empty if there is none. A parser that builds a tree of the rest, the
+// weights of a network say, takes more time and memory, and one that drops what it has built takes time with the square
+// of what is there.
 std::string json_member(std::string_view document, std::string_view name);
 
 // How deep the arrays and objects of a JSON text lie within each other. The text may be broken.
@@ -79,27 +105,13 @@ std::size_t first_json_value(std::string_view documents);
 // finite, and bytes, which JSON lacks.
 class JsonWriter : public DocumentEvents {
  public:
-  enum class Layout {
-    compact,
-    rows
-  };  // rows: each key of the outermost object on a line of its own, its lists broken
-      // into lines of about 100 characters
+  // rows: each key of the outermost object on a line of its own, its lists broken into lines of about 100 characters
+  enum class Layout { compact, rows };
   explicit JsonWriter(std::string& out, Layout layout = Layout::compact) : out_(out), layout_(layout) {}
-  void null() override;
-  void boolean(bool value) override;
-  void number(const Number& value) override;
-  void text(std::string_view value) override;
-  void bytes(std::string_view value) override;
-  void begin_array(std::size_t announced) override;
-  void end_array() override;
-  void begin_object(std::size_t announced) override;
-  void key(std::string_view name) override;
-  void end_object() override;
+  void on(const Event& event) override;
 
  private:
-  void before_value();
-  void begin(char bracket);
-  void end(char bracket);
+  void separate(bool is_key);
 
   std::string& out_;
   Layout layout_;
@@ -113,21 +125,12 @@ class JsonWriter : public DocumentEvents {
 class CborWriter : public DocumentEvents {
  public:
   explicit CborWriter(std::string& out) : out_(out) {}
-  void null() override;
-  void boolean(bool value) override;
-  void number(const Number& value) override;
-  void text(std::string_view value) override;
-  void bytes(std::string_view value) override;
-  void begin_array(std::size_t announced) override;
-  void end_array() override;
-  void begin_object(std::size_t announced) override;
-  void key(std::string_view name) override;
-  void end_object() override;
+  void on(const Event& event) override;
 
  private:
+  void big_endian(std::uint64_t value, int bytes);
   void head(unsigned major_type, std::uint64_t value);
-  void begin(unsigned major_type, std::size_t announced);
-  void end();
+  void number_of(const Number& value);
 
   std::string& out_;
   std::uint64_t open_ended_ = 0;  // a bit for each open array or object, set where its length was not announced

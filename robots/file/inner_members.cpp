@@ -69,68 +69,10 @@ void append_member(std::string& members, std::string_view key, std::string_view 
   members.append(members.empty() ? "" : ",").append(json_text(key)).append(":").append(value);
 }
 
-// Collects the members of an object.
-class Split : public DocumentEvents {
- public:
-  void null() override {
-    value([&](DocumentEvents& to) { to.null(); });
-  }
-  void boolean(bool of) override {
-    value([&](DocumentEvents& to) { to.boolean(of); });
-  }
-  void number(const Number& of) override {
-    value([&](DocumentEvents& to) { to.number(of); });
-  }
-  void text(std::string_view of) override {
-    value([&](DocumentEvents& to) { to.text(of); });
-  }
-  void bytes(std::string_view of) override {
-    value([&](DocumentEvents& to) { to.bytes(of); });
-  }
-  void begin_array(std::size_t announced) override {
-    if (depth_++ > 0) writer_->begin_array(announced);
-  }
-  void end_array() override {
-    if (--depth_ > 0) value([&](DocumentEvents& to) { to.end_array(); });
-  }
-  void begin_object(std::size_t announced) override {
-    if (depth_++ > 0) writer_->begin_object(announced);
-  }
-  void end_object() override {
-    if (--depth_ > 0) value([&](DocumentEvents& to) { to.end_object(); });
-  }
-  void key(std::string_view name) override {
-    if (depth_ > 1) return writer_->key(name);
-    key_ = name;
-    text_.clear();
-    writer_.emplace(text_);
-  }
-
-  MemberTexts take() { return std::move(members_); }
-
- private:
-  template <class Write>
-  void value(const Write& write) {
-    write(*writer_);
-    if (depth_ == 1) members_.emplace_back(key_, text_);
-  }
-
-  MemberTexts members_;
-  std::string key_, text_;
-  std::optional<JsonWriter> writer_;
-  int depth_ = 0;
-};
-
 }  // namespace
 
-MemberTexts members_of(std::string_view object) {
-  if (object.empty()) return {};
-  Split split;
-  read_json(object, split);
-  return split.take();
-}
-
 MemberTexts members_of_document(std::string_view other) {
+  if (other.empty()) return {};
   MemberTexts members = members_of(other);
   std::erase_if(members, [](const auto& member) { return document_place().knows(member.first); });
   return members;
@@ -138,49 +80,32 @@ MemberTexts members_of_document(std::string_view other) {
 
 // --- Reading
 
-template <class Send, class Take>
-void InnerMembersReader::value(const Send& send, const Take& take) {
-  if (taken_depth_ < 0) {
-    send();
-    if (beyond_ == 0 && !frames_.empty()) ++frames_.back().index;
+void InnerMembersReader::on(const Event& event) {
+  const int change = event.change_of_depth();
+  if (taken_depth_ >= 0) {
+    taken_.on(event);
+    taken_depth_ += change;
+    if (taken_depth_ == 0) end_taken();
     return;
   }
-  take();
-  if (taken_depth_ == 0) end_taken();
-}
-
-void InnerMembersReader::null() {
-  value([&] { to_.null(); }, [&] { taken_.null(); });
-}
-void InnerMembersReader::boolean(bool of) {
-  value([&] { to_.boolean(of); }, [&] { taken_.boolean(of); });
-}
-void InnerMembersReader::number(const Number& of) {
-  value([&] { to_.number(of); }, [&] { taken_.number(of); });
-}
-void InnerMembersReader::text(std::string_view of) {
-  value([&] { to_.text(of); }, [&] { taken_.text(of); });
-}
-void InnerMembersReader::bytes(std::string_view of) {
-  value([&] { to_.bytes(of); }, [&] { taken_.bytes(of); });
-}
-
-void InnerMembersReader::open(bool is_array) {
-  const ObjectPlace* const place = beyond_ > 0 ? nullptr : place_of_next(frames_, is_array);
-  if (place)
-    frames_.push_back({.place = place, .is_array = is_array, .index = 0, .key = {}, .members = {}, .inner = {}});
-  else
-    ++beyond_;
-}
-void InnerMembersReader::begin_array(std::size_t announced) {
-  if (taken_depth_ >= 0) return ++taken_depth_, taken_.begin_array(announced);
-  open(true);
-  to_.begin_array(announced);
-}
-void InnerMembersReader::begin_object(std::size_t announced) {
-  if (taken_depth_ >= 0) return ++taken_depth_, taken_.begin_object(announced);
-  open(false);
-  to_.begin_object(announced);
+  if (event.begins()) {
+    const bool is_array = event.kind == Kind::begin_array;
+    if (const ObjectPlace* const place = beyond_ > 0 ? nullptr : place_of_next(frames_, is_array))
+      frames_.push_back({.place = place, .is_array = is_array, .index = 0, .key = {}, .members = {}, .inner = {}});
+    else
+      ++beyond_;
+  } else if (event.ends()) {
+    close();
+  } else if (event.kind == Kind::key && beyond_ == 0) {
+    Frame& object = frames_.back();
+    if (frames_.size() > 1 && !object.place->knows(event.text)) {
+      taken_depth_ = 0;
+      return taken_.begin_member(event.text);
+    }
+    object.key = event.text;
+  }
+  to_.on(event);
+  if (change == 0 && event.kind != Kind::key && beyond_ == 0 && !frames_.empty()) ++frames_.back().index;
 }
 
 void InnerMembersReader::close() {
@@ -198,28 +123,6 @@ void InnerMembersReader::close() {
   Inner& inner = frames_.size() > 1 ? outer.inner : of_document_;
   if (!members.empty()) inner[name_of_next(outer)] = "{" + members + "}";
   ++outer.index;
-}
-void InnerMembersReader::end_array() {
-  if (taken_depth_ < 0) return close(), to_.end_array();
-  taken_.end_array();
-  if (--taken_depth_ == 0) end_taken();
-}
-void InnerMembersReader::end_object() {
-  if (taken_depth_ < 0) return close(), to_.end_object();
-  taken_.end_object();
-  if (--taken_depth_ == 0) end_taken();
-}
-
-void InnerMembersReader::key(std::string_view name) {
-  if (taken_depth_ >= 0) return taken_.key(name);
-  if (beyond_ > 0) return to_.key(name);
-  Frame& object = frames_.back();
-  if (frames_.size() > 1 && !object.place->knows(name)) {
-    taken_depth_ = 0;
-    return taken_.begin_member(name);
-  }
-  object.key = name;
-  to_.key(name);
 }
 
 // A member that JSON cannot hold is left out.
@@ -239,15 +142,6 @@ std::string InnerMembersReader::with_inner(const std::string& other, bool with_m
 }
 
 // --- Writing
-
-void InnerMembersWriter::value_ended() {
-  if (!frames_.empty()) ++frames_.back().index;
-}
-void InnerMembersWriter::null() { to_.null(), value_ended(); }
-void InnerMembersWriter::boolean(bool value) { to_.boolean(value), value_ended(); }
-void InnerMembersWriter::number(const Number& value) { to_.number(value), value_ended(); }
-void InnerMembersWriter::text(std::string_view value) { to_.text(value), value_ended(); }
-void InnerMembersWriter::bytes(std::string_view value) { to_.bytes(value), value_ended(); }
 
 void InnerMembersWriter::open(bool is_array) {
   Frame frame{.place = place_of_next(frames_, is_array),
@@ -269,29 +163,21 @@ void InnerMembersWriter::open(bool is_array) {
   }
   frames_.push_back(std::move(frame));
 }
-void InnerMembersWriter::close() {
-  frames_.pop_back();
-  value_ended();
-}
-void InnerMembersWriter::begin_array(std::size_t announced) {
-  open(true);
-  to_.begin_array(announced);
-}
-void InnerMembersWriter::end_array() { close(), to_.end_array(); }
-void InnerMembersWriter::begin_object(std::size_t announced) {
-  open(false);
-  to_.begin_object(announced == unknown_length ? announced : announced + frames_.back().unknown.size());
-}
-void InnerMembersWriter::end_object() {
-  for (const auto& [name, text] : frames_.back().unknown) {
-    to_.key(name);
-    read_json(text, to_);
+
+void InnerMembersWriter::on(const Event& event) {
+  if (event.kind == Kind::key) frames_.back().key = event.text;
+  if (event.begins()) open(event.kind == Kind::begin_array);
+  if (event.kind == Kind::begin_object && event.announced != unknown_length)
+    return to_.begin_object(event.announced + frames_.back().unknown.size());
+  if (event.ends()) {
+    for (const auto& [name, text] : frames_.back().unknown) {
+      to_.key(name);
+      read_json(text, to_);
+    }
+    frames_.pop_back();
   }
-  close(), to_.end_object();
-}
-void InnerMembersWriter::key(std::string_view name) {
-  frames_.back().key = name;
-  to_.key(name);
+  to_.on(event);
+  if (!event.begins() && event.kind != Kind::key && !frames_.empty()) ++frames_.back().index;
 }
 
 }  // namespace mercury

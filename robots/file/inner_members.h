@@ -12,7 +12,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "robots/file/document.h"
@@ -23,9 +22,6 @@ namespace mercury {
 // An object of the document that may have unknown members; null = nothing is known of what is there.
 struct ObjectPlace;
 
-// Keys and values of an object, as JSON text.
-using MemberTexts = std::vector<std::pair<std::string, std::string>>;
-MemberTexts members_of(std::string_view object);
 // Those members of Robot::other that are of the document itself.
 MemberTexts members_of_document(std::string_view other);
 
@@ -42,16 +38,7 @@ class InnerMembersReader : public DocumentEvents {
  public:
   explicit InnerMembersReader(DocumentEvents& to) : to_(to) {}
 
-  void null() override;
-  void boolean(bool value) override;
-  void number(const Number& value) override;
-  void text(std::string_view value) override;
-  void bytes(std::string_view value) override;
-  void begin_array(std::size_t announced) override;
-  void end_array() override;
-  void begin_object(std::size_t announced) override;
-  void key(std::string_view name) override;
-  void end_object() override;
+  void on(const Event& event) override;
 
   // Robot::other with them; `other` = that of the document.
   std::string with_inner(const std::string& other, bool with_materials) const;
@@ -69,9 +56,6 @@ class InnerMembersReader : public DocumentEvents {
     Inner inner;            // of objects below
   };
 
-  template <class Send, class Take>
-  void value(const Send& send, const Take& take);
-  void open(bool is_array);
   void close();
   void end_taken();
 
@@ -89,16 +73,7 @@ class InnerMembersWriter : public DocumentEvents {
   // `other` = Robot::other.
   InnerMembersWriter(DocumentEvents& to, std::string_view other) : to_(to), other_(other) {}
 
-  void null() override;
-  void boolean(bool value) override;
-  void number(const Number& value) override;
-  void text(std::string_view value) override;
-  void bytes(std::string_view value) override;
-  void begin_array(std::size_t announced) override;
-  void end_array() override;
-  void begin_object(std::size_t announced) override;
-  void key(std::string_view name) override;
-  void end_object() override;
+  void on(const Event& event) override;
 
  private:
   struct Frame {
@@ -110,8 +85,6 @@ class InnerMembersWriter : public DocumentEvents {
   };
 
   void open(bool is_array);
-  void close();
-  void value_ended();
 
   DocumentEvents& to_;
   const std::string_view other_;

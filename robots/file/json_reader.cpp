@@ -77,58 +77,32 @@ class Adapter : public nlohmann::json_sax<Json> {
   int depth_ = 0;
 };
 
-// Writes the member `name` of the outermost object as JSON text.
+// Collects the members of the outermost object, all or those of one name.
 class MemberReader : public DocumentEvents {
  public:
-  explicit MemberReader(std::string_view name) : name_(name) {}
-  std::string take() { return std::move(text_); }
+  explicit MemberReader(std::optional<std::string_view> name = std::nullopt) : name_(name) {}
+  MemberTexts take() { return std::move(members_); }
 
-  void null() override {
-    if (is_wanted_) writer_->null();
-  }
-  void boolean(bool value) override {
-    if (is_wanted_) writer_->boolean(value);
-  }
-  void number(const Number& value) override {
-    if (is_wanted_) writer_->number(value);
-  }
-  void text(std::string_view value) override {
-    if (is_wanted_) writer_->text(value);
-  }
-  void bytes(std::string_view) override {}  // JSON has none
-  void begin_array(std::size_t announced) override {
-    if (is_wanted_) writer_->begin_array(announced);
-    ++depth_;
-  }
-  void end_array() override {
-    --depth_;
-    if (is_wanted_) writer_->end_array();
-  }
-  void begin_object(std::size_t announced) override {
-    if (is_wanted_) writer_->begin_object(announced);
-    ++depth_;
-  }
-  void key(std::string_view name) override {
-    if (depth_ == 1) {
-      is_wanted_ = name == name_;
-      if (!is_wanted_) return;
+  void on(const Event& event) override {
+    if (event.kind == Kind::key && depth_ == 1) {
+      key_ = event.text;
       text_.clear();
-      writer_.emplace(text_);
-    } else if (is_wanted_) {
-      writer_->key(name);
+      writer_.reset();
+      if (!name_ || *name_ == key_) writer_.emplace(text_);
+      return;
     }
-  }
-  void end_object() override {
-    if (--depth_ == 0) is_wanted_ = false;
-    if (is_wanted_) writer_->end_object();
+    const int before = std::exchange(depth_, depth_ + event.change_of_depth());
+    if (!writer_ || std::min(before, depth_) == 0) return;
+    writer_->on(event);
+    if (depth_ == 1) members_.emplace_back(key_, text_);
   }
 
  private:
-  std::string_view name_;
-  std::string text_;
-  std::optional<JsonWriter> writer_;
+  std::optional<std::string_view> name_;
+  MemberTexts members_;
+  std::string key_, text_;
+  std::optional<JsonWriter> writer_;  // of a member that is wanted
   int depth_ = 0;
-  bool is_wanted_ = false;  // what follows belongs to the member
 };
 
 }  // namespace
@@ -146,10 +120,17 @@ void read_json(std::string_view document, DocumentEvents& events) {
   Json::sax_parse(document, &adapter);
 }
 
+MemberTexts members_of(std::string_view document) {
+  MemberReader reader;
+  read_json(document, reader);
+  return reader.take();
+}
+
 std::string json_member(std::string_view document, std::string_view name) {
   MemberReader reader(name);
   read_json(document, reader);
-  return reader.take();
+  MemberTexts found = reader.take();
+  return found.empty() ? "" : std::move(found.back().second);
 }
 
 int json_depth(std::string_view text) {

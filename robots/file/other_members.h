@@ -22,35 +22,10 @@ class OtherMembers : public DocumentEvents {
     writer_.emplace(text_);
     keep([&] { writer_->begin_object(1), writer_->key(name); });
   }
-  void null() override {
-    value([&] { writer_->null(); });
-  }
-  void boolean(bool of) override {
-    value([&] { writer_->boolean(of); });
-  }
-  void number(const Number& of) override {
-    value([&] { writer_->number(of); });
-  }
-  void text(std::string_view of) override {
-    value([&] { writer_->text(of); });
-  }
-  void bytes(std::string_view of) override {
-    value([&] { writer_->bytes(of); });
-  }
-  void begin_array(std::size_t announced) override {
-    open([&] { writer_->begin_array(announced); });
-  }
-  void end_array() override {
-    close([&] { writer_->end_array(); });
-  }
-  void begin_object(std::size_t announced) override {
-    open([&] { writer_->begin_object(announced); });
-  }
-  void key(std::string_view name) override {
-    keep([&] { writer_->key(name); });
-  }
-  void end_object() override {
-    close([&] { writer_->end_object(); });
+  void on(const Event& event) override {
+    keep([&] { writer_->on(event); });
+    depth_ += event.change_of_depth();
+    if (depth_ == 0) end_member();
   }
 
   // An object of all of them; empty if there are none.
@@ -65,21 +40,6 @@ class OtherMembers : public DocumentEvents {
     } catch (const InputError&) {
       writer_.reset();
     }
-  }
-  template <class Write>
-  void value(const Write& write) {
-    keep(write);
-    if (depth_ == 0) end_member();
-  }
-  template <class Write>
-  void open(const Write& write) {
-    keep(write);
-    ++depth_;
-  }
-  template <class Write>
-  void close(const Write& write) {
-    --depth_;
-    value(write);
   }
   void end_member() {
     keep([&] { writer_->end_object(); });

@@ -23,16 +23,7 @@ inline constexpr std::size_t max_actuators = max_materials - 1;
 // pointer. Keys that the format does not know are ignored.
 class ActuatorReader : public DocumentEvents {
  public:
-  void null() override;
-  void boolean(bool value) override;
-  void number(const Number& value) override;
-  void text(std::string_view value) override;
-  void bytes(std::string_view value) override;
-  void begin_array(std::size_t announced) override;
-  void end_array() override;
-  void begin_object(std::size_t announced) override;
-  void key(std::string_view key_name) override;
-  void end_object() override;
+  void on(const Event& event) override;
 
   // Gives the actuators to a robot that has none, once its document has ended: keys stand in any order. Springs get
   // materials of their own (add_actuator()). The rest of the robot is valid. Throws InputError if they do not fit the
@@ -52,9 +43,12 @@ class ActuatorReader : public DocumentEvents {
     bool has(Field field) const { return (seen >> field & 1) != 0; }
   };
 
-  bool passes_by(int change_of_depth);
   [[noreturn]] void refuse(const std::string& what) const;
-  [[noreturn]] void wrong_type(const std::string& given) const;
+  [[noreturn]] void wrong_type(const Event& given) const;
+  void read_key(std::string_view key_name);
+  void read_name(std::string_view value);
+  void read_index(const Number& value);
+  void end_entry();
   void check_springs(const Robot& robot) const;
 
   std::vector<Entry> entries_;
@@ -83,16 +77,7 @@ void write_brain(const Brain& brain, DocumentEvents& events);
 // An event that breaks a rule throws InputError, with its place as a JSON pointer.
 class RobotReader : public DocumentEvents {
  public:
-  void null() override;
-  void boolean(bool value) override;
-  void number(const Number& value) override;
-  void text(std::string_view value) override;
-  void bytes(std::string_view value) override;
-  void begin_array(std::size_t announced) override;
-  void end_array() override;
-  void begin_object(std::size_t announced) override;
-  void key(std::string_view key_name) override;
-  void end_object() override;
+  void on(const Event& event) override;
 
   // The robot, once the document has ended. Throws InputError if a part is missing or validate() refuses it.
   Robot take();
@@ -131,12 +116,15 @@ class RobotReader : public DocumentEvents {
   bool in_values() const { return depth_ == 2 && section_ >= requirements && section_ <= fixed; }
   std::string place() const;
   [[noreturn]] void refuse(const std::string& what) const;
-  [[noreturn]] void wrong_type(const std::string& given) const;
-  bool passes_by(int change_of_depth);
+  [[noreturn]] void wrong_type(const Event& given) const;
   JsonWriter* text_part();
-  DocumentEvents* part(int change_of_depth);
+  DocumentEvents* part(int inside);
+  void read_key(std::string_view key_name);
+  void read_text(const Event& event);
+  void read_number(const Event& event);
+  void begin(const Event& event);
   void begin_list(std::size_t announced);
-  void begin_row(bool is_array);
+  void begin_row(const Event& event);
   float finite(const Number& value) const;
   std::uint16_t mass_index(const Number& value) const;
   void row_number(const Number& value);

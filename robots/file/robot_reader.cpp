@@ -41,7 +41,8 @@ void RobotReader::refuse(const std::string& what) const {
   throw where.empty() ? InputError(what) : InputError(where, what);
 }
 
-void RobotReader::wrong_type(const std::string& given) const {
+void RobotReader::wrong_type(const Event& event) const {
+  const std::string given(name_of(event));
   if (depth_ == 0) refuse("not a Mercury robot: the document must be an object");
   if (depth_ == 1) {
     if (section_ == format || section_ == name) refuse("must be a text, not " + given);
@@ -68,57 +69,52 @@ void RobotReader::wrong_type(const std::string& given) const {
   refuse("must hold numbers, not " + given);
 }
 
-// True where an event is not part of the robot: under an unknown key of a material.
-// `change_of_depth` is 1 for an event that opens, -1 for one that closes.
-bool RobotReader::passes_by(int change_of_depth) {
-  const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
-  if (section_ != materials || field_ != unknown_key || inside < 3) return false;
-  depth_ += change_of_depth;
-  return true;
-}
-
 JsonWriter* RobotReader::text_part() {
   return section_ == origin ? &origin_ : section_ == sensors ? &sensors_ : section_ == brain ? &brain_ : nullptr;
 }
 
 // What takes an event within the origin, sensors, a brain, the list of actuators or an unknown member; nullptr for
-// others. Follows the depth.
-DocumentEvents* RobotReader::part(int change_of_depth) {
-  const int inside = depth_ - (change_of_depth < 0 ? 1 : 0);
-  DocumentEvents* const part = section_ == actuators && inside >= 2 ? static_cast<DocumentEvents*>(&actuators_)
-                               : section_ == unknown && inside >= 1 ? static_cast<DocumentEvents*>(&other_)
-                               : section_ >= origin && depth_ >= 2  ? text_part()
+// others. `inside`: arrays and objects that are open around the event.
+DocumentEvents* RobotReader::part(int inside) {
+  return section_ == actuators && inside >= 2                       ? static_cast<DocumentEvents*>(&actuators_)
+         : section_ == unknown && inside >= 1                       ? static_cast<DocumentEvents*>(&other_)
+         : section_ >= origin && section_ != unknown && depth_ >= 2 ? text_part()
                                                                     : nullptr;
-  if (part) depth_ += change_of_depth;
-  return part;
 }
 
-void RobotReader::null() {
-  if (passes_by(0)) return;
-  if (DocumentEvents* const to = part(0)) return to->null();
-  wrong_type("null");
-}
-
-void RobotReader::boolean(bool value) {
-  if (passes_by(0)) return;
-  if (DocumentEvents* const to = part(0)) return to->boolean(value);
-  if (depth_ == 3 && section_ == materials && field_ == half_wave_key) {
-    entry_.material.half_wave = value;
-    return;
+void RobotReader::on(const Event& event) {
+  if (event.kind == Kind::number && depth_ == 3 && section_ >= masses && section_ <= velocity)
+    return row_number(*event.number);  // most of a file
+  if (event.kind == Kind::key) return read_key(event.text);
+  const int change = event.change_of_depth(), inside = depth_ - (change < 0 ? 1 : 0);
+  const bool is_ignored = section_ == materials && field_ == unknown_key && inside >= 3;
+  if (text_part() && depth_ >= 2) {
+    if (event.kind == Kind::bytes) refuse("holds a byte string, which JSON cannot hold");
+    if (event.kind == Kind::number && !std::isfinite(event.number->real)) refuse("a number is not finite");
   }
-  wrong_type(value ? "true" : "false");
+  if (DocumentEvents* const to = part(inside); to || is_ignored) {
+    depth_ += change;
+    if (to) to->on(event);
+  } else if (event.kind == Kind::boolean && depth_ == 3 && section_ == materials && field_ == half_wave_key) {
+    entry_.material.half_wave = event.truth;
+  } else if (event.kind == Kind::text) {
+    read_text(event);
+  } else if (event.kind == Kind::number) {
+    read_number(event);
+  } else if (event.begins()) {
+    begin(event);
+  } else if (!event.ends()) {
+    wrong_type(event);
+  } else if (depth_ == 3) {
+    end_row();
+  } else {
+    if (event.kind == Kind::end_array && row_ == 0) refuse_if_empty();
+    --depth_;
+  }
 }
 
-void RobotReader::bytes(std::string_view value) {
-  if (passes_by(0)) return;
-  if (text_part() && depth_ >= 2) refuse("holds a byte string, which JSON cannot hold");
-  if (DocumentEvents* const to = part(0)) return to->bytes(value);
-  wrong_type("a byte string");
-}
-
-void RobotReader::text(std::string_view value) {
-  if (passes_by(0)) return;
-  if (DocumentEvents* const to = part(0)) return to->text(value);
+void RobotReader::read_text(const Event& event) {
+  const std::string_view value = event.text;
   if (depth_ == 1 && section_ == format) {
     if (value != "mercury-robot")
       refuse(std::string("\"").append(shown(value)).append("\" is not known; give \"mercury-robot\""));
@@ -131,7 +127,7 @@ void RobotReader::text(std::string_view value) {
   } else if (depth_ == 2 && section_ == requirements) {
     require_known(value);
   } else {
-    wrong_type("a text");
+    wrong_type(event);
   }
 }
 
@@ -141,10 +137,8 @@ float RobotReader::finite(const Number& value) const {
   return *number;
 }
 
-void RobotReader::number(const Number& value) {
-  if (passes_by(0)) return;
-  if (text_part() && depth_ >= 2 && !std::isfinite(value.real)) refuse("a number is not finite");
-  if (DocumentEvents* const to = part(0)) return to->number(value);
+void RobotReader::read_number(const Event& event) {
+  const Number& value = *event.number;
   if (depth_ == 1 && section_ == version) {
     if (value.kind != Number::Kind::natural || value.natural != 1)
       refuse(std::isfinite(value.real) ? shown(to_text(value)) + " is not known; this program reads version 1"
@@ -158,12 +152,10 @@ void RobotReader::number(const Number& value) {
                              &entry_.modulus,
                              &entry_.density};
     *fields[field_ - 1] = finite(value);
-  } else if (depth_ == 3 && section_ >= masses && section_ <= velocity) {
-    row_number(value);
   } else if (in_values() && section_ != requirements) {
     value_number(value);
   } else {
-    wrong_type("a number");
+    wrong_type(event);
   }
 }
 
@@ -241,8 +233,8 @@ void RobotReader::begin_list(std::size_t announced) {
   ++depth_;
 }
 
-void RobotReader::begin_row(bool is_array) {
-  if (is_array == (section_ == materials)) wrong_type(is_array ? "an array" : "an object");
+void RobotReader::begin_row(const Event& event) {
+  if ((event.kind == Kind::begin_array) == (section_ == materials)) wrong_type(event);
   if (section_ == masses || section_ == velocity) require_room();
   if (section_ == materials && row_ == max_materials) refuse("more than 256 materials, at most 256 are accepted");
   column_ = 0;
@@ -252,41 +244,31 @@ void RobotReader::begin_row(bool is_array) {
   ++depth_;
 }
 
-void RobotReader::begin_array(std::size_t announced) {
-  if (passes_by(1)) return;
-  if (DocumentEvents* const to = part(1)) return to->begin_array(announced);
-  if (depth_ == 1 && section_ >= materials && section_ <= actuators) return begin_list(announced);
-  if (depth_ == 1 && section_ == sensors) {
-    ++depth_;
-    return sensors_.begin_array(announced);
-  }
-  if (depth_ == 2 && !in_values()) return begin_row(true);
-  wrong_type("an array");
-}
-
-void RobotReader::begin_object(std::size_t announced) {
-  if (depth_ == 0) {
+void RobotReader::begin(const Event& event) {
+  const bool is_array = event.kind == Kind::begin_array;
+  const bool is_part = depth_ == 1 && (is_array ? section_ == sensors : section_ == origin || section_ == brain);
+  if (depth_ == 0 && !is_array) {
     depth_ = 1;
-    return;
-  }
-  if (passes_by(1)) return;
-  if ((section_ == origin || section_ == brain) && depth_ == 1) {
+  } else if (is_part) {
     ++depth_;
-    return text_part()->begin_object(announced);
+    text_part()->on(event);
+  } else if (is_array && depth_ == 1 && section_ >= materials && section_ <= actuators) {
+    begin_list(event.announced);
+  } else if (depth_ == 2 && !in_values()) {
+    begin_row(event);
+  } else {
+    wrong_type(event);
   }
-  if (DocumentEvents* const to = part(1)) return to->begin_object(announced);
-  if (depth_ == 2 && !in_values()) return begin_row(false);
-  wrong_type("an object");
 }
 
-void RobotReader::key(std::string_view key_name) {
+void RobotReader::read_key(std::string_view key_name) {
   if (depth_ == 1) {
     const auto* const found = std::find(std::begin(section_names), std::end(section_names), key_name);
     section_ = static_cast<Section>(found - std::begin(section_names));
     if (section_ == unknown) return other_.begin_member(key_name);
     if (has(section_)) refuse("appears twice");
     seen_ |= 1u << section_;
-  } else if (DocumentEvents* const to = part(0)) {
+  } else if (DocumentEvents* const to = part(depth_)) {
     to->key(key_name);
   } else if (section_ == materials && depth_ == 3) {
     material_key(key_name);
@@ -344,24 +326,6 @@ void RobotReader::refuse_if_empty() {
   if (section_ == mass) refuse("an empty list; leave it out for 1 kg per mass");
   if (section_ == velocity) refuse("an empty list; leave it out for a robot at rest");
   ++depth_;
-}
-
-void RobotReader::end_array() {
-  if (passes_by(-1)) return;
-  if (DocumentEvents* const to = part(-1)) return to->end_array();
-  if (depth_ == 3) return end_row();
-  if (row_ == 0) refuse_if_empty();
-  --depth_;
-}
-
-void RobotReader::end_object() {
-  if (depth_ == 1) {
-    depth_ = 0;
-    return;
-  }
-  if (passes_by(-1)) return;
-  if (DocumentEvents* const to = part(-1)) return to->end_object();
-  end_row();
 }
 
 // A table that says of what its materials are made: springs and masses follow.

@@ -14,34 +14,15 @@ namespace {
 class Copy : public DocumentEvents {
  public:
   explicit Copy(DocumentEvents& to) : to_(to) {}
-  void null() override { to(false).null(); }
-  void boolean(bool value) override { to(false).boolean(value); }
-  void number(const Number& value) override {
-    if (!std::isfinite(value.real)) throw InputError("a number is too large");
-    to(false).number(value);
+  void on(const Event& event) override {
+    if (event.kind == Kind::number && !std::isfinite(event.number->real)) throw InputError("a number is too large");
+    if (depth_ == 0 && event.kind != Kind::begin_object) throw InputError("must be an object");
+    depth_ += event.change_of_depth();
+    if (depth_ == max_depth) throw InputError("nested deeper than " + std::to_string(max_depth - 1) + " levels");
+    to_.on(event);
   }
-  void text(std::string_view value) override { to(false).text(value); }
-  void bytes(std::string_view value) override { to(false).bytes(value); }
-  void begin_array(std::size_t announced) override { deeper(to(false)).begin_array(announced); }
-  void end_array() override { shallower().end_array(); }
-  void begin_object(std::size_t announced) override { deeper(to(true)).begin_object(announced); }
-  void key(std::string_view name) override { to_.key(name); }
-  void end_object() override { shallower().end_object(); }
 
  private:
-  DocumentEvents& to(bool is_object) {
-    if (depth_ == 0 && !is_object) throw InputError("must be an object");
-    return to_;
-  }
-  DocumentEvents& deeper(DocumentEvents& events) {
-    if (++depth_ == max_depth) throw InputError("nested deeper than " + std::to_string(max_depth - 1) + " levels");
-    return events;
-  }
-  DocumentEvents& shallower() {
-    --depth_;
-    return to_;
-  }
-
   DocumentEvents& to_;
   int depth_ = 0;
 };
