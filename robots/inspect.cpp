@@ -10,12 +10,6 @@
 namespace mercury {
 namespace {
 
-std::string name_of_material(const Robot& robot, MaterialId id) {
-  if (!robot.material_names.empty() && !robot.material_names[id].empty()) return robot.material_names[id];
-  if (robot.materials.empty()) return default_material_name(id);
-  return "material " + std::to_string(id);
-}
-
 void inspect_materials(const Robot& robot, Inspection& found) {
   std::array<std::size_t, max_materials> springs{};
   for (const Spring& spring : robot.springs) ++springs[spring.material];

@@ -2,6 +2,7 @@
 #include "mercury/names.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace mercury {
@@ -33,6 +34,17 @@ std::string list_of(const std::vector<std::string>& names, const char* last) {
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) list += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
   return list;
+}
+
+std::string markup_text(std::string_view text) {
+  std::string safe;
+  for (const char letter : text) {
+    if (const std::size_t at = std::string_view("&<>\"").find(letter); at != std::string_view::npos)
+      safe += std::array{"&amp;", "&lt;", "&gt;", "&quot;"}[at];
+    else if (static_cast<unsigned char>(letter) >= ' ' || letter == '\t' || letter == '\n')
+      safe += letter;
+  }
+  return safe;
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& names) {

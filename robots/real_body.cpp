@@ -93,12 +93,6 @@ std::vector<Substance> substances_of(const Robot& robot, const RealMaterial& mat
   return substances;
 }
 
-std::string name_of_material(const Robot& robot, MaterialId id) {
-  return robot.material_names.empty()
-             ? robot.materials.empty() ? default_material_name(id) : "material " + std::to_string(id)
-             : robot.material_names[id];
-}
-
 // Actuators of materials that are now several.
 void rename_materials(std::vector<Actuator>& actuators, const std::multimap<MaterialId, MaterialId>& made) {
   for (Actuator& actuator : actuators) {

@@ -66,16 +66,6 @@ std::size_t left_in_groups(const std::string& mount, std::string group, const Gr
   return left;
 }
 
-std::string with_unit(std::size_t bytes) {
-  constexpr std::array units{"bytes", "kB", "MB", "GB", "TB"};
-  auto value = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  for (; value >= 999.5 && unit + 1 < units.size(); ++unit) value /= 1000;
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), value < 9.95 && unit > 0 ? "%.1f %s" : "%.0f %s", value, units[unit]);
-  return text.data();
-}
-
 }  // namespace
 
 std::size_t left_in_control_groups(const std::string& root, const std::string& membership) {
@@ -153,8 +143,18 @@ std::size_t content_bytes(const Robot& robot) {
   return bytes;
 }
 
+std::string byte_text(std::size_t bytes) {
+  constexpr std::array units{"bytes", "kB", "MB", "GB", "TB"};
+  auto value = static_cast<double>(bytes);
+  std::size_t unit = 0;
+  for (; value >= 999.5 && unit + 1 < units.size(); ++unit) value /= 1000;
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), value < 9.95 && unit > 0 ? "%.1f %s" : "%.0f %s", value, units[unit]);
+  return text.data();
+}
+
 std::string memory_line(std::size_t needed, std::size_t usable, std::string_view fits) {
-  std::string line = "about " + with_unit(needed) + " of memory are needed, " + with_unit(usable) + " can be used";
+  std::string line = "about " + byte_text(needed) + " of memory are needed, " + byte_text(usable) + " can be used";
   if (!fits.empty()) line.append("; give ").append(fits);
   return line;
 }
@@ -167,7 +167,7 @@ std::string memory_limit_text() {
 
 std::string no_memory_line() {
   const std::string limit = memory_limit_text();
-  if (limit.empty()) return "not enough memory: more is needed than can be used, " + with_unit(available_host_memory());
+  if (limit.empty()) return "not enough memory: more is needed than can be used, " + byte_text(available_host_memory());
   return "not enough memory: more is needed than the limit, " + limit;
 }
 

@@ -89,12 +89,6 @@ bool is_valid(const Face& face, std::size_t masses) {
 
 // Actuators: groups of springs that a program drives.
 
-std::string name_of_material(const Robot& robot, MaterialId id) {
-  if (robot.materials.empty()) return default_material_name(id);
-  if (robot.material_names.empty() || robot.material_names[id].empty()) return "material " + std::to_string(id);
-  return robot.material_names[id];
-}
-
 // Gives the robot a table of air and those materials that springs or actuators have.
 void keep_used_materials(Robot& robot) {
   const std::span<const Material> defaults = default_materials();
@@ -192,6 +186,12 @@ void validate_actuators(const Robot& robot) {
 
 std::span<const Material> materials_of(const Robot& robot) {
   return robot.materials.empty() ? default_materials() : std::span<const Material>(robot.materials);
+}
+
+std::string name_of_material(const Robot& robot, MaterialId id) {
+  if (robot.materials.empty()) return default_material_name(id);
+  if (robot.material_names.empty() || robot.material_names[id].empty()) return "material " + std::to_string(id);
+  return robot.material_names[id];
 }
 
 float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b) {

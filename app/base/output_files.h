@@ -71,9 +71,12 @@ class OutputFiles {
 // meantime, another one, which a warning says (NameTaken).
 std::filesystem::path name_given(const std::filesystem::path& file, const std::function<void()>& write);
 
-// Numbers in tables of CSV, whose texts are mercury/csv.h's.
+// Numbers in tables of CSV, whose texts are mercury/csv.h's, and bytes in texts.
 
 // The shortest text that reads back as this number; empty if it is not finite, which programs read as missing.
 std::string csv_number(double value);
+
+// In base64 (RFC 4648).
+std::string base64(std::string_view bytes);
 
 }  // namespace mercury

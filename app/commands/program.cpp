@@ -25,6 +25,7 @@
 #include "app/options/scene_file.h"
 #include "evolution/distribution/ranks.h"
 #include "mercury/error.h"
+#include "mercury/host_memory.h"
 #include "mercury/names.h"
 #include "robots/file/document.h"
 
@@ -296,8 +297,8 @@ class Program {
   static void say_costs(double seconds) {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    say_detail(fmt::format("took {:.2f} s, at most {:.0f} MB of memory", seconds,
-                           static_cast<double>(usage.ru_maxrss) / 1024));
+    say_detail(fmt::format("took {:.2f} s, at most {} of memory", seconds,
+                           byte_text(static_cast<std::size_t>(usage.ru_maxrss) * 1024)));
   }
 
   CommandTree tree_{"mercury", "Mercury simulates soft robots, shows them in a window and makes videos of them."};

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/base/progress.h"
+#include "app/export/recorded_motion.h"
 #include "app/recording/trajectory_layout.h"
 #include "app/scene/hero_style.h"
 #include "app/video/frame_writer.h"
@@ -160,17 +161,9 @@ Subject subject_of(RenderOptions& options, ViewSettings& view) {
 void require_moment(const VideoOptions& video, const Subject& subject) {
   if (!video.still()) return;
   const double moment = *video.still();
-  if (!subject.recording) {
-    if (moment / subject.configuration.dt > 1e15)
-      throw InputError("--still", fmt::format("{} s are too many steps of {} s", moment, subject.configuration.dt));
-    return;
-  }
-  const TrajectoryReader& recording = *subject.recording;
-  const double length = recording.time(recording.frames() - 1) - recording.time(0);
-  // The run may have gone on for less than a frame after the last one.
-  const double frame = static_cast<double>(recording.every()) * recording.configuration().dt;
-  if (moment >= length + frame)
-    throw InputError("--still", fmt::format("{} is not accepted; the recording has {:.6g} s", moment, length));
+  if (subject.recording) return require_moment(*subject.recording, "still", moment);
+  if (moment / subject.configuration.dt > 1e15)
+    throw InputError("--still", fmt::format("{} s are too many steps of {} s", moment, subject.configuration.dt));
 }
 
 // A recording begins where it does.

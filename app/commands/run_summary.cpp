@@ -11,6 +11,7 @@
 #include "app/commands/run_film.h"
 #include "app/options/generator_options.h"
 #include "mercury/custom.h"
+#include "mercury/host_memory.h"
 #include "mercury/names.h"
 #include "mercury/quantity.h"
 
@@ -170,10 +171,6 @@ void print_line_of(const RunHistory& run, std::uint64_t id) {
                                                         oldest.generation, score_text(run.settings(), oldest)));
 }
 
-std::string size_text(double bytes) {
-  return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3) : fmt::format("{:.1f} MB", bytes / 1e6);
-}
-
 // "best/ (20 robots), genomes (1.2 MB), ..."
 std::string files_text(const std::filesystem::path& folder) {
   std::vector<std::string> items;
@@ -185,7 +182,7 @@ std::string files_text(const std::filesystem::path& folder) {
       const auto count = std::distance(std::filesystem::directory_iterator(entry.path(), error), {});
       items.push_back(fmt::format("{}/ ({})", name, counted(static_cast<std::size_t>(count), "robot", "robots")));
     } else {
-      items.push_back(fmt::format("{} ({})", name, size_text(static_cast<double>(entry.file_size(error)))));
+      items.push_back(fmt::format("{} ({})", name, byte_text(entry.file_size(error))));
     }
   }
   std::ranges::sort(items);

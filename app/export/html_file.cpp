@@ -23,6 +23,7 @@
 #include "app/scene/robot_shape.h"
 #include "mercury/error.h"
 #include "mercury/fnv.h"
+#include "mercury/names.h"
 #include "render/context/shader_source.h"
 #include "render/style.h"
 
@@ -325,27 +326,6 @@ std::string shaders_json() {
   return shaders.dump();
 }
 
-std::string escaped(const std::string& text) {
-  std::string html;
-  for (const char letter : text) switch (letter) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      default:
-        html += letter;
-    }
-  return html;
-}
-
 // JSON that cannot end the element of the page that holds it.
 std::string for_script(std::string json) {
   std::string text;
@@ -500,7 +480,7 @@ void write_html(std::span<RecordedMotion> motions, const std::filesystem::path& 
                           {"family", json_of(choices.notes.family)}};
   OutputStreams files;
   write_page(files.add(path), {{"program", program_version},
-                               {"title", escaped(title)},
+                               {"title", markup_text(title)},
                                {"style", compact(page_file("page.css"))},
                                {"shaders", for_script(shaders_json())},
                                {"page", for_script(json_text(page))},

@@ -25,6 +25,8 @@ std::size_t nearest_frame(const TrajectoryReader& recording, double seconds) {
   return time - recording.time(frame) <= recording.time(frame + 1) - time ? frame : frame + 1;
 }
 
+}  // namespace
+
 void require_moment(const TrajectoryReader& recording, const char* name, double seconds) {
   const double length = length_of(recording);
   // The run may have gone on for less than a frame after the last one.
@@ -32,8 +34,6 @@ void require_moment(const TrajectoryReader& recording, const char* name, double 
   if (seconds >= 0 && seconds < length + frame) return;
   throw ParameterError(name, fmt::format("{} is not accepted; the recording has 0 to {:.6g} s", seconds, length));
 }
-
-}  // namespace
 
 RecordedMotion::RecordedMotion(std::shared_ptr<TrajectoryReader> recording, std::size_t robot, const FrameRange& range)
     : recording_(std::move(recording)), robot_(robot) {

@@ -15,6 +15,9 @@
 
 namespace mercury {
 
+// Throws ParameterError(name, ...) for a moment that the recording does not have, from its first frame [s].
+void require_moment(const TrajectoryReader& recording, const char* name, double seconds);
+
 // Which frames of a recording. Times count from its first frame [s].
 struct FrameRange {
   std::optional<double> from, to;  // the whole recording if absent

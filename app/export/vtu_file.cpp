@@ -94,7 +94,7 @@ class CellGrid {
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
         "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n");
-    // One after the other: the offsets follow from the order.
+    // One after another: the offsets follow from the order.
     const auto section = [&](const char* name, std::initializer_list<std::string> elements) {
       file.print("<{}>\n", name);
       for (const std::string& element : elements) file.text(element);

@@ -249,11 +249,7 @@ HitDetails::OfSpring spring_details(const Snapshot& snapshot, std::size_t index,
   of.strain = strain(of.length, spring.rest_length);
   of.activation = 1 - now.length_factor;
   of.force = spring_force(now.stiffness, stretch(spring, now, positions));
-  if (!robot.material_names.empty())
-    of.material_name = robot.material_names[spring.material];
-  else
-    of.material_name = robot.materials.empty() ? default_material_name(spring.material)
-                                               : "material " + std::to_string(spring.material);
+  of.material_name = name_of_material(robot, spring.material);
   return of;
 }
 

@@ -14,6 +14,7 @@
 #include "app/options/option_values.h"
 #include "app/options/parameter_options.h"
 #include "mercury/error.h"
+#include "mercury/names.h"
 #include "mercury/origin.h"
 #include "mercury/real_body.h"
 #include "mercury/threads.h"
@@ -24,32 +25,25 @@ namespace {
 constexpr const char* simulation_group = "Simulation";
 constexpr const char* environment_group = "Environment";
 
-std::string joined(const std::vector<std::string_view>& names, const char* last_separator) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    text.append(i == 0 ? "" : i + 1 < names.size() ? ", " : last_separator).append(names[i]);
-  return text;
-}
-
 // The environments that have a parameter, by its default there.
-std::vector<std::pair<std::string, std::vector<std::string_view>>> environments_by_default(std::string_view name) {
-  std::vector<std::pair<std::string, std::vector<std::string_view>>> groups;
+std::vector<std::pair<std::string, std::vector<std::string>>> environments_by_default(std::string_view name) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   for (const EnvironmentPreset& preset : environment_presets)
     for_each_parameter(preset.environment, [&](const auto& parameter, const auto& value) {
       if (parameter.name != name) return;
       auto group = std::ranges::find(groups, text_of(value), &decltype(groups)::value_type::first);
       if (group == groups.end()) group = groups.insert(groups.end(), {text_of(value), {}});
-      group->second.push_back(preset.name);
+      group->second.emplace_back(preset.name);
     });
   return groups;
 }
 
 // The environments that have a parameter, as "ocean and ocean-simple".
 std::string environments_with(std::string_view name) {
-  std::vector<std::string_view> names;
+  std::vector<std::string> names;
   for (const auto& [value, environments] : environments_by_default(name))
     names.insert(names.end(), environments.begin(), environments.end());
-  return joined(names, " and ");
+  return list_of(names, " and ");
 }
 
 // "(ocean, ocean-simple; default 0,0,0)", or "(default 1 in ocean and ocean-simple, 200 in land)".
@@ -59,7 +53,7 @@ std::string where_and_default(std::string_view name) {
     return fmt::format("({}; default {})", fmt::join(groups.front().second, ", "), groups.front().first);
   std::vector<std::string> defaults;
   for (const auto& [value, environments] : groups)
-    defaults.push_back(fmt::format("{} in {}", value, joined(environments, " and ")));
+    defaults.push_back(fmt::format("{} in {}", value, list_of(environments, " and ")));
   return fmt::format("(default {})", fmt::join(defaults, ", "));
 }
 

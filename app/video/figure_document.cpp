@@ -11,7 +11,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "app/base/output_files.h"
 #include "app/video/figure.h"
+#include "mercury/names.h"
 #include "render/png.h"
 #include "render/text/font.h"
 
@@ -48,29 +50,6 @@ void draw(const render::Overlay& overlay, Page& page) {
 
 double points_per_pixel(const Figure& figure) { return 72 / (figure.dpi > 0 ? figure.dpi : 96); }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text)
-    result += letter == '&'   ? std::string("&amp;")
-              : letter == '<' ? std::string("&lt;")
-              : letter == '>' ? std::string("&gt;")
-              : letter == '"' ? std::string("&quot;")
-                              : std::string(1, letter);
-  return result;
-}
-
-std::string base64(Bytes bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? letters[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 std::string hex(render::Color color) { return fmt::format("#{:02x}{:02x}{:02x}", color.r, color.g, color.b); }
 
 class SvgPage final : public Page {
@@ -83,9 +62,10 @@ class SvgPage final : public Page {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.6g}in\" height=\"{:.6g}in\" viewBox=\"{} {} {} {}\" "
         "font-family=\"DejaVu Sans, Arial, sans-serif\">\n<desc>{}</desc>\n"
         "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,",
-        width * inches, height * inches, box.left, box.top, width, height, escaped(figure.comment), box.left, box.top,
-        width, height);
-    svg_ += base64(render::png_bytes(cropped(figure.image, box))) + "\"/>\n";
+        width * inches, height * inches, box.left, box.top, width, height, markup_text(figure.comment), box.left,
+        box.top, width, height);
+    const std::vector<std::uint8_t> png = render::png_bytes(cropped(figure.image, box));
+    svg_ += base64({reinterpret_cast<const char*>(png.data()), png.size()}) + "\"/>\n";
   }
 
   void box(const render::Rectangle& area, float radius, render::Color color, float opacity) override {
@@ -104,7 +84,7 @@ class SvgPage final : public Page {
     svg_ += fmt::format(
         "<text x=\"{:.6g}\" y=\"{:.6g}\" font-size=\"{:.4g}\" text-anchor=\"{}\" fill=\"{}\" "
         "fill-opacity=\"{:.3g}\">{}</text>\n",
-        line.x, line.y + line.ascent, line.size, anchor, hex(color), line.opacity, escaped(line.text));
+        line.x, line.y + line.ascent, line.size, anchor, hex(color), line.opacity, markup_text(line.text));
   }
 
   std::string document() && { return std::move(svg_) + "</svg>\n"; }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <initializer_list>
 
+#include "mercury/names.h"
 #include "mercury/quantity.h"
 #include "robots/number_text.h"
 
@@ -17,23 +18,6 @@ std::string pixels(double value) {
   while (text.back() == '0') text.pop_back();
   if (text.back() == '.') text.pop_back();
   return text == "-0" ? "0" : text;
-}
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char letter : text) {
-    if (letter == '&')
-      out += "&amp;";
-    else if (letter == '<')
-      out += "&lt;";
-    else if (letter == '>')
-      out += "&gt;";
-    else if (letter == '"')
-      out += "&quot;";
-    else if (static_cast<unsigned char>(letter) >= 0x20)
-      out += letter;
-  }
-  return out;
 }
 
 void append(std::string& text, std::initializer_list<std::string_view> parts) {
@@ -89,7 +73,7 @@ void Svg::text(PlotPoint at, std::string_view text, const TextStyle& style) {
   append(body_, {"\" y=\"", pixels(baseline * style.size), "\" font-size=\"", pixels(style.size), "\" fill=\"",
                  style.color, "\" text-anchor=\"", anchors[static_cast<int>(style.anchor)], "\""});
   if (style.bold) body_ += " font-weight=\"600\"";
-  append(body_, {">", escaped(text), "</text>\n"});
+  append(body_, {">", markup_text(text), "</text>\n"});
 }
 
 void Svg::begin_clip(const Box& box) {

@@ -10,6 +10,7 @@
 #include "mercury/configuration.h"
 #include "mercury/environment.h"
 #include "mercury/error.h"
+#include "mercury/names.h"
 #include "python/src/arguments.h"
 #include "python/src/bindings.h"
 #include "python/src/values.h"

@@ -12,6 +12,7 @@
 #include "mercury/environment.h"
 #include "mercury/error.h"
 #include "mercury/evolution.h"
+#include "mercury/names.h"
 #include "mercury/objective.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"

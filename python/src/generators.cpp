@@ -11,6 +11,7 @@
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "mercury/lively.h"
+#include "mercury/names.h"
 #include "python/src/bindings.h"
 #include "python/src/values.h"
 

@@ -17,6 +17,7 @@
 #include "app/scene/view_words.h"
 #include "app/video/film.h"
 #include "mercury/error.h"
+#include "mercury/names.h"
 #include "python/src/arguments.h"
 #include "python/src/array.h"
 #include "python/src/batch.h"

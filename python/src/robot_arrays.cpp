@@ -10,6 +10,7 @@
 #include <cstddef>
 
 #include "mercury/error.h"
+#include "mercury/names.h"
 #include "python/src/values.h"
 
 namespace mercury::python {

@@ -93,9 +93,4 @@ std::filesystem::path path_from(const std::string& parameter, nb::handle value) 
   return path;
 }
 
-std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
-  const nb::object near = nb::module_::import_("difflib").attr("get_close_matches")(word, names, 1);
-  return nb::len(near) == 0 ? "" : "; did you mean " + nb::cast<std::string>(near[0]) + "?";
-}
-
 }  // namespace mercury::python

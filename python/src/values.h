@@ -30,7 +30,4 @@ bool bool_from(const std::string& parameter, nb::handle value);
 std::string text_from(const std::string& parameter, nb::handle value);
 std::filesystem::path path_from(const std::string& parameter, nb::handle value);  // str or os.PathLike
 
-// "; did you mean density?", or an empty text if no name is near.
-std::string suggestion(const std::string& word, const std::vector<std::string>& names);
-
 }  // namespace mercury::python

@@ -30,6 +30,7 @@ WORDS = [
     (r"(one|two|three|four|a line|a task|a thread) an? (robot|mass|spring|face|step|core|thread|lane|warp|block|frame|file|line)",
      "per robot, per spring"),
     ("be it", "whether"),
+    ("one after the other", "one after another"),
     (r"(the|its|their) present (device|step|state|values?|time|camera|place|positions?|rest|frame|moment|scene|keys?|ones?)", "current"),
     ("at present", "now, currently"),
     ("save (that|where|when|for)", "except"),
@@ -45,6 +46,7 @@ WORDS = [
     (r"cancell(ed|ing)|travell(ed|ing|er)|modell(ed|ing)|labell(ed|ing)", "one l: canceled, traveled, modeled, labeled"),
     # Hardware
     (r"graphics cards?|NVIDIA cards?", "GPU"),
+    ("cards?", "GPU; the window has cards", r"^(README\.md|(sim|bench|evolution)/|docs/(?!window\.md))"),
     # Simulator
     ("part(y|ies)", "lockstep group"),
     ("sitters?", "member"),

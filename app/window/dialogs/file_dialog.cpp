@@ -16,6 +16,7 @@
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/error.h"
+#include "mercury/host_memory.h"
 #include "mercury/samples.h"
 
 namespace mercury::window {
@@ -30,12 +31,6 @@ bool is_path(const std::string& text) { return text.find('/') != std::string::np
 
 namespace fs = std::filesystem;
 using Kind = FileRequest::Kind;
-
-std::string size_text(std::uintmax_t bytes) {
-  if (bytes < 1000) return fmt::format("{} B", bytes);
-  if (bytes < 1'000'000) return fmt::format("{:.3g} kB", static_cast<double>(bytes) / 1e3);
-  return fmt::format("{:.3g} MB", static_cast<double>(bytes) / 1e6);
-}
 
 std::string date_text(std::time_t time) {
   std::tm local{};
@@ -346,7 +341,7 @@ void FileDialog::draw_row(std::size_t index, EventLog& log) {
   if (dim) ImGui::PopStyleColor();
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
   ImGui::TableNextColumn();
-  if (!item.folder) ImGui::TextUnformatted(size_text(item.bytes).c_str());
+  if (!item.folder) ImGui::TextUnformatted(byte_text(item.bytes).c_str());
   ImGui::TableNextColumn();
   ImGui::TextUnformatted(date_text(item.changed).c_str());
   ImGui::PopStyleColor();

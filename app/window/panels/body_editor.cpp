@@ -19,16 +19,12 @@ namespace {
 
 constexpr MaterialId base_materials = 22;
 
-std::string name_of(const Robot& robot, MaterialId id) {
-  return id < robot.material_names.size() ? robot.material_names[id] : default_material_name(id);
-}
-
 void draw_material(VoxelEdit& edit, const Robot& robot, EventLog& log) {
   ImGui::SetNextItemWidth(8 * ImGui::GetFontSize());
-  if (ImGui::BeginCombo("##material", name_of(robot, edit.material).c_str())) {
+  if (ImGui::BeginCombo("##material", name_of_material(robot, edit.material).c_str())) {
     const std::size_t known = robot.materials.empty() ? base_materials + 1u : robot.materials.size();
     for (MaterialId id = 1; id <= base_materials && id < known; ++id)
-      if (ImGui::Selectable(fmt::format("{}##{}", name_of(robot, id), id).c_str(), id == edit.material))
+      if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, id), id).c_str(), id == edit.material))
         edit.material = id;
     ImGui::EndCombo();
   }

@@ -73,13 +73,6 @@ std::vector<int> used_materials(const Robot& robot) {
   return {used.begin(), used.end()};
 }
 
-std::string name_of_material(const Robot& robot, int id) {
-  const auto index = static_cast<std::size_t>(id);
-  if (index < robot.material_names.size()) return robot.material_names[index];
-  if (robot.materials.empty()) return default_material_name(static_cast<MaterialId>(id));
-  return fmt::format("material {}", id);
-}
-
 bool is_dry(const Environment& environment) { return has_ground(environment) && !has_water(environment); }
 
 // On land every spring is 200 times as stiff. Of the 12 swimmers in robots/library/paper, 7 explode there within 3 ms
@@ -281,9 +274,10 @@ void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId
   if (used.empty()) return;
   if (std::find(used.begin(), used.end(), material_) == used.end()) material_ = used.front();
   row("material", fmt::format("the materials of {}", document->body.name).c_str());
-  if (ImGui::BeginCombo("##material", name_of_material(robot, material_).c_str())) {
+  if (ImGui::BeginCombo("##material", name_of_material(robot, static_cast<MaterialId>(material_)).c_str())) {
     for (const int id : used)
-      if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, id), id).c_str(), id == material_))
+      if (ImGui::Selectable(fmt::format("{}##{}", name_of_material(robot, static_cast<MaterialId>(id)), id).c_str(),
+                            id == material_))
         material_ = id;
     ImGui::EndCombo();
   }

@@ -32,6 +32,9 @@ struct MemoryUse {
 // In a simulation on the CPU, measured (docs/experiments.md).
 inline constexpr MemoryUse simulated_memory{.per_robot = 8 << 10, .per_content = 3.5};
 
+// "300 kB", "1.2 GB", in powers of 1000.
+std::string byte_text(std::size_t bytes);
+
 // "about 24 GB of memory are needed, 8.1 GB can be used; give up to 31000 robots". Without `fits`, it ends at the
 // semicolon.
 std::string memory_line(std::size_t needed, std::size_t usable, std::string_view fits = {});

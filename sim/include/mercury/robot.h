@@ -61,6 +61,8 @@ inline float mass_of(const Robot& robot, std::size_t point) { return robot.mass.
 
 // The robot's own materials, or the default materials. Refers to the robot.
 std::span<const Material> materials_of(const Robot& robot);
+// Of a material of its table: its name there, or the default material's, or "material 3".
+std::string name_of_material(const Robot& robot, MaterialId id);
 
 // The actuators that a program drives: those that the robot names. If it names none, muscles that move alike belong to
 // one actuator: those materials with an amplitude, of at least one spring, that have the same frequency, phase and half
