@@ -175,6 +175,7 @@ struct PhysicsThread::Parts {
   PendingCommands wait_for_commands();
   bool guarded(auto task);
   void carry_out(PendingCommands& taken);
+  void change_robots(PendingCommands& taken, bool scene_changed, bool robots_changed);
   void prepare_changes(const PendingCommands& taken);
   bool set_scene(const PendingCommands::Scene& scene);
   void forget_all();
@@ -347,20 +348,32 @@ bool PhysicsThread::Parts::guarded(auto task) {
 void PhysicsThread::Parts::carry_out(PendingCommands& taken) {
   if (!taken.any()) return;
   dirty = true;
+  // What fails pauses the robots. What was taken with it takes effect.
   if (taken.pause_on_explosion) stop_at_explosion = *taken.pause_on_explosion;
-  prepare_changes(taken);
+  bool fails = !guarded([&] { prepare_changes(taken); });
   if (taken.start) batch.set_start(*taken.start);
   bool robots_changed = false;
   const bool scene_changed = taken.scene.has_value();
   if (taken.scene && !guarded([&] { robots_changed = set_scene(*taken.scene); })) {
-    // The scene is empty now, and paused. What was taken with it holds for the next one.
-    robots_changed = true;
-    taken.scene.reset();
-    taken.playing.reset();
+    fails = robots_changed = true;
+    taken.scene.reset();  // it is empty now
   }
   if (taken.view) batch.watch(*taken.view);
   if (taken.view) comparison.watch(*taken.view);
   if (taken.brain) watched_brain = *taken.brain;
+  if (!guarded([&] { change_robots(taken, scene_changed, robots_changed); })) fails = true;
+  if (taken.bridge) batch.set_bridge(std::move(*taken.bridge));
+  if (robots_changed) stepping.forget_cost();
+  if (taken.speed) stepping.set_speed(*taken.speed);
+  if (taken.playing && !fails) stepping.play(*taken.playing);
+  if (taken.drop_steps) stepping.drop();
+  if (guarded([&] { carry_out_seek(taken); }) && !fails) stepping.add(taken.steps);
+  if (taken.playing || taken.speed || taken.reset || taken.seek || robots_changed) stepping.start();
+  stepping.follow_time_step();
+}
+
+// What acts on the robots of the scene.
+void PhysicsThread::Parts::change_robots(PendingCommands& taken, bool scene_changed, bool robots_changed) {
   if (taken.difference) comparison.set_second(*taken.difference);
   if (taken.ghosts) comparison.set_ghosts(std::move(*taken.ghosts));
   if (taken.scene && taken.scene->recording)
@@ -383,15 +396,6 @@ void PhysicsThread::Parts::carry_out(PendingCommands& taken) {
     stepping.start();
   }
   if ((perturbed || taken.reset) && !is_viewing()) timeline.follow_changes(robots_changed);
-  if (taken.bridge) batch.set_bridge(std::move(*taken.bridge));
-  if (robots_changed) stepping.forget_cost();
-  if (taken.speed) stepping.set_speed(*taken.speed);
-  if (taken.playing) stepping.play(*taken.playing);
-  if (taken.drop_steps) stepping.drop();
-  carry_out_seek(taken);
-  stepping.add(taken.steps);
-  if (taken.playing || taken.speed || taken.reset || taken.seek || robots_changed) stepping.start();
-  stepping.follow_time_step();
 }
 
 // Whatever changes the robots makes the moment that is shown the present first.
@@ -469,7 +473,13 @@ void PhysicsThread::Parts::restart() {
 
 void PhysicsThread::Parts::play_recording(std::shared_ptr<TrajectoryReader> reader) {
   timeline.clear();
-  recording.open(std::move(reader));
+  try {
+    recording.open(std::move(reader));
+  } catch (...) {
+    recording.close();
+    timeline.restart();
+    throw;
+  }
   note_explosions();
 }
 

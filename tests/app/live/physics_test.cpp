@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "app/live/physics.h"
+#include "app/recording/recorder.h"
 #include "mercury/random_voxel.h"
+#include "tests/app/program.h"
 #include "tests/nap.h"
 
 namespace mercury {
@@ -25,6 +27,8 @@ std::vector<LiveRobot> some_robots(std::size_t count) {
   }
   return live;
 }
+
+class RecordedPhysics : public test::FolderTest {};
 
 // A simulation of the same robots, for comparison.
 Simulation alone(const std::vector<LiveRobot>& live, const Configuration& configuration) {
@@ -77,6 +81,34 @@ TEST(LivePhysics, WhatComesWithASceneThatFailsTakesEffect) {
   physics.step(1);
   physics.wait_until_done();
   EXPECT_EQ(physics.newest()->robots->size(), 2u);
+  EXPECT_TRUE(messages.take().empty());
+}
+
+// The masses of the recording are not those of the robots.
+TEST_F(RecordedPhysics, WhatComesWithARecordingThatCannotBeShownTakesEffect) {
+  Simulation other(in_environment(), std::vector{*some_robots(3).back().robot});
+  Recorder(other, path("other.h5"), {.last_step = 0}).finish();
+  Messages messages;
+  PhysicsThread physics(in_environment(), messages);
+  const auto robots = some_robots(2);
+  physics.set_scene(robots, in_environment());
+  physics.step(5);
+  physics.wait_until_done();
+  physics.set_recording(robots, in_environment(), 0, std::make_shared<TrajectoryReader>(path("other.h5")));
+  physics.set_view({.color = &color_quantity("strain")});
+  physics.set_speed(3);
+  physics.play();
+  physics.wait_until_done();
+  const auto snapshot = physics.newest();
+  EXPECT_EQ(messages.take().size(), 1u);
+  EXPECT_FALSE(snapshot->playing);
+  EXPECT_FALSE(snapshot->timeline.recording);
+  EXPECT_EQ(snapshot->speed, 3);
+  EXPECT_EQ(snapshot->color->key, "strain");
+  physics.set_scene({}, in_environment());
+  physics.set_scene(robots, in_environment());
+  physics.reset();
+  expect_first_steps(physics, robots);
   EXPECT_TRUE(messages.take().empty());
 }
 
