@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/camera.h"
-#include "render/vector.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "render/passes/bindings.h"
 #include "render/passes/scene_buffers.h"

@@ -11,10 +11,8 @@
 #include <set>
 #include <span>
 #include <string>
-#include <tuple>
 #include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "mercury/error.h"
 #include "mercury/random.h"

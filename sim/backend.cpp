@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
-#include <stdexcept>
 
 #include "mercury/state.h"
 #include "sim/physics/brain_plan.h"

@@ -3,7 +3,6 @@
 #include "mercury/evaluator.h"
 
 #include <algorithm>
-#include <functional>
 #include <stdexcept>
 #include <utility>
 

@@ -2,7 +2,6 @@
 #include "sim/evaluator_trial.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>

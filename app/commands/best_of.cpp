@@ -2,7 +2,6 @@
 #include "app/commands/best_of.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "app/base/progress.h"
 #include "app/commands/evaluation_results.h"

@@ -6,7 +6,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
 #include "app/options/generator_options.h"
 #include "app/recording/configuration_json.h"

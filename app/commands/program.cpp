@@ -8,7 +8,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -19,7 +18,6 @@
 #include "app/base/standard_streams.h"
 #include "app/base/version.h"
 #include "app/commands/command_list.h"
-#include "app/options/command.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
 #include "app/options/scene_file.h"

@@ -4,12 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <utility>
-#include <vector>
 
-#include "app/base/interrupt.h"
 #include "app/base/messages.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"

@@ -10,7 +10,6 @@
 #include <set>
 #include <thread>
 #include <type_traits>
-#include <utility>
 
 #include "app/live/recording_player.h"
 #include "app/live/timeline_player.h"

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "app/scene/group_layout.h"
 #include "mercury/observables.h"
-#include "render/vector.h"
 
 namespace mercury {
 namespace {

@@ -5,9 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <unordered_map>
-#include <vector>
 
 #include "mercury/parallel.h"
 

@@ -2,7 +2,6 @@
 #include "app/live/replay_log.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "app/live/scene_document.h"
 

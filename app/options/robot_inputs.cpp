@@ -10,7 +10,6 @@
 #include <cstring>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "app/base/interrupt.h"
 #include "app/base/messages.h"

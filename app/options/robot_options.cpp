@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <memory>
 #include <utility>
-#include <vector>
 
 #include "app/base/interrupt.h"
 #include "app/base/progress.h"
@@ -17,7 +15,6 @@
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
-#include "mercury/host_memory.h"
 #include "mercury/lively.h"
 #include "mercury/origin.h"
 #include "mercury/real_body.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/recording/trajectory_hdf5_reading.h"
 
-#include <algorithm>
 #include <fstream>
 
 namespace mercury::hdf5 {

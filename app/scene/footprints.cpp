@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/footprints.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace mercury {

@@ -10,7 +10,6 @@
 #include <iterator>
 #include <numbers>
 #include <string_view>
-#include <vector>
 
 #include "mercury/error.h"
 

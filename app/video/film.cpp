@@ -7,9 +7,7 @@
 #include <chrono>
 #include <deque>
 #include <mutex>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "app/video/figure.h"
 #include "app/video/frame_encoder.h"

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <span>
 
 #include "app/base/interrupt.h"
 #include "app/video/frame_writer.h"

@@ -2,7 +2,6 @@
 #include "app/video/video_pipeline.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "app/scene/scene_details.h"

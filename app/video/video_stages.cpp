@@ -13,7 +13,6 @@
 #include "app/base/bounded_queue.h"
 #include "app/base/progress.h"
 #include "app/base/stepping.h"
-#include "app/video/frame_encoder.h"
 #include "app/video/moment_sampler.h"
 #include "mercury/error.h"
 

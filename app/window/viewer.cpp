@@ -10,8 +10,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "app/base/interrupt.h"
 #include "app/live/live_run.h"

@@ -2,7 +2,6 @@
 #include "evolution/genomes/brain_part.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "evolution/genomes/growing_brain.h"

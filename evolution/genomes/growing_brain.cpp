@@ -11,7 +11,6 @@
 
 #include "mercury/error.h"
 #include "mercury/random.h"
-#include "robots/brain_genes.h"
 #include "robots/mutation_step.h"
 
 namespace mercury {

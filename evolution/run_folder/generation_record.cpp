@@ -2,10 +2,7 @@
 #include "evolution/run_folder/generation_record.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <cstring>
-
-#include "robots/bytes.h"
 
 namespace mercury {
 namespace {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/generation_record.h"

@@ -4,7 +4,6 @@
 #include "mercury/custom.h"
 
 #include <algorithm>
-#include <memory>
 
 #include "evolution/selection/registry.h"
 #include "mercury/error.h"

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "mercury/custom.h"
 #include "mercury/error.h"

@@ -2,7 +2,6 @@
 #include "evolution/selection/ranking.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 

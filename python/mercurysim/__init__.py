@@ -10,7 +10,7 @@
 """
 
 from . import _mercury
-from ._mercury import *  # noqa: F403  random_voxel() and its siblings, one for each kind of robots
+from ._mercury import *  # noqa: F403  a function random_voxel() for each kind of robots, a class Ocean for each environment
 from ._mercury import (
     Actuation,
     Array,
@@ -19,15 +19,11 @@ from ._mercury import (
     DeviceError,
     Environment,
     InputError,
-    Land,
-    Ocean,
-    OceanSimple,
     Recorder,
     Recording,
     Result,
     Results,
     Robot,
-    Water,
     evaluate,
     export,
     load,
@@ -51,10 +47,7 @@ __all__ = [
     "Environment",
     "Film",
     "InputError",
-    "Land",
     "Look",
-    "Ocean",
-    "OceanSimple",
     "Page",
     "Recorder",
     "Recording",
@@ -62,7 +55,6 @@ __all__ = [
     "Results",
     "Robot",
     "Video",
-    "Water",
     "__version__",
     "evaluate",
     "export",
@@ -73,4 +65,5 @@ __all__ = [
     "voxel",
 ]
 
-__all__ += [name for name in dir(_mercury) if name.startswith("random_")]
+_environments = {cls.__name__ for cls in Environment.__subclasses__()}
+__all__ += [name for name in dir(_mercury) if name.startswith("random_") or name in _environments]

@@ -199,19 +199,10 @@ def resume(
     return Run(folder, genomes=genomes, _search=search)
 
 
-def _fnv1a(hashes: Iterable[int]) -> int:
-    """Of several trials, as in lineage.csv."""
-    value = 0xCBF29CE484222325
-    for number in hashes:
-        for byte in int(number).to_bytes(8, "little"):
-            value = (value ^ byte) * 0x100000001B3 % 2**64
-    return value
-
-
 def _hash_of(result: Result) -> int:
-    trials = result.trials
-    hashes = [trial.hash or 0 for trial in trials]
-    return hashes[0] if len(trials) == 1 else _fnv1a(hashes)
+    """Of its trials, as in lineage.csv."""
+    hashes = [trial.hash or 0 for trial in result.trials]
+    return hashes[0] if len(hashes) == 1 else int(_cpp._hash_of_trials(hashes))
 
 
 class _Asked:

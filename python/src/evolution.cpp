@@ -22,6 +22,7 @@
 #include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/evolution.h"
+#include "mercury/fnv.h"
 #include "mercury/run_folder.h"
 #include "python/src/bindings.h"
 #include "python/src/custom_parts.h"
@@ -358,6 +359,11 @@ void bind_evolution(nb::module_& module) {
   bind_genomes(module);
   bind_custom_parts(module);
   bind_run_history(module);
+  module.def("_hash_of_trials", [](const std::vector<std::uint64_t>& hashes) {
+    Fnv1a all;
+    for (const std::uint64_t hash : hashes) all.add(hash);
+    return all.value();
+  });
   nb::class_<Search>(module, "_Search")
       .def(
           "__init__",

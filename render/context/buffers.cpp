@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "render/context/context.h"
-#include "render/context/gl_objects.h"
 
 namespace mercury::render {
 namespace {

@@ -7,7 +7,6 @@
 #include <array>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 #include "render/context/context_headless.h"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/context/gl_objects.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 #include "render/context/context.h"

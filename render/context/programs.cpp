@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 namespace mercury::render {
 namespace {

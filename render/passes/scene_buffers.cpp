@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "render/passes/bindings.h"
-#include "render/vector.h"
 
 namespace mercury::render {
 namespace {

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <cstring>
 #include <numbers>
-#include <string>
 
 #include "render/text/font.h"
 #include "render/text/label_layout.h"

@@ -6,8 +6,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "mercury/error.h"
-
 namespace mercury {
 
 std::optional<float> to_float(const Number& number) {

@@ -3,7 +3,6 @@
 #include "mercury/real_body.h"
 
 #include <algorithm>
-#include <optional>
 #include <system_error>
 #include <utility>
 

@@ -12,7 +12,6 @@
 #include "robots/nn/perceptron.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstring>
 
 namespace mercury {

@@ -2,7 +2,6 @@
 #include "app/window/dialogs/dialogs.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "app/window/toolkit/key_bindings.h"
 #include "app/window/toolkit/widgets.h"

@@ -15,7 +15,6 @@
 #include "app/options/trial_start.h"
 #include "app/scene/color_quantity.h"
 #include "app/window/panels/commands.h"
-#include "app/window/panels/panel.h"
 #include "app/window/toolkit/key_bindings.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"

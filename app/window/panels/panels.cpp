@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "app/window/panels/commands.h"
-#include "app/window/panels/help_window.h"
 #include "app/window/panels/robot_list.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "app/window/panels/commands.h"
 #include "app/window/toolkit/theme.h"

@@ -10,7 +10,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cfloat>
 #include <cmath>

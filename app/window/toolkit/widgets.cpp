@@ -4,13 +4,9 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <optional>
-#include <string_view>
-#include <vector>
 
 #include "app/window/toolkit/theme.h"
 

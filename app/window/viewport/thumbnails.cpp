@@ -14,7 +14,6 @@
 #include "app/scene/group_layout.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/generator.h"
-#include "render/renderer.h"
 
 namespace mercury::window {
 

@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
