@@ -27,4 +27,10 @@ std::string fixed_text(double value, int digits) {
   return {text, result.ptr};
 }
 
+std::string with_commas(std::uint64_t number) {
+  std::string text = std::to_string(number);
+  for (std::size_t at = text.size(); at > 3; at -= 3) text.insert(at - 3, 1, ',');
+  return text;
+}
+
 }  // namespace mercury

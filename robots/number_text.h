@@ -3,6 +3,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <string>
 
 namespace mercury {
@@ -18,5 +19,8 @@ std::string shortest_text(Whole value) {
 
 // With that many digits after the point: "3.14".
 std::string fixed_text(double value, int digits);
+
+// With commas between thousands: "12,000".
+std::string with_commas(std::uint64_t number);
 
 }  // namespace mercury

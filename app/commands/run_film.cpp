@@ -9,6 +9,7 @@
 #include <map>
 #include <span>
 
+#include "app/commands/description.h"
 #include "app/options/option_values.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
@@ -110,10 +111,6 @@ RunBoard board_of(const RunHistory& run) {
         fmt::format("the map has {} axes; drawn by the first two, with the best robot of each cell", axes.size()));
   map.board = std::move(board);
   return map;
-}
-
-std::string count_text(std::size_t count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 const Individual& individual(const RunHistory& run, std::uint64_t id) {
@@ -226,7 +223,7 @@ RunFilm film_of_map(const RunHistory& run) {
   for (const std::uint64_t id : map.robots) clip.robots.push_back(std::make_shared<const Robot>(run.grow(id)));
   clip.title =
       fmt::format("{}\ngeneration {}: {} of {}, the best {}", name_of_run(run), run.generations().back().number,
-                  map.robots.size(), count_text(map.board->values.size(), "cell", "cells"),
+                  map.robots.size(), count_text(static_cast<std::int64_t>(map.board->values.size()), "cell", "cells"),
                   score_text(run.settings(), individual(run, run.living().front())));
   return {.clips = {std::move(clip)}, .board = map.board, .notes = map.notes, .ids = map.robots};
 }

@@ -14,19 +14,14 @@
 #include "mercury/host_memory.h"
 #include "mercury/names.h"
 #include "mercury/quantity.h"
+#include "robots/number_text.h"
 
 namespace mercury {
 namespace {
 
-// "12,345"
-std::string grouped(std::size_t number) {
-  std::string digits = fmt::to_string(number);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, 1, ',');
-  return digits;
-}
-
+// "12,345 robots"
 std::string counted(std::size_t number, const char* one, const char* many) {
-  return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
+  return fmt::format("{} {}", with_commas(number), number == 1 ? one : many);
 }
 
 // "53 s", "12 min 5 s", "3 h 7 min".
@@ -128,13 +123,13 @@ Totals totals_of(const RunHistory& run) {
 }
 
 std::string individuals_text(const RunHistory& run, const Totals& totals) {
-  std::string text = fmt::format("{}, of which {} live", grouped(totals.born), grouped(run.living().size()));
+  std::string text = fmt::format("{}, of which {} live", with_commas(totals.born), with_commas(run.living().size()));
   std::string separator = "; ";
   for (const Fate fate :
        {Fate::stopped, Fate::exploded, Fate::overstretched, Fate::failed, Fate::too_small, Fate::undefined}) {
     const std::size_t count = totals.fates[fate];
     if (count == 0) continue;
-    text += fmt::format("{}{} {} ({:.1f} %)", separator, grouped(count), name_of(fate),
+    text += fmt::format("{}{} {} ({:.1f} %)", separator, with_commas(count), name_of(fate),
                         100 * static_cast<double>(count) / static_cast<double>(totals.born));
     separator = ", ";
   }

@@ -147,13 +147,6 @@ std::vector<double> ticks_in(Range range, int most) {
   return ticks;
 }
 
-std::string with_commas(std::uint64_t number) {
-  std::string text = std::to_string(number);
-  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3)
-    text.insert(static_cast<std::size_t>(at), 1, ',');
-  return text;
-}
-
 std::string tick_text(double value, double step) {
   if (std::abs(value) < step / 2) return "0";
   if (std::abs(value) >= 1e7 || step < 1e-4) {

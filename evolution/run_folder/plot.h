@@ -74,9 +74,6 @@ std::vector<double> ticks_in(Range range, int most);
 // As many digits as a tick needs: "0.25", "1,000", "2e-07".
 std::string tick_text(double value, double step);
 
-// With commas between thousands.
-std::string with_commas(std::uint64_t number);
-
 // Lines across the box at the ticks of its left side, with numbers and a title.
 void draw_left_axis(Svg& svg, const Box& box, const Scale& scale, std::string_view title);
 // Numbers below the box.

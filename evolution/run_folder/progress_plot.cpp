@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "robots/number_text.h"
+
 namespace mercury {
 namespace {
 
