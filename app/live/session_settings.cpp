@@ -2,7 +2,6 @@
 #include "app/live/session_settings.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdlib>

@@ -75,6 +75,8 @@ MEASURING = ("tests/", "bench/", "examples/")  # folders that may look inside ot
 
 # The only file that may ask whether nvcc is compiling.
 CUDACC_HOME = "sim/include/mercury/host_device.h"
+# The only file that may include CLI11, which takes seconds to compile.
+CLI_HOME = "app/options/command.cpp"
 
 SOURCES = {".h", ".hpp", ".cuh", ".inl", ".cpp", ".cc", ".cu"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -238,6 +240,8 @@ def problems_of(root, include):
     if header.startswith("..") or include.quote == '"' and ((root / path).parent / header).exists():
         yield f"name the header from the root: {header}"
         return
+    if header.startswith("CLI/") and path != CLI_HOME:
+        yield f"only {CLI_HOME} includes CLI11"
     for subject, (pattern, users) in SUBJECTS.items():
         if re.match(pattern, header):
             if top not in users:

@@ -108,6 +108,7 @@ class IncludeRules(unittest.TestCase):
             "nobody includes bench": ("app/live/b.cpp", '#include "bench/plot.h"'),
             "examples include only public headers": ("examples/a/main.cpp", '#include "sim/parts.h"'),
             "CGAL stays in robots": ("app/scene/b.cpp", "#include <CGAL/Point_3.h>"),
+            "CLI11 is compiled once": ("app/live/b.cpp", "#include <CLI/CLI.hpp>"),
             "one place asks for nvcc": ("sim/cuda/a.cu", "#if defined(__CUDACC__)"),
             "names from the root": ("sim/cpu/a.cpp", '#include "../parts.h"'),
             "a neighbor with its folder": ("sim/cpu/a.cpp", '#include "step.h"'),
