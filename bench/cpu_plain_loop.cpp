@@ -10,7 +10,8 @@
 namespace mercury::bench {
 
 PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
-    : robot_(robot), configuration_(configuration), measures_(measure(robot)), faces_(pair_faces(robot)) {
+    : robot_(robot), configuration_(configuration), measures_(measure(robot)), faces_(pair_faces(robot)),
+      backs_(masses_behind(robot, faces_)) {
   std::array<Material, max_materials> materials{};
   std::ranges::copy(materials_of(robot), materials.begin());
   const bool real = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(configuration.environment.water);
@@ -115,11 +116,17 @@ bool PlainLoop::add_face_forces(const EnvironmentModel& model) {
     const std::uint32_t dither = dither_of_pair(pair++) + dither_of_step(now_);
     const std::vector<Vec3>&x = state_.positions, &v = state_.velocities;
     const Vec3 to_c = x[c] - x[a], common = v[a] + v[c] - model.thrice_flow;
-    const auto on_face = [&](Vec3 normal, Vec3 sum) {
-      return model.on_face(normal, sum, inner(sum, sum), coefficients);
+    const auto on_face = [&](Vec3 normal, Vec3 sum, std::uint16_t PairBacks::*face) {
+      FaceCoefficients<float> by = coefficients;
+      if constexpr (EnvironmentModel::has_one_sided_water)
+        if (model.one_sided) {
+          const std::uint16_t behind = backs_[pair - 1].*face;
+          model.see_from_outside(normal, x[behind] - x[a], v[behind], sum, by);
+        }
+      return model.on_face(normal, sum, inner(sum, sum), by);
     };
-    const Vec3 first = on_face(cross(to_c, x[b] - x[a]), common + v[b]);
-    const Vec3 second = on_face(cross(x[d] - x[a], to_c), common + v[d]);
+    const Vec3 first = on_face(cross(to_c, x[b] - x[a]), common + v[b], &PairBacks::first);
+    const Vec3 second = on_face(cross(x[d] - x[a], to_c), common + v[d], &PairBacks::second);
     if (!fits(first) || !fits(second)) {
       bad_mass_ = std::min({bad_mass_, std::uint32_t{a}, std::uint32_t{b}, std::uint32_t{c}, std::uint32_t{d}});
       fit = false;

@@ -11,7 +11,7 @@
 #include "mercury/robot.h"
 #include "mercury/simulation.h"
 #include "sim/physics/environments.h"
-#include "sim/physics/face_pairs.h"
+#include "sim/physics/face_backs.h"
 #include "sim/physics/integration.h"
 #include "sim/physics/measures.h"
 #include "sim/physics/muscle.h"
@@ -80,6 +80,7 @@ class PlainLoop {
   std::array<float, max_materials> factor_{}, stiffness_{}, compliance_{};
   std::array<MusclePhase, max_materials> phases_{};
   std::vector<FacePair> faces_;
+  std::vector<PairBacks> backs_;
   std::vector<std::vector<std::uint16_t>> neighbors_;
   std::vector<std::uint16_t> heads_, links_;  // buckets of the contact grid, masses
   std::vector<Perturbation> perturbations_;

@@ -84,10 +84,11 @@ void Arrows::add_faces(std::size_t robot, const GroupState& state, std::vector<r
   const Robot& body = simulation_.robot(robot);
   const auto positions = masses_of(simulation_, robot, state.positions);
   const auto velocities = masses_of(simulation_, robot, state.velocities);
+  const Environment& environment = simulation_.configuration().environment;
+  const std::vector<std::uint16_t> behind = masses_behind_faces(body, environment);
   for (std::size_t i = 0; i < body.faces.size(); ++i) {
     if (!is_drawn(i, kinds_.density)) continue;
-    const Face& face = body.faces[i];
-    const FaceForce force = face_force(simulation_.configuration().environment, face, positions, velocities);
+    const FaceForce force = face_force(environment, body.faces[i], positions, velocities, behind[i]);
     const auto index = static_cast<std::uint32_t>(robot);
     if (kinds_.drag) drag.push_back({index, render::Vector3(force.center), render::Vector3(force.drag), drag_color});
     if (kinds_.lift) lift.push_back({index, render::Vector3(force.center), render::Vector3(force.lift), lift_color});

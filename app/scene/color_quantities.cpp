@@ -42,7 +42,8 @@ float speed(const RobotState& state, std::size_t mass) { return length(state.vel
 
 // Of the water on a face, |F| / A [Pa].
 float pressure(const RobotState& state, std::size_t face) {
-  const FaceForce force = face_force(state.environment, state.robot.faces[face], state.positions, state.velocities);
+  const FaceForce force = face_force(state.environment, state.robot.faces[face], state.positions, state.velocities,
+                                     state.behind_faces[face]);
   return force.area > 0 ? length(force.drag + force.lift) / force.area : 0;
 }
 

@@ -20,12 +20,13 @@ namespace mercury {
 struct RobotState {
   const Robot& robot;
   const Environment& environment;
-  double time;                                 // [s]
-  std::span<const Vec3> positions;             // per mass [m]
-  std::span<const Vec3> velocities;            // per mass [m/s]
-  std::span<const Material> material_table;    // by material id, as the simulation has it now, without drives
-  std::span<const MaterialNow> materials;      // the same at `time`, with what drives them
-  std::span<const MaterialId> face_materials;  // per face, see face_materials()
+  double time;                                  // [s]
+  std::span<const Vec3> positions;              // per mass [m]
+  std::span<const Vec3> velocities;             // per mass [m/s]
+  std::span<const Material> material_table;     // by material id, as the simulation has it now, without drives
+  std::span<const MaterialNow> materials;       // the same at `time`, with what drives them
+  std::span<const MaterialId> face_materials;   // per face, see face_materials()
+  std::span<const std::uint16_t> behind_faces;  // per face, see masses_behind_faces()
 };
 
 // A quantity has at least one of the three functions, except "material", which has none: its colors are those of the

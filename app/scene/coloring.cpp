@@ -60,6 +60,8 @@ void Coloring::fill(ColorValues& values, std::size_t index, const GroupState& st
   const Environment& environment = simulation_.configuration().environment;
   const std::vector<Material> table = materials_of(simulation_, index);
   const std::vector<MaterialNow> materials = materials_at(simulation_, index, state);
+  const std::vector<std::uint16_t> behind =
+      quantity_.of_face ? masses_behind_faces(robot, environment) : std::vector<std::uint16_t>();
   const RobotState robot_state{
       .robot = robot,
       .environment = environment,
@@ -69,6 +71,7 @@ void Coloring::fill(ColorValues& values, std::size_t index, const GroupState& st
       .material_table = table,
       .materials = materials,
       .face_materials = face_materials_[index],
+      .behind_faces = behind,
   };
   const auto part = [](std::vector<float>& all, std::size_t first, std::size_t count) {
     return all.empty() ? std::span<float>() : std::span(all).subspan(first, count);

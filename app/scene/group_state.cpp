@@ -47,12 +47,15 @@ std::vector<Vec3> net_forces(const Simulation& simulation, std::size_t index, co
   if (const auto* water = std::get_if<PointDrag>(&environment.water))
     for (std::size_t i = 0; i < forces.size(); ++i)
       forces[i] = forces[i] + water->point_drag * (water->flow - velocities[i]);
-  if (has_face_forces(environment))
-    for (const Face& face : robot.faces) {
-      const FaceForce force = face_force(environment, face, positions, velocities);
+  if (has_face_forces(environment)) {
+    const std::vector<std::uint16_t> behind = masses_behind_faces(robot, environment);
+    for (std::size_t i = 0; i < robot.faces.size(); ++i) {
+      const Face& face = robot.faces[i];
+      const FaceForce force = face_force(environment, face, positions, velocities, behind[i]);
       for (const std::uint16_t corner : {face.a, face.b, face.c})
         forces[corner] = forces[corner] + (1.0f / 3) * (force.drag + force.lift);
     }
+  }
   for (const FloorForce& contact : floor_forces(simulation, index, state))
     forces[contact.mass] = forces[contact.mass] + contact.force;
   for (const std::uint16_t fixed : robot.fixed) forces[fixed] = Vec3{};

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "sim/cuda/rest_lengths.h"
+#include "sim/physics/face_backs.h"
 
 namespace mercury::cuda {
 namespace {
@@ -76,6 +77,23 @@ void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Sc
       *to++ = spring == count ? 0 : std::bit_cast<std::uint32_t>(robot.springs[spring].rest_length);
   }
   std::fill(to, records.end(), 0u);
+}
+
+void fill_backs(std::span<std::uint32_t> backs, const Robot& robot, std::span<const std::uint16_t> mass_at,
+                std::span<const FacePair> pairs, std::uint32_t fields) {
+  constexpr std::uint32_t absent = 0xffffffff;
+  std::vector<std::uint32_t> slot_of(robot.masses.size(), absent);
+  for (std::uint32_t slot = 0; slot < mass_at.size(); ++slot)
+    if (slot_of[mass_at[slot]] == absent) slot_of[mass_at[slot]] = slot;
+  const auto mass = [&](std::uint16_t address) { return mass_at[slot_at_offset(address, fields)]; };
+  std::vector<FacePair> of_masses;
+  of_masses.reserve(pairs.size());
+  for (const FacePair& p : pairs) of_masses.push_back({mass(p.a), mass(p.b), mass(p.c), mass(p.d)});
+  const std::vector<PairBacks> found = masses_behind(robot, of_masses);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::uint32_t a = slot_of[of_masses[i].a], first = slot_of[found[i].first], second = slot_of[found[i].second];
+    backs[i] = (first == absent ? a : first) | (second == absent ? a : second) << 16;
+  }
 }
 
 void fill_state(std::span<float> state, const Robot& robot, const SlotOrder& order, float lift) {

@@ -58,6 +58,12 @@ struct RecordNames {
 void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Schedule& schedule,
                   const RestLengths& rest, const RecordNames& names = {});
 
+// BatchView::face_backs of a robot or a part: for each pair, `mass_at` having the masses by their slots. Of a slot that
+// repeats a mass the first one counts. A face whose mass behind is not here has its own corner a for it. Corners are
+// addressed by offset_of_slot() with `fields`.
+void fill_backs(std::span<std::uint32_t> backs, const Robot& robot, std::span<const std::uint16_t> mass_at,
+                std::span<const FacePair> pairs, std::uint32_t fields);
+
 // Where a mass is at rest if its robot is `lift` [m] higher than in its file.
 inline Vec3 at_rest(Vec3 mass, float lift) { return lift == 0 ? mass : mass + Vec3{0, 0, lift}; }
 

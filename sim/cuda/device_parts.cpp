@@ -53,6 +53,7 @@ std::optional<LaunchConfiguration> DeviceParts::choose(std::span<const Source> r
 void DeviceParts::upload(const BatchView& robots, cudaStream_t stream) {
   if (!split_.empty()) upload_parts(stream);
   copy_points(robots, stream);
+  find_backs(robots, stream);
   check(cudaStreamSynchronize(stream), "uploading parts of robots");
 }
 
@@ -152,6 +153,27 @@ void DeviceParts::copy_points(const BatchView& robots, cudaStream_t stream) {
   copy_points_to_parts(view(robots), robots.points, points_.data(), stream);
 }
 
+// Springs join the mass behind a face to all its corners, so a part that has one of them as its own has that mass, too.
+void DeviceParts::find_backs(const BatchView& robots, cudaStream_t stream) {
+  face_backs_ = {};
+  if (!robots.face_backs) return;
+  std::vector<FacePair> pairs(face_pairs_.size());
+  std::vector<std::uint16_t> slots(slots_.size());
+  face_pairs_.read(0, pairs, stream);
+  slots_.read(0, slots, stream);
+  std::vector<std::uint32_t> backs(pairs.size());
+  parallel_for(0, sources_.size() * view_.per_robot, [&](std::size_t i) {
+    const Source& source = sources_[i / view_.per_robot];
+    const std::vector<std::uint16_t> masses = source.order->masses();
+    std::vector<std::uint16_t> mass_at;
+    const std::size_t count = std::size_t{tile_stride_} * lanes;
+    for (const std::uint16_t slot : std::span(slots).subspan(i * count, count)) mass_at.push_back(masses[slot]);
+    const auto own = [&](auto& all) { return std::span(all).subspan(i * face_stride_, face_stride_); };
+    fill_backs(own(backs), *source.robot, mass_at, own(pairs), fields_);
+  });
+  face_backs_ = on_device(std::span<const std::uint32_t>(backs), stream);
+}
+
 BatchView DeviceParts::view(BatchView robots) const {
   robots.springs = springs_.data();
   robots.row_start = row_start_.data();
@@ -160,6 +182,7 @@ BatchView DeviceParts::view(BatchView robots) const {
   robots.tile_stride = tile_stride_;
   robots.row_stride = row_stride_;
   robots.face_stride = face_stride_;
+  if (face_backs_.size() > 0) robots.face_backs = face_backs_.data();
   robots.parts = view_;
   robots.parts.headers = headers_.data();
   robots.parts.slots = slots_.data();

@@ -45,6 +45,7 @@ class DeviceParts {
   void split(std::span<const Source> robots, std::uint32_t parts, const ChunkSizes& sizes);
   void upload_parts(cudaStream_t stream);
   void copy_points(const BatchView& robots, cudaStream_t stream);
+  void find_backs(const BatchView& robots, cudaStream_t stream);
 
   std::vector<Source> sources_;
   std::vector<std::uint32_t> first_of_topology_;
@@ -55,7 +56,7 @@ class DeviceParts {
   PartsView view_;
   std::uint32_t tile_stride_ = 0, row_stride_ = 0, face_stride_ = 0;
   DeviceArray<PartHeader> headers_;
-  DeviceArray<std::uint32_t> springs_, row_start_, incoming_counts_, face_dithers_, export_start_, places_;
+  DeviceArray<std::uint32_t> springs_, row_start_, incoming_counts_, face_dithers_, face_backs_, export_start_, places_;
   DeviceArray<FacePair> face_pairs_;
   DeviceArray<std::uint16_t> slots_;
   DeviceArray<Export> exports_;

@@ -29,7 +29,7 @@ class FacePass {
       const Corners corners{next.x, next.y};
       if (p + robot.threads() < robot.header().face_pairs) next = load(robot, p + robot.threads());
       if (corners.are_padding()) continue;
-      if (!add_pair(robot, model, by, corners, dither + dither_of(robot, p)))
+      if (!add_pair(robot, model, by, corners, p, dither + dither_of(robot, p)))
         failure.report<typename Robot::Memory>(robot.arguments().launch, step, phase_environment,
                                                lowest_mass(robot, corners));
     }
@@ -68,7 +68,7 @@ class FacePass {
   // Returns false if a force is too large for its fixed-point sum, or NaN.
   template <class Robot, class EnvironmentModel>
   __device__ static bool add_pair(const Robot& robot, const EnvironmentModel& model, const FaceCoefficients<float>& by,
-                                  Corners corners, std::uint32_t dither) {
+                                  Corners corners, std::uint32_t p, std::uint32_t dither) {
     const auto a = robot.template corner<false>(corners.ab), b = robot.template corner<true>(corners.ab),
                c = robot.template corner<false>(corners.cd), d = robot.template corner<true>(corners.cd);
     const Vec3 xa = a.vector(field_x), xb = b.vector(field_x), xc = c.vector(field_x), xd = d.vector(field_x);
@@ -79,9 +79,20 @@ class FacePass {
     const Vec3 second_normal = cross((xd - xa) + (xd - xc), shared_edge);
     Vec3 relative = a.vector(field_v) + c.vector(field_v);
     if constexpr (EnvironmentModel::has_flow) relative = relative - model.thrice_flow;
-    const Vec3 first_sum = relative + b.vector(field_v), second_sum = relative + d.vector(field_v);
-    Vec3 first = model.on_face(first_normal, first_sum, inner(first_sum, first_sum), by);
-    Vec3 second = model.on_face(second_normal, second_sum, inner(second_sum, second_sum), by);
+    Vec3 first_sum = relative + b.vector(field_v), second_sum = relative + d.vector(field_v);
+    FaceCoefficients<float> on_first = by, on_second = by;
+    if constexpr (EnvironmentModel::has_one_sided_water)
+      if (model.one_sided) {
+        const BatchView& batch = robot.arguments().batch;
+        const std::uint32_t backs = __ldg(batch.face_backs + robot.chunk() * batch.face_stride + p);
+        const auto behind_first = robot.mass_at(backs & 0xffff), behind_second = robot.mass_at(backs >> 16);
+        model.see_from_outside(first_normal, behind_first.vector(field_x) - xa, behind_first.vector(field_v), first_sum,
+                               on_first);
+        model.see_from_outside(second_normal, behind_second.vector(field_x) - xa, behind_second.vector(field_v),
+                               second_sum, on_second);
+      }
+    Vec3 first = model.on_face(first_normal, first_sum, inner(first_sum, first_sum), on_first);
+    Vec3 second = model.on_face(second_normal, second_sum, inner(second_sum, second_sum), on_second);
     if (!fits(first) || !fits(second)) return false;
     if constexpr (EnvironmentModel::real_bodies) {
       first = dithered(first, dither, model.dither());

@@ -105,6 +105,8 @@ struct BatchView {
   const std::uint16_t* masses;     // [robot][slot], the mass that stands there, by its number
   // [robot][slot]: the reactions that a slot receives per step, one for each entry of the schedule whose partner it is.
   const std::uint32_t* incoming_counts;
+  // [robot][pair]: slots of the masses behind the two faces, the second << 16; null = no water is one-sided
+  const std::uint32_t* face_backs;
   const PointProperties* points;  // [robot][slot]; null = masses of 1 kg, none fixed
   const float* point_masses;      // [robot][slot] [kg]; null = 1 kg
   const Material* materials;      // [robot][max_materials]
@@ -115,8 +117,8 @@ struct BatchView {
   std::uint32_t robot_count, tile_stride, row_stride, face_stride, perturbation_count;
   std::uint32_t workspace_stride;  // [bytes]
   std::uint32_t record_words;      // 1 or 2
-  // If robots are stepped in parts, springs, row_start, face_pairs, incoming_counts and points have a chunk for each
-  // part, and the strides are those of a part. All else is of whole robots.
+  // If robots are stepped in parts, springs, row_start, face_pairs, face_backs, incoming_counts and points have a chunk
+  // for each part, and the strides are those of a part. All else is of whole robots.
   PartsView parts;
 };
 

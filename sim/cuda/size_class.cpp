@@ -230,6 +230,7 @@ void SizeClass::publish_own_models(const Configuration& configuration) {
 }
 
 void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain) {
+  if (points_stale_) publish_backs(configuration);
   publish_points();
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;
   const bool viscous =
@@ -314,6 +315,7 @@ BatchView SizeClass::view() const {
           .valences = valences_.data(),
           .masses = masses_.data(),
           .incoming_counts = incoming_counts_.data(),
+          .face_backs = face_backs_.data(),
           .points = points_.data(),
           .point_masses = point_masses_.data(),
           .materials = driven_materials_.size() > 0 ? driven_materials_.data() : device_materials_.data(),

@@ -132,6 +132,8 @@ class SizeClass {
   void publish_own_models(const Configuration& configuration);
   // Uploads the properties of all masses if one of them is not a free mass of 1 kg, and XPBD's valences with them.
   void publish_points();
+  // Uploads which masses are behind faces, if a robot lives in one-sided water.
+  void publish_backs(const Configuration& configuration);
   // To be called when tables from a place on have changed.
   void find_same_materials(std::uint32_t first_changed);
   // Rewrites how spring records and face pairs from `first_place` on address masses: by offsets in working memory with
@@ -180,6 +182,7 @@ class SizeClass {
   ChunkedArray<MuscleSwing> swings_;
   DeviceArray<OwnModel> own_models_;        // [place], or empty
   DeviceArray<PointProperties> points_;     // [place][slot], or empty
+  DeviceArray<std::uint32_t> face_backs_;   // [place][pair], or empty
   DeviceArray<float> point_masses_;         // [place][slot] [kg], or empty
   DeviceArray<Material> driven_materials_;  // [place][max_materials] while actuators drive them, else empty
   std::vector<MaterialId> driven_ids_;      // the same: the index among them, by id

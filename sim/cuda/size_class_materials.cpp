@@ -9,6 +9,7 @@
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/kernels.h"
 #include "sim/cuda/size_class.h"
+#include "sim/physics/face_backs.h"
 
 namespace mercury::cuda {
 
@@ -68,6 +69,30 @@ void SizeClass::publish_points() {
   points_.write(0, points, stream);
   point_masses_ = DeviceArray<float>(masses.size());
   point_masses_.write(0, masses, stream);
+}
+
+void SizeClass::publish_backs(const Configuration& configuration) {
+  face_backs_ = {};
+  const auto is_one_sided = [&](std::size_t place) {
+    const auto& own = environments_[place];
+    return has_one_sided_water(own ? *own : configuration.environment);
+  };
+  bool needed = false;
+  for (std::size_t place = 0; place < size(); ++place) needed = needed || is_one_sided(place);
+  if (!needed || sizes_.face_pairs == 0) return;
+  // The host keeps no order of face pairs, and this is rare.
+  const std::size_t stride = sizes_.face_pairs;
+  std::vector<FacePair> pairs(size() * stride);
+  face_pairs_.read(0, pairs, urgent_->get());
+  std::vector<std::uint32_t> backs(pairs.size());
+  parallel_for(0, size(), [&](std::size_t place) {
+    if (!is_one_sided(place)) return;
+    fill_backs(std::span(backs).subspan(place * stride, stride), *robots_[place],
+               order_of(static_cast<std::uint32_t>(place)).masses(), std::span(pairs).subspan(place * stride, stride),
+               address_fields_);
+  });
+  face_backs_ = DeviceArray<std::uint32_t>(backs.size());
+  face_backs_.write(0, backs, urgent_->get());
 }
 
 void SizeClass::find_same_materials(std::uint32_t first_changed) {

@@ -10,6 +10,7 @@
 //   on_mass(v, weight)                    force on a mass that has velocity v and this weight (points.h) [N]
 //   acts_on_faces()                       whether on_face() may be other than zero, if has_faces
 //   on_face(normal, u, u.u, coefficients) force on a face, if has_faces [N]; see OceanModel::of_sums()
+//   has_one_sided_water                   whether water may act on outward faces alone; see GeneralModel
 //   sums_apart()                          whether the forces of the environment are summed apart from those of springs
 //   dither()                              1 or 0, the factor of fixed_point.h's dithered() for forces on faces
 //   acts_on_ground()                      whether there is ground, if has_ground
@@ -60,7 +61,7 @@ struct FaceCoefficients {
 // 4. Hence F . u = rho A / 2 (C_D (u . n) |u|^2 + C_T |u_t|^3) >= 0: drag never adds energy to a body in still water.
 struct OceanModel {
   static constexpr bool has_faces = true, has_contacts = false, has_ground = false, still_water = false;
-  static constexpr bool has_tangential_drag = true, real_bodies = false, has_flow = true;
+  static constexpr bool has_tangential_drag = true, real_bodies = false, has_flow = true, has_one_sided_water = false;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, drag_minus_lift = 0, lift = 0, tangential = 0;
 
@@ -158,7 +159,7 @@ struct StillWaterOceanModel : FrictionlessOceanModel {
 // that moves across itself has a drag coefficient of 2 C_N on one side's area. F . u >= 0: drag never adds energy.
 struct ResistiveModel {
   static constexpr bool has_faces = true, has_contacts = true, has_ground = false, still_water = false;
-  static constexpr bool has_tangential_drag = true, real_bodies = true, has_flow = true;
+  static constexpr bool has_tangential_drag = true, real_bodies = true, has_flow = true, has_one_sided_water = false;
   Vec3 gravity, flow, thrice_flow;
   float half_density = 0, normal = 0, tangential = 0;
 
@@ -269,9 +270,9 @@ struct LandModel {
 
 // Any combination, and any bodies. Parts that are not there are skipped or have coefficients of zero.
 struct GeneralModel : OceanModel {
-  static constexpr bool has_contacts = true, has_ground = true, real_bodies = true;
+  static constexpr bool has_contacts = true, has_ground = true, real_bodies = true, has_one_sided_water = true;
   float drag = 0, friction = 0, static_friction = 0, normal = 0;
-  bool face_drag = false, ground = false, is_resistive = false;
+  bool face_drag = false, ground = false, is_resistive = false, one_sided = false;
 
   explicit GeneralModel(const Environment& environment)
       : OceanModel(face_drag_of(environment), environment.gravity), face_drag(has_face_forces(environment)),
@@ -279,7 +280,10 @@ struct GeneralModel : OceanModel {
         is_resistive(std::holds_alternative<ResistiveDrag>(environment.water)) {
     flow = flow_of(environment);
     if (const auto* water = std::get_if<PointDrag>(&environment.water)) drag = water->point_drag;
-    if (const auto* water = std::get_if<ResistiveDrag>(&environment.water)) normal = water->normal_coefficient;
+    if (const auto* water = std::get_if<ResistiveDrag>(&environment.water)) {
+      normal = water->normal_coefficient;
+      one_sided = water->one_sided;
+    }
     if (const auto* plane = std::get_if<Plane>(&environment.ground)) {
       friction = plane->friction;
       static_friction = static_friction_of(*plane);
@@ -294,12 +298,6 @@ struct GeneralModel : OceanModel {
   MERCURY_HOST_DEVICE bool acts_on_faces() const { return face_drag; }
   MERCURY_HOST_DEVICE float dither() const { return is_resistive ? 1.0f : 0.0f; }
   MERCURY_HOST_DEVICE bool sums_apart() const { return is_resistive; }
-  // `area_normal` is A n, `velocity` the mean of the corners'.
-  template <class Vector>
-  MERCURY_HOST_DEVICE Vector on_face(Vector area_normal, Vector velocity) const {
-    const Vector u = flow - velocity;
-    return on_face(area_normal, u, inner(u, u), coefficients());
-  }
   // One of the two has coefficients of zero, and adds nothing.
   template <class Vector, class Real>
   MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
@@ -314,6 +312,27 @@ struct GeneralModel : OceanModel {
     FaceCoefficients<float> by = OceanModel::coefficients();
     by.normal = half_density * normal;
     return by;
+  }
+  // For one-sided water, before of_sums() and on_face(). `to_back` leads from the face to the mass behind it
+  // (face_backs.h), `velocity` is that mass's. The sum of the corners' velocities becomes three times the velocity
+  // halfway to that mass, and a face that moves toward it loses its normal drag:
+  //
+  //      face   |--> u       pushed                depth   = normal . to_back
+  //             |            sum . normal          outward = -normal if depth > 0, else normal
+  //      body   o            and depth have        sum . outward > 0 where sum . normal and depth have unlike signs
+  //                          unlike signs
+  //
+  // Where to_back is zero, nothing is behind the face: it stays as it is.
+  template <class Vector, class Real>
+  MERCURY_HOST_DEVICE void see_from_outside(Vector face_normal, Vector to_back, Vector velocity, Vector& sum,
+                                            FaceCoefficients<Real>& by) const {
+    const auto depth = inner(face_normal, to_back);
+    const Vector halfway{0.5f * (sum.x + (3.0f * velocity.x - thrice_flow.x)),
+                         0.5f * (sum.y + (3.0f * velocity.y - thrice_flow.y)),
+                         0.5f * (sum.z + (3.0f * velocity.z - thrice_flow.z))};
+    const auto has_back = absolute(depth) > 0.0f;
+    sum = {select(has_back, halfway.x, sum.x), select(has_back, halfway.y, sum.y), select(has_back, halfway.z, sum.z)};
+    by.normal = select(inner(face_normal, sum) * depth > 0.0f, 0.0f, by.normal);
   }
   MERCURY_HOST_DEVICE bool acts_on_ground() const { return ground; }
   template <class Vector>
@@ -344,9 +363,9 @@ using AnyEnvironmentModel =
 // masses, or springs with a relaxation time (points.h).
 inline AnyEnvironmentModel solver_model_of(const Environment& environment, bool real_bodies = false) {
   const Vec3 gravity = environment.gravity;
-  if (const auto* water = std::get_if<ResistiveDrag>(&environment.water); water && !has_ground(environment))
-    return ResistiveModel(*water, gravity);
-  if (real_bodies) return GeneralModel(environment);
+  const auto* resistive = std::get_if<ResistiveDrag>(&environment.water);
+  if (resistive && !resistive->one_sided && !has_ground(environment)) return ResistiveModel(*resistive, gravity);
+  if (real_bodies || resistive) return GeneralModel(environment);
   const auto* plane = std::get_if<Plane>(&environment.ground);
   if (!has_water(environment) && plane) return LandModel(*plane, gravity);
   if (has_ground(environment) || has_contacts(environment)) return GeneralModel(environment);

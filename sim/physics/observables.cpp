@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "sim/physics/environments.h"
+#include "sim/physics/face_backs.h"
 #include "sim/physics/muscle.h"
 
 namespace mercury {
@@ -52,20 +53,36 @@ std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow>
 }
 
 FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,
-                     std::span<const Vec3> velocities) {
+                     std::span<const Vec3> velocities, std::optional<std::uint16_t> behind) {
   const Vec3 a = positions[face.a], b = positions[face.b], c = positions[face.c];
   const Vec3 area_normal = 0.5f * cross(b - a, c - a);
   const float third = 1.0f / 3;
-  const Vec3 velocity = third * (velocities[face.a] + velocities[face.b] + velocities[face.c]);
   FaceForce result{.center = third * (a + b + c), .area = length(area_normal), .drag = {}, .lift = {}};
   if (has_face_forces(environment)) {
-    const Vec3 force = GeneralModel(environment).on_face(area_normal, velocity);
-    const Vec3 flow = flow_of(environment) - velocity;
+    const GeneralModel model(environment);
+    FaceCoefficients<float> by = model.coefficients();
+    Vec3 sum = velocities[face.a] + velocities[face.b] + velocities[face.c] - model.thrice_flow;
+    if (behind && model.one_sided)
+      model.see_from_outside(area_normal, positions[*behind] - a, velocities[*behind], sum, by);
+    const Vec3 flow = -third * sum;
     const float squared = dot(flow, flow);
+    const Vec3 force = GeneralModel::on_face(area_normal, flow, squared, by);
     result.drag = squared > 0 ? (dot(force, flow) / squared) * flow : Vec3{};
     result.lift = force - result.drag;
   }
   return result;
+}
+
+std::vector<std::uint16_t> masses_behind_faces(const Robot& robot, const Environment& environment) {
+  std::vector<std::uint16_t> behind;
+  behind.reserve(robot.faces.size());
+  if (!has_one_sided_water(environment)) {
+    for (const Face& face : robot.faces) behind.push_back(face.a);
+    return behind;
+  }
+  const FaceBacks backs(robot);
+  for (const Face& face : robot.faces) behind.push_back(backs.behind(face));
+  return behind;
 }
 
 std::vector<FloorForce> floor_forces(const Robot& robot, const Configuration& configuration,

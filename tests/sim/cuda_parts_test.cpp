@@ -8,6 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include "sim/cuda/chunks.h"
+#include "sim/physics/face_backs.h"
 #include "sim/physics/fixed_point.h"
 #include "tests/sim/bodies.h"
 
@@ -142,6 +144,38 @@ TEST(Parts, ComputeEachFaceOfTheirOwnMassesOnce) {
         wanted.insert({f.a, f.c, f.d, dither_of_pair(i) + second_face_dither});
       }
       EXPECT_EQ(computed, wanted);
+    }
+  }
+}
+
+// Faces without an own corner may lack it: what they add to is not used.
+TEST(Parts, KnowTheMassBehindEachFaceOfTheirOwnMasses) {
+  for (const SplitRobot& body : split_robots()) {
+    const std::vector<std::uint32_t> part_of = body.part_of();
+    const FaceBacks backs(body.robot);
+    for (std::uint32_t p = 0; p < body.parts.size(); ++p) {
+      const Part& part = body.parts[p];
+      std::vector<std::uint16_t> mass_at;
+      for (const std::uint32_t mass : masses_in(part))
+        mass_at.push_back(mass == none ? part.masses.front() : static_cast<std::uint16_t>(mass));
+      std::vector<std::uint32_t> found(part.arrangement.faces.size());
+      fill_backs(found, body.robot, mass_at, part.arrangement.faces, 0);
+      std::size_t own = 0, with_back = 0;
+      const auto check = [&](std::uint32_t back, const Face& face) {
+        if (part_of[face.a] != p && part_of[face.b] != p && part_of[face.c] != p) return;
+        ++own;
+        with_back += backs.behind(face) != face.a;
+        EXPECT_EQ(mass_at[back], backs.behind(face));
+        EXPECT_NE(masses_in(part)[back], none);
+      };
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        const FacePair& slots = part.arrangement.faces[i];
+        if (slots == padding_faces) continue;
+        const FacePair f{mass_at[slots.a], mass_at[slots.b], mass_at[slots.c], mass_at[slots.d]};
+        check(found[i] & 0xffff, {f.a, f.b, f.c});
+        if (f.d != f.a) check(found[i] >> 16, {f.a, f.c, f.d});
+      }
+      EXPECT_GT(with_back, own / 5);
     }
   }
 }

@@ -66,7 +66,7 @@ TEST(FaceSchedule, HasEachPairOnce) {
     for (const Robot& robot : robots()) {
       const std::vector<FacePair> pairs = pair_faces(robot);
       const cpu::Slots slots = cpu::assign_slots(robot, lanes);
-      const cpu::FaceSchedule schedule = cpu::schedule_faces(pairs, slots);
+      const cpu::FaceSchedule schedule = cpu::schedule_faces(pairs, {}, slots);
       EXPECT_EQ(evaluated_pairs(schedule, slots, pairs.size()), wanted_pairs(pairs));
       EXPECT_EQ(schedule.dither.size(), lanes * (schedule.runs.size() + schedule.gathered_tiles(lanes)));
     }
@@ -77,7 +77,7 @@ TEST(FaceSchedule, HasFourSidesOfALatticeInRuns) {
   constexpr std::size_t lanes = 8, n = 10, pairs_per_side = n * n;
   const Robot robot = bench::lattice(n);
   const cpu::Slots slots = cpu::assign_slots(robot, lanes);
-  const cpu::FaceSchedule schedule = cpu::schedule_faces(pair_faces(robot), slots);
+  const cpu::FaceSchedule schedule = cpu::schedule_faces(pair_faces(robot), {}, slots);
   // Of each ten pairs in a line, those after the eighth may be gathered.
   EXPECT_LE(schedule.gathered_tiles(lanes) * lanes, 2 * pairs_per_side + 4 * pairs_per_side * 2 / n + lanes);
   EXPECT_LE(schedule.runs.size(), 4 * pairs_per_side / lanes + 4 * n);

@@ -28,6 +28,10 @@ struct KernelCase {
       water->drag_tangential = drag_tangential;
     }
     if (auto* const water = std::get_if<PointDrag>(&configuration.environment.water)) water->flow = flow;
+    if (auto* const water = std::get_if<ResistiveDrag>(&configuration.environment.water)) {
+      water->flow = flow;
+      water->one_sided = true;  // the general model has all else of resistive water, too
+    }
     return configuration;
   }
 };
@@ -36,7 +40,7 @@ inline std::vector<KernelCase> every_kernel_case() {
   std::vector<KernelCase> cases;
   for (const cpu::Kernel& kernel : cpu::kernels())
     for (const Solver solver : {Solver::force, Solver::xpbd})
-      for (const std::string_view environment : {"ocean", "ocean-simple", "land", "ocean+ground+contacts"})
+      for (const std::string_view environment : {"ocean", "ocean-simple", "land", "ocean+ground+contacts", "resistive"})
         cases.push_back({kernel, solver, environment});
   return cases;
 }

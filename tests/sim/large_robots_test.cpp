@@ -134,7 +134,8 @@ TEST_P(LargeRobots, InPartsExplodeAsWholeOnes) {
 class LargeRealBodies : public testing::TestWithParam<std::tuple<DeviceKind, Solver, std::string_view>> {};
 INSTANTIATE_TEST_SUITE_P(All, LargeRealBodies,
                          testing::Combine(every_device, testing::Values(Solver::force, Solver::xpbd),
-                                          testing::Values("water", "water+contacts", "ocean", "land")),
+                                          testing::Values("water", "water+contacts", "ocean", "land", "resistive",
+                                                          "resistive+contacts")),
                          EveryPair::name);
 
 TEST_P(LargeRealBodies, InPartsMoveAsWholeOnes) {
@@ -146,7 +147,9 @@ TEST_P(LargeRealBodies, InPartsMoveAsWholeOnes) {
   for (std::size_t i = 0; i < robot.masses.size(); ++i)
     robot.mass.push_back(std::uniform_real_distribution<float>(0.5f, 1.5f)(random));
   robot.fixed = {17, 4000};
-  InParts robots({.solver = solver, .environment = environment_named(environment), .device = {.kind = device}}, robot);
+  Environment water = environment_named(environment);
+  if (environment.starts_with("resistive")) std::get<ResistiveDrag>(water.water).one_sided = true;
+  InParts robots({.solver = solver, .environment = water, .device = {.kind = device}}, robot);
   robots.expect_same(40);
   EXPECT_EQ(robots.differ_in_notes(), device == DeviceKind::cuda);
 }

@@ -33,6 +33,8 @@ Reference::Reference(const Configuration& configuration, const Robot& robot)
   v_.assign(x_.size(), Vector::Zero());
   for (std::size_t i = 0; i < robot.velocity.size(); ++i) v_[i] = vector_of(robot.velocity[i]);
   set_inertia();
+  if (const auto* water = std::get_if<ResistiveDrag>(&configuration.environment.water); water && water->one_sided)
+    for (const Face& face : robot.faces) behind_.push_back(mass_behind(face));
   if (has_ground(configuration.environment)) {
     double lowest = std::numeric_limits<double>::infinity();
     for (const Vector& x : x_) lowest = std::min(lowest, x.z());
@@ -151,13 +153,40 @@ void Reference::add_surface_drag(const FaceDrag& ocean, Field& force) const {
   }
 }
 
-// Resistive theory: the parts of the flow across and along a face act apart.
+// Of the masses that springs join to all corners, the one that is farthest from the middle of the face in the rest
+// pose, and more than a tenth of that off its plane.
+int Reference::mass_behind(const Face& face) const {
+  const Vector a = vector_of(robot_.masses[face.a]), b = vector_of(robot_.masses[face.b]),
+               c = vector_of(robot_.masses[face.c]);
+  int found = -1;
+  double farthest = 0;
+  for (int i = 0; i < static_cast<int>(robot_.masses.size()); ++i) {
+    if (!joined_.contains({i, face.a}) || !joined_.contains({i, face.b}) || !joined_.contains({i, face.c})) continue;
+    const Vector way = vector_of(robot_.masses[static_cast<std::size_t>(i)]) - (a + b + c) / 3;
+    const double depth = std::abs((b - a).cross(c - a).normalized().dot(way));
+    if (depth <= way.norm() / 10 || way.norm() <= farthest * 1.0001) continue;
+    farthest = way.norm();
+    found = i;
+  }
+  return found;
+}
+
+// Resistive theory: the parts of the flow across and along a face act apart. One-sided water meets the middle between
+// the face and the mass behind it, and pushes only where that goes outward, away from this mass.
 void Reference::add_resistive_drag(const ResistiveDrag& water, Field& force) const {
-  for (const Face& face : robot_.faces) {
-    const Vector u = vector_of(water.flow) - (v_[face.a] + v_[face.b] + v_[face.c]) / 3;
+  for (std::size_t i = 0; i < robot_.faces.size(); ++i) {
+    const Face& face = robot_.faces[i];
     const Vector twice_area = (x_[face.b] - x_[face.a]).cross(x_[face.c] - x_[face.a]);
     if (twice_area.norm() == 0) continue;
-    const Vector across = u.dot(twice_area.normalized()) * twice_area.normalized(), along = u - across;
+    Vector velocity = (v_[face.a] + v_[face.b] + v_[face.c]) / 3;
+    const bool has_body = water.one_sided && behind_[i] >= 0;
+    const auto behind = static_cast<std::size_t>(has_body ? behind_[i] : face.a);
+    if (has_body) velocity = (velocity + v_[behind]) / 2;
+    const Vector u = vector_of(water.flow) - velocity;
+    Vector across = u.dot(twice_area.normalized()) * twice_area.normalized();
+    const Vector along = u - across, outward = (x_[face.a] + x_[face.b] + x_[face.c]) / 3 - x_[behind];
+    const double side = outward.dot(twice_area) > 0 ? 1 : -1;
+    if (has_body && -across.dot(side * twice_area) < 0) across.setZero();
     const Vector total =
         0.25 * water.density * twice_area.norm() *
         (water.normal_coefficient * across.norm() * across + water.tangential_coefficient * along.norm() * along);

@@ -55,6 +55,7 @@ class Reference {
   double length_now(const Spring& spring) const;
   double strain(const Spring& spring) const;
   void set_inertia();
+  int mass_behind(const Face& face) const;
   void add_surface_drag(const FaceDrag& ocean, Field& force) const;
   void add_resistive_drag(const ResistiveDrag& water, Field& force) const;
   void add_repulsion(const Contacts& contacts, Field& force) const;
@@ -67,6 +68,7 @@ class Reference {
   std::vector<double> inverse_inertia_;   // [1/kg], one per mass; 0 = fixed
   std::vector<double> weight_;            // what gravity acts on [kg], one per mass
   double contact_distance_ = 0;           // [m]
+  std::vector<int> behind_;               // the mass behind each face, or -1; empty unless water is one-sided
   Field x_, v_;
   std::int64_t steps_ = 0;
 };

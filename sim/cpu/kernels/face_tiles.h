@@ -28,13 +28,25 @@ struct FaceForces {
 };
 
 // `to_b`, `to_c`, `to_d`: from corner a to the others. `first`, `second`: the sum of the velocities of each face's
-// corners, relative to the water. `coefficients`: OceanModel::of_sums().
-template <class EnvironmentModel>
-HWY_INLINE FaceForces face_forces(FaceCoefficients<Lanes> coefficients, Lanes3 to_b, Lanes3 to_c, Lanes3 to_d,
-                                  Lanes3 first, Lanes3 second) {
+// corners, relative to the water. `coefficients`: OceanModel::of_sums(). `back(0)` and `back(1)` are the masses behind
+// the two faces, as seen from a; they are asked for only if water is one-sided.
+struct Back {
+  Lanes3 to, velocity;
+};
+template <class EnvironmentModel, class BackOf>
+HWY_INLINE FaceForces face_forces(const EnvironmentModel& model, FaceCoefficients<Lanes> coefficients, Lanes3 to_b,
+                                  Lanes3 to_c, Lanes3 to_d, Lanes3 first, Lanes3 second, const BackOf& back_of) {
+  const Lanes3 first_normal = cross(to_c, to_b), second_normal = cross(to_d, to_c);
+  FaceCoefficients<Lanes> on_first = coefficients, on_second = coefficients;
+  if constexpr (EnvironmentModel::has_one_sided_water)
+    if (model.one_sided) {
+      const Back behind_first = back_of(0), behind_second = back_of(1);
+      model.see_from_outside(first_normal, behind_first.to, behind_first.velocity, first, on_first);
+      model.see_from_outside(second_normal, behind_second.to, behind_second.velocity, second, on_second);
+    }
   const Lanes first_squared = inner(first, first), second_squared = inner(second, second);
-  return {EnvironmentModel::on_face(cross(to_c, to_b), first, first_squared, coefficients),
-          EnvironmentModel::on_face(cross(to_d, to_c), second, second_squared, coefficients),
+  return {EnvironmentModel::on_face(first_normal, first, first_squared, on_first),
+          EnvironmentModel::on_face(second_normal, second, second_squared, on_second),
           larger(first_squared, second_squared)};
 }
 
@@ -53,7 +65,7 @@ class FaceTiles {
  public:
   // `dither` is dither_of_step().
   FaceTiles(Body& body, const EnvironmentModel& model, std::uint32_t dither)
-      : arrays_(body), faces_(body.faces), dither_(dither), dither_factor_(model.dither()),
+      : arrays_(body), faces_(body.faces), model_(model), dither_(dither), dither_factor_(model.dither()),
         coefficients_(model.of_sums(body.scale.environment)),
         bound_per_squared_speed_(coefficients_.bound() * body.squared_diagonal), thrice_flow_(model.thrice_flow),
         thrice_flow_aos_(broadcast_aos(model.thrice_flow)) {}
@@ -114,9 +126,12 @@ class FaceTiles {
       Lanes3 common = load(arrays_.v, a) + load(arrays_.v, c);
       if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow;
       visit(run, mask_of(run.lanes),
-            dithered(face_forces<EnvironmentModel>(coefficients(), load(arrays_.x, b) - xa, load(arrays_.x, c) - xa,
-                                                   load(arrays_.x, d) - xa, common + load(arrays_.v, b),
-                                                   common + load(arrays_.v, d)),
+            dithered(face_forces(model_, coefficients(), load(arrays_.x, b) - xa, load(arrays_.x, c) - xa,
+                                 load(arrays_.x, d) - xa, common + load(arrays_.v, b), common + load(arrays_.v, d),
+                                 [&](std::size_t face) HWY_ATTR {
+                                   const std::uint32_t* const behind = back_of(dither, face);
+                                   return Back{components(x(behind)) - xa, components(v(behind))};
+                                 }),
                      dither));
       dither += lane_count;
     }
@@ -132,9 +147,12 @@ class FaceTiles {
       const Aos xa = x(a);
       Aos common = v(a) + v(c);
       if constexpr (!EnvironmentModel::still_water) common = common - thrice_flow_aos_;
-      visit(tile, dithered(face_forces<EnvironmentModel>(coefficients(), components(x(b) - xa), components(x(c) - xa),
-                                                         components(x(d) - xa), components(common + v(b)),
-                                                         components(common + v(d))),
+      visit(tile, dithered(face_forces(model_, coefficients(), components(x(b) - xa), components(x(c) - xa),
+                                       components(x(d) - xa), components(common + v(b)), components(common + v(d)),
+                                       [&](std::size_t face) HWY_ATTR {
+                                         const std::uint32_t* const behind = back_of(dither, face);
+                                         return Back{components(x(behind) - xa), components(v(behind))};
+                                       }),
                            dither));
       dither += lane_count;
     }
@@ -159,9 +177,14 @@ class FaceTiles {
   }
   HWY_INLINE Aos x(const std::uint32_t* corner) const { return gather(arrays_.x_aos, corner); }
   HWY_INLINE Aos v(const std::uint32_t* corner) const { return gather(arrays_.v_aos, corner); }
+  // The masses behind the first or second faces of the pairs that have their dither here.
+  HWY_INLINE const std::uint32_t* back_of(const std::uint32_t* dither, std::size_t face) const {
+    return faces_.backs.data() + 2 * (dither - faces_.dither.data()) + face * lane_count;
+  }
 
   const BodyArrays arrays_;
   const FaceSchedule& faces_;
+  const EnvironmentModel& model_;
   const std::uint32_t dither_;
   const float dither_factor_;
   const FaceCoefficients<float> coefficients_;

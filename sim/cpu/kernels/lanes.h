@@ -138,6 +138,10 @@ HWY_INLINE void add_halves(Integers a, std::int32_t* lower, std::int32_t* upper)
   hn::Store(hn::Add(hn::Load(half, upper), hn::UpperHalf(half, a.v)), half, upper);
 }
 HWY_INLINE Lanes load(const float* from) { return hn::LoadU(floats, from); }
+// One element per lane, from anywhere. `indices` are aligned.
+HWY_INLINE Lanes load_each(const float* from, const std::uint32_t* indices) {
+  return hn::GatherIndex(floats, from, hn::BitCast(integers, hn::Load(words, indices)));
+}
 HWY_INLINE Integers load(const std::int32_t* from) { return {hn::LoadU(integers, from)}; }
 HWY_INLINE void store_aligned(Lanes a, float* to) { hn::Store(a.v, floats, to); }
 HWY_INLINE void store_aligned(Integers a, std::int32_t* to) { hn::Store(a.v, integers, to); }

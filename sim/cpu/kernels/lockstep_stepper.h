@@ -26,6 +26,11 @@ HWY_INLINE Lanes3 load_slot(const float* values, LockstepGroup::Halves offsets) 
   return {load_halves(lower, upper), load_halves(lower + lane_count, upper + lane_count),
           load_halves(lower + 2 * lane_count, upper + 2 * lane_count)};
 }
+// Each lane its own slot, whose x is at the offset.
+HWY_INLINE Lanes3 load_slots(const float* values, const std::uint32_t* offsets) {
+  return {load_each(values, offsets), load_each(values + lane_count, offsets),
+          load_each(values + 2 * lane_count, offsets)};
+}
 HWY_INLINE void add_to_slot(std::int32_t* sums, std::size_t offset, Integers3 a) {
   const Pointers3<std::int32_t> sum = slot_at(sums, offset);
   store_aligned(load_aligned(sum, 0) + a, sum, 0);
@@ -202,8 +207,12 @@ class LockstepStepper {
       if constexpr (EnvironmentModel::has_tangential_drag) coefficients.tangential = load_aligned(tangential);
       if constexpr (EnvironmentModel::real_bodies) coefficients.normal = load_aligned(normal);
       FaceForces forces =
-          face_forces<EnvironmentModel>(coefficients, load_slot(x, b) - xa, load_slot(x, c) - xa, load_slot(x, d) - xa,
-                                        common + load_slot(v, b), common + load_slot(v, d));
+          face_forces(model_, coefficients, load_slot(x, b) - xa, load_slot(x, c) - xa, load_slot(x, d) - xa,
+                      common + load_slot(v, b), common + load_slot(v, d), [&](std::size_t face) HWY_ATTR {
+                        const std::uint32_t* const behind =
+                            group_.face_backs.data() + 2 * (dither - group_.face_dither.data()) + face * lane_count;
+                        return Back{load_slots(x, behind) - xa, load_slots(v, behind)};
+                      });
       if constexpr (EnvironmentModel::real_bodies)
         forces = forces.dithered(load_aligned(dither) + Words(dither_), model_.dither());
       visit(corners, forces);

@@ -53,7 +53,7 @@ void prepare_to_step_alone(Body& body) {
   if (body.steps_alone) return;
   body.steps_alone = true;
   body.springs = schedule_springs(*body.robot, body.slots);
-  body.faces = schedule_faces(body.face_pairs, body.slots);
+  body.faces = schedule_faces(body.face_pairs, body.backs, body.slots);
   const std::size_t size = body.slots.size_with_spare();
   body.inverse_inertia.assign(size, 0);
   body.weight.assign(size, 0);
@@ -94,6 +94,10 @@ void update_spring_parameters(Body& body, const Configuration& of_batch) {
   const Robot& robot = *body.robot;
   const Configuration configuration = configuration_of(body, of_batch);
   const Environment& environment = configuration.environment;
+  if (has_one_sided_water(environment) && body.backs.empty()) {
+    body.backs = masses_behind(robot, body.face_pairs);
+    if (body.steps_alone) body.faces = schedule_faces(body.face_pairs, body.backs, body.slots);
+  }
   const bool real = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(environment.water);
   body.points = real ? point_properties(robot, environment) : std::vector<PointProperties>();
   const InertiaRange inertia = inertia_range(body.points);

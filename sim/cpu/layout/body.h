@@ -91,6 +91,7 @@ struct Body {
   RobotMeasures measures;
   std::uint64_t topology_key = 0;  // mercury/robot.h
   std::vector<FacePair> face_pairs;
+  std::vector<PairBacks> backs;  // masses_behind() the face pairs; empty until water is one-sided
   std::vector<LatticeCell> cells;
   Slots slots;
   std::span<const Material> materials;      // by id, as they are now: those of the robot, or `changed_materials`

@@ -167,6 +167,13 @@ void set_spring_parameters(LockstepGroup& group, const AnyEnvironmentModel& mode
         group.face_lift[i] = coefficients->lift;
         group.face_tangential[i] = coefficients->tangential;
         group.face_normal[i] = coefficients->normal;
+        if (body.backs.empty()) continue;
+        const std::size_t first = 2 * (i - lane) + lane;
+        group.face_backs.resize(2 * group.face_dither.size());
+        group.face_backs[first] =
+            static_cast<std::uint32_t>(group.offset_of(index_map.slots[body.backs[own].first], lane));
+        group.face_backs[first + group.lanes] =
+            static_cast<std::uint32_t>(group.offset_of(index_map.slots[body.backs[own].second], lane));
       }
     }
     group.force_scale[lane] = body.scale.force;

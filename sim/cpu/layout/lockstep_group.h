@@ -69,6 +69,8 @@ struct LockstepGroup {
   // [face tile][lane]: OceanModel::of_sums() in units; 0 where a member has no such faces.
   Aligned<float> face_drag, face_lift, face_tangential, face_normal;
   Aligned<std::uint32_t> face_dither;  // dither_of_pair() of the member's pair
+  // [face tile][first, second][lane]: where the member's mass behind the face has its x in x; empty = not known
+  Aligned<std::uint32_t> face_backs;
 
   Aligned<float> inverse_inertia, weight;  // [slot][lane]: PointProperties; 0 in padding
   bool viscous = false;                    // a spring has a relaxation time

@@ -263,17 +263,28 @@ std::vector<FaceRunPairs> face_runs(std::span<const FacePair> pairs, const Slots
 
 SpringSchedule schedule_springs(const Robot& robot, const Slots& slots) { return Scheduler(robot, slots).take(); }
 
-FaceSchedule schedule_faces(std::span<const FacePair> pairs, const Slots& slots) {
+FaceSchedule schedule_faces(std::span<const FacePair> pairs, std::span<const PairBacks> backs, const Slots& slots) {
   FaceSchedule schedule;
+  const auto add_entries = [&] {
+    const std::size_t entries = schedule.dither.size();
+    schedule.dither.resize(entries + slots.lanes);
+    if (!backs.empty()) schedule.backs.resize(2 * schedule.dither.size());
+    return entries;
+  };
+  const auto set_pair = [&](std::size_t entries, std::size_t lane, std::uint32_t pair) {
+    schedule.dither[entries + lane] = dither_of_pair(pair);
+    if (backs.empty()) return;
+    schedule.backs[2 * entries + lane] = 4 * slots.of_mass[backs[pair].first];
+    schedule.backs[2 * entries + slots.lanes + lane] = 4 * slots.of_mass[backs[pair].second];
+  };
   std::vector<std::uint32_t> gathered;
   for (const auto& [first, numbers, before] : face_runs(pairs, slots, gathered)) {
     FaceSchedule::Run run{.corners = first};
-    const std::size_t entries = schedule.dither.size();
-    schedule.dither.resize(entries + slots.lanes);
+    const std::size_t entries = add_entries();
     for (const std::uint32_t pair : numbers) {
       const std::uint32_t lane = slots.of_mass[pairs[pair].a] - first[0];
       run.lanes |= 1u << lane;
-      schedule.dither[entries + lane] = dither_of_pair(pair);
+      set_pair(entries, lane, pair);
     }
     schedule.runs.push_back(run);
   }
@@ -281,8 +292,9 @@ FaceSchedule schedule_faces(std::span<const FacePair> pairs, const Slots& slots)
     for (const auto corner : {&FacePair::a, &FacePair::b, &FacePair::c, &FacePair::d})
       for (std::size_t i = first; i < first + slots.lanes; ++i)
         schedule.tiles.push_back(4 * slots.of_mass[i < gathered.size() ? pairs[gathered[i]].*corner : 0]);
-    for (std::size_t i = first; i < first + slots.lanes; ++i)
-      schedule.dither.push_back(i < gathered.size() ? dither_of_pair(gathered[i]) : 0);
+    const std::size_t entries = add_entries();
+    for (std::size_t i = first; i < std::min(first + slots.lanes, gathered.size()); ++i)
+      set_pair(entries, i - first, gathered[i]);
   }
   return schedule;
 }

@@ -30,7 +30,7 @@
 #include "sim/cpu/layout/aligned.h"
 #include "sim/cpu/layout/muscles.h"
 #include "sim/cpu/layout/slots.h"
-#include "sim/physics/face_pairs.h"
+#include "sim/physics/face_backs.h"
 
 namespace mercury::cpu {
 
@@ -76,9 +76,12 @@ struct FaceSchedule {
   // tile is filled up with pairs that have no area.
   std::vector<std::uint32_t> tiles;
   Aligned<std::uint32_t> dither;  // dither_of_pair(), [run, then face tile][lane]
+  // [run, then face tile][first, second][lane]: four times the slot of the mass behind the face; empty = not known
+  std::vector<std::uint32_t> backs;
 
   std::size_t gathered_tiles(std::size_t lanes) const { return tiles.size() / (4 * lanes); }
 };
-FaceSchedule schedule_faces(std::span<const FacePair> pairs, const Slots& slots);
+// `backs` = masses_behind(), or empty.
+FaceSchedule schedule_faces(std::span<const FacePair> pairs, std::span<const PairBacks> backs, const Slots& slots);
 
 }  // namespace mercury::cpu

@@ -57,6 +57,9 @@ struct FaceDrag {
 // Water by resistive theory: each face feels its motion across itself and along itself apart, as the segments of a
 // swimmer's body do (Gray and Hancock 1955; Taylor 1952). Water that a body displaces weighs less on it (buoyancy) and
 // moves along with it (added mass).
+//
+// If it is one-sided, as evosoro's, it pushes only faces that move away from the body behind them, and meets them with
+// the velocity halfway to the mass behind. So a rigid body feels half as much, and one that swells in place nothing.
 struct ResistiveDrag {
   static constexpr std::string_view name = "resistive";
   float density = 1000;                  // rho [kg/m3]
@@ -64,6 +67,7 @@ struct ResistiveDrag {
   float tangential_coefficient = 0.02f;  // C_T [1]
   float added_mass_coefficient = 0.5f;   // C_A [1]
   Vec3 flow;                             // velocity of the water [m/s]
+  bool one_sided = false;
   friend bool operator==(const ResistiveDrag&, const ResistiveDrag&) = default;
 
   static constexpr std::tuple parameters{
@@ -75,7 +79,9 @@ struct ResistiveDrag {
                 "Drag coefficient of a face that moves along itself, C_T"),
       Parameter("added_mass_coefficient", &ResistiveDrag::added_mass_coefficient, "", Accepts::at_least_zero, {0, 2},
                 "Share of the displaced water that moves along with the body, C_A"),
-      Parameter("flow", &ResistiveDrag::flow, "m/s", Accepts::any, {-2, 2}, "Velocity of the water")};
+      Parameter("flow", &ResistiveDrag::flow, "m/s", Accepts::any, {-2, 2}, "Velocity of the water"),
+      Parameter("one_sided", &ResistiveDrag::one_sided,
+                "Water pushes only faces that move outward, by the velocity halfway to the mass behind them")};
 };
 
 // Water that drags each mass on its own (paper, II.E).

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -107,8 +108,12 @@ struct FaceForce {
 };
 // Equation 1 of the paper or resistive drag as the solvers compute them (sim/physics/environments.h), with positions
 // and velocities of the robot's masses. Drag and lift are 0 in an environment that does not act on faces.
+// `behind` = the face's element of masses_behind_faces(); without it, the face has water on both sides.
 FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,
-                     std::span<const Vec3> velocities);
+                     std::span<const Vec3> velocities, std::optional<std::uint16_t> behind = std::nullopt);
+// By face the mass that is behind it for one-sided water (sim/physics/face_backs.h); the face's corner a if there is
+// none, or if the environment has no such water.
+std::vector<std::uint16_t> masses_behind_faces(const Robot& robot, const Environment& environment);
 
 // The floor's force on one mass.
 struct FloorForce {
