@@ -114,9 +114,11 @@ std::vector<std::string> lost_of(const Environment& environment) {
   lose(fluid && has_ground(environment), "there is no floor under water there");
   lose(std::holds_alternative<FaceDrag>(environment.water),
        "water there has a normal drag alone, as resistive water has; it gets the drag coefficient");
-  if (const auto* water = std::get_if<ResistiveDrag>(&environment.water))
+  if (const auto* water = std::get_if<ResistiveDrag>(&environment.water)) {
     lose(water->tangential_coefficient != 0 || water->added_mass_coefficient != 0,
          "water there has no tangential drag, added mass and buoyancy");
+    lose(!water->one_sided, "water there is one-sided; it slows a rigid body as much");
+  }
   if (const auto* water = std::get_if<PointDrag>(&environment.water))
     lose(water->point_drag != 0, "water there acts on faces alone; the drag of masses is left out");
   const Vec3 flow = flow_of(environment);
@@ -140,11 +142,13 @@ VxaWorld vxa_world(const Environment& environment, double damping, std::optional
     world.settings.friction = as_written(plane->friction);
     world.settings.static_friction = as_written(plane->static_friction);
   }
+  // One-sided water slows a rigid body by its windward faces alone.
   const auto coefficient = [](float own, float density) { return as_written(own) * as_written(density) / 1000; };
   if (const auto* water = std::get_if<ResistiveDrag>(&environment.water))
-    world.settings.drag_coefficient = coefficient(water->normal_coefficient, water->density);
+    world.settings.drag_coefficient =
+        (water->one_sided ? 1 : 2) * coefficient(water->normal_coefficient, water->density);
   if (const auto* water = std::get_if<FaceDrag>(&environment.water))
-    world.settings.drag_coefficient = coefficient(water->drag_coefficient, water->density);
+    world.settings.drag_coefficient = 2 * coefficient(water->drag_coefficient, water->density);
   return world;
 }
 

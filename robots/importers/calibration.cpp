@@ -90,7 +90,7 @@ Calibration calibrate(const BeamModel& model, std::optional<double> time_scale) 
   found.contact_stiffness = squared_rate / squared_scale;
   // A voxel of 0.1 m in a thick body weighs 1 kg, as water of 1000 kg/m3. In thinner ones it has more masses.
   const double n = model.thickness, masses_per_voxel = n > 0 ? (n + 1) * (n + 1) / (n * n) : 1;
-  found.drag_coefficient = model.aggregate_drag / model.density * masses_per_voxel;
+  found.drag_coefficient = 2 * model.aggregate_drag / model.density * masses_per_voxel;
   found.largest_time_step = 2 / highest_frequency(stiffness) * scale;
   found.time_step = rounded_down(std::fmin(step_at(scale), longest_time_step));
   require_range(found, stiffness / squared_scale);

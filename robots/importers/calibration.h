@@ -41,7 +41,7 @@ struct Calibration {
   double gravity = 0;                // downwards [m/s2]
   double damping = 0;                // Configuration::damping [1/s]
   double contact_stiffness = 0;      // Land::contact_stiffness times the stiffness scale [N/m]
-  double drag_coefficient = 0;       // C_N of resistive water of 1000 kg/m3 [1]
+  double drag_coefficient = 0;       // C_N of one-sided resistive water of 1000 kg/m3 [1]
   double largest_time_step = 0;      // below which the force solver is stable [s]
   double time_step = 0;              // at most a third of it, and at most 1e-3: 1, 2 or 5 times a power of ten [s]
 };

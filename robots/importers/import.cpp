@@ -158,8 +158,9 @@ std::string to_toml(const ImportedSettings& settings, const ImportReport& report
       text += fmt::format("contact-distance = {:.6g}\n", settings.contact_distance);
     if (!settings.self_collision) text += "no-self-collision = true\n";
   } else if (settings.environment == "resistive") {
-    text += fmt::format("normal-coefficient = {:.9g}\ntangential-coefficient = 0\nadded-mass-coefficient = 0\n",
-                        settings.drag_coefficient);
+    text += fmt::format(
+        "normal-coefficient = {:.9g}\ntangential-coefficient = 0\nadded-mass-coefficient = 0\none-sided = true\n",
+        settings.drag_coefficient);
   } else {
     text += "point-drag = 0\n";
   }

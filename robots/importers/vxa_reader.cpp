@@ -125,8 +125,8 @@ class VxaReader {
          model_.in_fluid ? "environment resistive, without gravity as in evosoro" : "no water");
     model_.drag_coefficient = number_in(environment, "AggregateDragCoefficient").value_or(0);
     if (model_.in_fluid)
-      mark(environment, "AggregateDragCoefficient", approximated,
-           "C_N of resistive water, whose drag acts on leading and trailing faces; evosoro's on leading ones alone");
+      mark(environment, "AggregateDragCoefficient", mapped,
+           "C_N of one-sided resistive water, twice this over the density");
     else
       mark(environment, "AggregateDragCoefficient", ignored, "the file is not in water");
     read_temperature(environment.child("Thermal"));

@@ -75,10 +75,11 @@ Palette palette_of(const VoxelBody& body) {
 struct World {
   bool has_floor = false, in_fluid = false;
   bool self_collision = true;
-  double gravity = 0;                        // along z [m/s2]
-  double friction = 0.8;                     // of all materials
-  double static_friction = 0;                // 0 = that of motion
-  std::optional<double> normal_coefficient;  // C_N of the water, times its density over 1000 kg/m3; none = usual_drag
+  double gravity = 0;          // along z [m/s2]
+  double friction = 0.8;       // of all materials
+  double static_friction = 0;  // 0 = that of motion
+  // C_N of one-sided water, times its density over 1000 kg/m3; none = usual_drag
+  std::optional<double> normal_coefficient;
   double stiffness_scale = 1;
   double damping = 0;  // [1/s]
   std::optional<double> seconds, settle;
@@ -144,7 +145,7 @@ class VxaWriter {
   double aggregate_drag() const {
     const auto voxels =
         static_cast<double>(std::ranges::count_if(body_.cells, [](std::uint32_t cell) { return cell != 0; }));
-    return *world_.normal_coefficient * density * voxels / mass_;
+    return *world_.normal_coefficient / 2 * density * voxels / mass_;
   }
 
   void write_world() {

@@ -33,7 +33,7 @@ struct ImportedSettings {
   bool self_collision = true;             // land only
   double contact_stiffness = 100;         // land only, times the stiffness scale [N/m]
   double contact_distance = 0.5;          // land only, in shortest rest lengths of the robot
-  double drag_coefficient = 0;            // C_N of resistive water; resistive only
+  double drag_coefficient = 0;            // C_N of one-sided resistive water; resistive only
   double dt = 1e-3;                       // time step that is stable for the stiffest robot [s]
   double damping = 0;                     // [1/s]
   std::optional<double> seconds, settle;  // how long the file's program simulates, and what it waits before [s]

@@ -15,8 +15,10 @@
 namespace mercury::test {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 class ImportCommand : public FolderTest {
  protected:
@@ -158,6 +160,28 @@ TEST_F(ImportCommand, ExportedVoxelRobotsComeBack) {
   succeeded(mercury({"import", path("eel.vxa"), "-o", path("back")}));
   const Robot there = load_robot(path("eel.json")), back = load_robot(path("back/eel.json"));
   EXPECT_EQ(voxel_grid_of(back)->cells, largest_body(*voxel_grid_of(there)).cells);
+}
+
+// Water there pushes outward faces alone, so a rigid body needs twice the coefficient for the drag that it has here on
+// two sides.
+TEST_F(ImportCommand, ExportedWaterComesBackOneSided) {
+  succeeded(mercury({"new", "voxel", "--seed", "3", "-o", path("eel.json")}));
+  const auto back_in = [&](const Arguments& water) {
+    const Arguments arguments{"export",    path("eel.json"),
+                              "-o",        path("eel.vxa"),
+                              "--force",   "--environment",
+                              "resistive", "--normal-coefficient",
+                              "0.7",       "--tangential-coefficient",
+                              "0",         "--added-mass-coefficient",
+                              "0"};
+    const Outcome outcome = succeeded(mercury(joined(arguments, water)));
+    succeeded(mercury({"import", path("eel.vxa"), "-o", path("back"), "--force"}));
+    return outcome.messages + read(path("back/eel.toml"));
+  };
+  EXPECT_THAT(back_in({"--one-sided"}), AllOf(HasSubstr("normal-coefficient = 0.7\n"), HasSubstr("one-sided = true"),
+                                              Not(HasSubstr("water there"))));
+  EXPECT_THAT(back_in({}), AllOf(HasSubstr("normal-coefficient = 1.4\n"), HasSubstr("one-sided = true"),
+                                 HasSubstr("water there is one-sided")));
 }
 
 }  // namespace

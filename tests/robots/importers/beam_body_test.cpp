@@ -252,8 +252,9 @@ TEST(BeamBody, WalkersStandOnTheirMiddlesAndSwimmersHaveNone) {
   ImportedSettings touching = walker.settings;
   touching.self_collision = true;
   EXPECT_NE(to_toml(touching, walker.report).find("contact-distance = 0.71"), std::string::npos);
-  // Density 1000 kg/m3 and 1 kg per voxel: C_N = c / rho.
-  EXPECT_NEAR(swimmer.settings.drag_coefficient, 0.75, 1e-9);
+  // Density 1000 kg/m3 and 1 kg per voxel: C_N = 2 c / rho, of water that pushes outward faces alone.
+  EXPECT_NEAR(swimmer.settings.drag_coefficient, 1.5, 1e-9);
+  EXPECT_NE(to_toml(swimmer.settings, swimmer.report).find("one-sided = true"), std::string::npos);
 }
 
 // A beam pulls with k (|d| - L + tau d(|d| - L)/dt), a spring with k (|d| - L' + tau d|d|/dt): L' = L + tau dL/dt.

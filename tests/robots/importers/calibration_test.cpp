@@ -157,8 +157,8 @@ TEST_P(CalibratedBar, IsShortenedByItsWeightAsItsBeams) {
   }
 }
 
-// evosoro: -c A v^2 on the face that goes ahead, on a mass of density edge^3 per voxel. Here both ends of the bar feel
-// half of it, and there is a layer of masses more.
+// evosoro: -c A v^2 on the face that goes ahead, on a mass of density edge^3 per voxel. Here there is a layer of masses
+// more.
 TEST_P(CalibratedBar, IsSlowedByWaterAsItsBeams) {
   constexpr int length = 24;
   const BeamModel model{.elastic_modulus = 1e6, .density = 1200, .edge = 0.05, .aggregate_drag = 750};
@@ -166,7 +166,8 @@ TEST_P(CalibratedBar, IsSlowedByWaterAsItsBeams) {
   const Robot robot = bar(exact_thickness, length, model.elastic_modulus * calibration.stiffness_per_modulus);
   const ResistiveDrag water{.normal_coefficient = static_cast<float>(calibration.drag_coefficient),
                             .tangential_coefficient = 0,
-                            .added_mass_coefficient = 0};
+                            .added_mass_coefficient = 0,
+                            .one_sided = true};
   const double dt = calibration.time_step, speed = 2;  // [m/s]
   Simulation simulation({.dt = dt, .damping = 0, .environment = {.water = water}, .device = device()}, {&robot, 1});
   simulation.set_state(0, robot.masses, std::vector<Vec3>(robot.masses.size(), {0, 0, static_cast<float>(speed)}));

@@ -201,9 +201,9 @@ TEST(Vxa, WorldsBecomeEnvironments) {
   const Import swimmer = import_of(water);
   EXPECT_EQ(swimmer.settings.environment, "resistive");
   EXPECT_EQ(swimmer.settings.gravity, 0);
-  // 750 kg/m3 of drag at 1000 kg/m3 is 0.75 at the density of the robot: 16 masses of 1 kg in three voxels, where the
-  // water weighs 1 kg per voxel.
-  EXPECT_NEAR(swimmer.settings.drag_coefficient, 0.75 * 16 / 3, 1e-9);
+  // 750 kg/m3 of drag at 1000 kg/m3 is half of 1.5 at the density of the robot: 16 masses of 1 kg in three voxels,
+  // where the water weighs 1 kg per voxel.
+  EXPECT_NEAR(swimmer.settings.drag_coefficient, 1.5 * 16 / 3, 1e-9);
   VxaParts nothing;
   nothing.gravity = "<GravEnabled>0</GravEnabled><FloorEnabled>0</FloorEnabled>";
   EXPECT_EQ(import_of(nothing).settings.environment, "ocean-simple");
