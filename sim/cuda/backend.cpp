@@ -48,7 +48,7 @@ std::size_t CudaBackend::robots_at_once() const {
       rounds += static_cast<double>(robots->size()) /
                 (robots->launch_in_parts()
                      ? robots_in_flight(configuration_.solver, model_in_parts(*robots), *robots->launch_in_parts())
-                     : robots_in_flight(configuration_.solver, model_for(*robots), robots->launch()));
+                     : robots_in_flight(configuration_.solver, model_for(*robots), robots->launch_of_many()));
   return rounds > 0 ? static_cast<std::size_t>(std::llround(static_cast<double>(places_.size()) / rounds)) : 0;
 }
 

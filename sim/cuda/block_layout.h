@@ -27,7 +27,9 @@
 // 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory.
 //    In the last case the blocks of a cluster step the robot in parts, if they can (parts.h); a block then has one
 //    part.
-// 4. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
+// 4. Robots of a block that share a table wait for each other at each barrier, since one warp writes it for all. With
+//    tables of their own, and without contacts, they are apart: each waits for its own warps alone, by a named barrier.
+// 5. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
 //    result.
 #pragma once
 

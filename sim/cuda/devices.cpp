@@ -17,7 +17,6 @@ ChipFit chip_fit(const Robot& robot, const Configuration& configuration, int dev
   if (device < 0 || device >= cuda_device_count())
     throw DeviceError("CUDA device " + std::to_string(device) + " is not there");
   check(cudaSetDevice(device), "choosing the device");
-  constexpr std::uint32_t many_robots = 1u << 20;
   BatchView batch{};
   batch.robot_count = many_robots;
   batch.tile_stride = tiles_for(robot.masses.size());

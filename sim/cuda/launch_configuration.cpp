@@ -2,9 +2,12 @@
 #include "sim/cuda/launch_configuration.h"
 
 #include <algorithm>
+#include <type_traits>
+#include <variant>
 
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/device_limits.h"
+#include "sim/physics/environments.h"
 
 namespace mercury::cuda {
 namespace {
@@ -66,13 +69,30 @@ bool fit(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fie
   return true;
 }
 
-// Small robots: several per block, as long as at least two blocks fill the multiprocessor's warps.
+// Such kernels have no robots apart (step.cu). Where only masses differ from the paper's, this is not seen here, and
+// robots wait for each other all the same.
+bool kernel_has_contacts(const Environment& environment, bool viscous) {
+  return std::visit([](const auto& model) { return std::decay_t<decltype(model)>::has_contacts; },
+                    solver_model_of(environment, viscous));
+}
+
+// Small robots: several per block. Two blocks fill the multiprocessor's warps, so that one computes while the other
+// waits at a barrier; robots that are apart fill them in one where two would leave room for another robot.
 bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
-                 const BrainBytes& brain) {
+                 std::size_t batch_size, const BrainBytes& brain) {
   share_tiles(launch, robots.tile_stride, even_warps(robots.tile_stride, resident_warps / 2));
-  for (std::uint32_t n = std::min(resident_warps / 2 / launch.warps_per_robot, robots.robot_count); n > 0; --n) {
+  const std::uint32_t warps = launch.warps_per_robot, most = resident_warps / warps;
+  const bool can_be_apart = launch.apart;
+  const std::uint32_t blocks = can_be_apart && most % 2 != 0 ? 1u : 2u;
+  // All multiprocessors have as many robots in each round, and enough to fill a common table together.
+  const std::size_t at_once = std::size_t{most / blocks * blocks} * limits.multiprocessors;
+  const std::size_t rounds = (batch_size + at_once - 1) / at_once, places = rounds * blocks * limits.multiprocessors;
+  auto n = static_cast<std::uint32_t>((batch_size + places - 1) / places);
+  if (launch.shared_table) n = std::max(n, divide_up(launch.table_chunks, warps));
+  for (n = std::min({n, most / blocks, robots.robot_count}); n > 0; --n) {
     launch.robots_per_block = n;
-    if (fit(launch, robots, fields, limits, resident_warps / (n * launch.warps_per_robot), brain)) return true;
+    launch.apart = can_be_apart && n > 1;
+    if (fit(launch, robots, fields, limits, most / n, brain)) return true;
   }
   return false;
 }
@@ -82,6 +102,7 @@ bool fit_one(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t
              const BrainBytes& brain) {
   const std::uint32_t tiles = robots.tile_stride;
   launch.robots_per_block = 1;
+  launch.apart = false;
   share_tiles(launch, tiles, divide_up(tiles, divide_up(tiles, resident_warps)));
   return fit(launch, robots, fields, limits, 1, brain);
 }
@@ -100,9 +121,11 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   launch.record_words = robots.record_words;
   launch.fits_cache = robots.robot_count == batch_size;
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
+  launch.apart = !same_materials && !kernel_has_contacts(configuration.environment, viscous);
   const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip); };
   // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
-  if (batch_size > limits.multiprocessors && fit_several(launch, robots, fields(), limits, brain)) return launch;
+  if (batch_size > limits.multiprocessors && fit_several(launch, robots, fields(), limits, batch_size, brain))
+    return launch;
   for (const bool contacts_on_chip : {true, false})
     for (const bool valence_on_chip : {true, false}) {
       launch.contacts_on_chip = contacts_on_chip;

@@ -28,6 +28,7 @@ struct LaunchConfiguration {
   std::uint32_t robots_per_block = 1;
   std::uint32_t warps_per_robot = 1;                   // or per part of one
   bool even_tiles = true;                              // all warps have as many tiles, see first_tile_of()
+  bool apart = false;                                  // robots of a block may go on apart (block_layout.h)
   std::uint32_t parts = 1;                             // of a robot, each in a block of its own (parts.h)
   std::uint32_t table_copy_bits = 0;                   // 2^this many copies of the material table, at most 16
   std::uint32_t table_chunks = max_materials / lanes;  // of 32 materials in a table
@@ -47,8 +48,7 @@ struct LaunchConfiguration {
   bool fits_cache = false;  // whether shared_percent may be less
 };
 
-// The warps that the kernel's registers allow on a multiprocessor. They are best split into two blocks, so that one
-// computes while the other waits at a barrier.
+// The warps that the kernel's registers allow on a multiprocessor.
 inline constexpr std::uint32_t resident_warps = 28;
 // Tiles that a warp computes in turn: enough to hide the cost of a barrier, few enough to share the work evenly.
 inline constexpr std::uint32_t min_tiles_per_warp = 3;
@@ -75,6 +75,9 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
                                                 bool same_materials, bool viscous, std::size_t batch_size,
                                                 std::uint32_t table_chunks = max_materials / lanes,
                                                 const BrainBytes& brain = {});
+
+// More than any device steps at once.
+inline constexpr std::uint32_t many_robots = 1u << 20;
 
 // Whether robots that fit on one multiprocessor, as `whole` steps them, are faster in parts (docs/experiments.md):
 // large ones, if the batch leaves multiprocessors idle.

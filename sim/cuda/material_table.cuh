@@ -37,11 +37,10 @@ class MaterialTable {
       float value = static_cast<float>(stiffness);
       if constexpr (solver == Solver::xpbd)
         value = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
-      spread(chunk, coefficient, value);
       // A muscle of frequency 0, as a brain drives it, keeps its length.
       const std::uint32_t moving = __ballot_sync(0xffffffffu, swing.amplitude != 0 && phase.per_step != 0);
       if (lane_ == 0) moving_[chunk] = moving;
-      spread_length_factors(arguments, chunk, swing, phase, 0);
+      spread(chunk, {value, factor_at(arguments, swing, phase, 0)});
     }
     __syncwarp();
   }
@@ -64,7 +63,7 @@ class MaterialTable {
     for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
       if (!(which >> chunk & 1)) continue;
       const std::uint32_t id = chunk * lanes + lane_;
-      spread_length_factors(arguments, chunk, swings_[id], phases_[id], step);
+      spread(chunk, &Parameters::length_factor, factor_at(arguments, swings_[id], phases_[id], step));
     }
   }
 
@@ -102,22 +101,33 @@ class MaterialTable {
       return &Parameters::compliance;
   }();
 
-  __device__ void spread_length_factors(const StepArguments& arguments, std::uint32_t chunk, MuscleSwing swing,
-                                        MusclePhase phase, std::uint32_t step) {
+  __device__ static float factor_at(const StepArguments& arguments, MuscleSwing swing, MusclePhase phase,
+                                    std::uint32_t step) {
     const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
-    const float sine = sine_of_phase(phase_at(phase, now));
-    spread(chunk, &Parameters::length_factor, length_factor(swing.amplitude, sine, swing.highest_sine));
+    return length_factor(swing.amplitude, sine_of_phase(phase_at(phase, now)), swing.highest_sine);
   }
 
-  // Writes each lane's value to all copies of its material. In a turn the warp writes 32 consecutive entries, which
-  // belong to 32 / copies materials.
+  // Writes each lane's value, or both, to all copies of its material.
   __device__ void spread(std::uint32_t chunk, Parameter parameter, float value) {
+    for_each_copy(
+        chunk, [&](Parameters& to, std::uint32_t source) { to.*parameter = __shfl_sync(0xffffffffu, value, source); });
+  }
+  __device__ void spread(std::uint32_t chunk, Parameters both) {
+    for_each_copy(chunk, [&](Parameters& to, std::uint32_t source) {
+      const float first = __shfl_sync(0xffffffffu, both.*coefficient, source);
+      to = {first, __shfl_sync(0xffffffffu, both.length_factor, source)};
+    });
+  }
+
+  // Calls write(entry, lane of its material). In a turn the warp writes 32 consecutive entries, which belong to
+  // 32 / copies materials.
+  template <class Write>
+  __device__ void for_each_copy(std::uint32_t chunk, const Write& write) {
     Parameters* to = table_ + chunk * lanes * copies_ + lane_;
     const std::uint32_t sources_per_turn = lanes >> copy_bits_;
     std::uint32_t source = lane_ >> copy_bits_;
 #pragma unroll 4
-    for (std::uint32_t turn = 0; turn < copies_; ++turn, source += sources_per_turn, to += lanes)
-      to->*parameter = __shfl_sync(0xffffffffu, value, source);
+    for (std::uint32_t turn = 0; turn < copies_; ++turn, source += sources_per_turn, to += lanes) write(*to, source);
   }
 
   const std::uint32_t warp_, warps_, lane_, chunks_, copies_, copy_bits_;

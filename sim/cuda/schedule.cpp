@@ -13,7 +13,7 @@ namespace {
 // row.
 //
 // The springs of a tile are the edges of a bipartite graph: on one side the 32 lanes of the owners, on the other the 32
-// banks of the partners.
+// banks of the partners. A mass with two banks (spring_owners.h) is two of them.
 //
 //   lanes      0    1    2   ...  31          spring: owner's lane -> partner's bank
 //              | \  |  / |         |          edges that meet at a lane: the lane computes one spring per row
@@ -40,24 +40,26 @@ std::uint32_t words_of_colors(std::span<const std::uint32_t> row_start) {
 template <bool one_word>
 class EdgeColoring {
  public:
-  EdgeColoring(std::span<const OwnedSpring> springs, std::span<const std::uint32_t> row_start)
-      : springs_(springs), row_start_(row_start), words_(one_word ? 1 : words_of_colors(row_start)),
-        entries_(std::size_t{row_start.back()} * lanes), lane_at_bank_(entries_.size(), no_lane) {
+  EdgeColoring(const OwnedSprings& owned, std::span<const std::uint32_t> row_start)
+      : springs_(owned.springs), double_bank_(owned.double_bank), row_start_(row_start),
+        words_(one_word ? 1 : words_of_colors(row_start)), entries_(std::size_t{row_start.back()} * lanes),
+        lane_at_bank_(std::size_t{row_start.back()} * banks, no_lane) {
     const auto tiles = static_cast<std::uint32_t>(row_start.size() - 1);
-    free_.resize(std::size_t{tiles} * 2 * lanes * words_);
+    free_.resize(std::size_t{tiles} * tile_counters * words_);
     for (std::uint32_t tile = 0; tile < tiles; ++tile)
-      for (std::uint32_t vertex = 0; vertex < 2 * lanes; ++vertex)
-        free_all(tile * 2 * lanes + vertex, row_start[tile + 1] - row_start[tile]);
+      for (std::uint32_t vertex = 0; vertex < tile_counters; ++vertex)
+        free_all(tile * tile_counters + vertex, row_start[tile + 1] - row_start[tile]);
     // Neighbors often share a lane, and would wait for each other. So the halves take turns.
-    const auto half = static_cast<std::uint32_t>(springs.size() / 2);
+    const auto half = static_cast<std::uint32_t>(springs_.size() / 2);
     for (std::uint32_t i = 0; i < half; ++i) color(i), color(half + i);
-    if (springs.size() % 2 != 0) color(2 * half);
+    if (springs_.size() % 2 != 0) color(2 * half);
   }
 
   std::vector<ScheduledSpring> take() { return std::move(entries_); }
 
  private:
   static constexpr std::uint8_t no_lane = 0xff;
+  static constexpr std::uint32_t banks = tile_counters - lanes;
   static constexpr std::uint32_t no_color = 0xffffffffu;
 
   std::uint32_t words() const { return one_word ? 1 : words_; }
@@ -80,52 +82,55 @@ class EdgeColoring {
 
   void color(std::uint32_t i) {
     const OwnedSpring s = springs_[i];
-    const std::uint32_t tile = s.owner / lanes, first_lane = tile * 2 * lanes, first_bank = first_lane + lanes;
-    const std::uint32_t lane = s.owner % lanes, bank = s.partner % lanes;
+    const std::uint32_t tile = s.owner / lanes, first_lane = tile * tile_counters, first_bank = first_lane + lanes;
+    const std::uint32_t lane = s.owner % lanes, bank = double_bank_.bank_of(s);
     const std::uint32_t c = common_color(first_lane + lane, first_bank + bank);
     if (c == no_color) return exchange_path(tile, lane, {i, s.partner});
     flip(first_lane + lane, c);
     flip(first_bank + bank, c);
-    const std::size_t row = (row_start_[tile] + c) * std::size_t{lanes};
-    entries_[row + lane] = {i, s.partner};
-    lane_at_bank_[row + bank] = static_cast<std::uint8_t>(lane);
+    const std::size_t row = row_start_[tile] + c;
+    entries_[row * lanes + lane] = {i, s.partner};
+    lane_at_bank_[row * banks + bank] = static_cast<std::uint8_t>(lane);
   }
 
   // Gives an edge a color p that is free at its lane. Along the path, each edge that has p gives way and takes q, and
   // each edge that has q gives way in turn and takes p.
   void exchange_path(std::uint32_t tile, std::uint32_t lane, ScheduledSpring edge) {
-    const std::uint32_t first_lane = tile * 2 * lanes, first_bank = first_lane + lanes;
-    std::uint32_t bank = edge.partner % lanes;
+    const std::uint32_t first_lane = tile * tile_counters, first_bank = first_lane + lanes;
+    const auto bank_of = [&] {
+      return double_bank_.bank_of({static_cast<std::uint16_t>(tile * lanes + lane), edge.partner});
+    };
+    std::uint32_t bank = bank_of();
     const std::uint32_t p = common_color(first_lane + lane, first_lane + lane);
     const std::uint32_t q = common_color(first_bank + bank, first_bank + bank);
-    const std::size_t row_p = (row_start_[tile] + p) * std::size_t{lanes};
-    const std::size_t row_q = (row_start_[tile] + q) * std::size_t{lanes};
+    const std::size_t row_p = row_start_[tile] + p, row_q = row_start_[tile] + q;
     flip(first_lane + lane, p);
     flip(first_bank + bank, q);
     while (true) {  // `edge` takes p at its lane, where p is free
-      entries_[row_p + lane] = edge;
-      const std::uint8_t other = std::exchange(lane_at_bank_[row_p + bank], static_cast<std::uint8_t>(lane));
+      entries_[row_p * lanes + lane] = edge;
+      const std::uint8_t other = std::exchange(lane_at_bank_[row_p * banks + bank], static_cast<std::uint8_t>(lane));
       if (other == no_lane) {  // the bank had the edge by q, and has it by p now
         flip(first_bank + bank, p);
         flip(first_bank + bank, q);
-        lane_at_bank_[row_q + bank] = no_lane;
+        lane_at_bank_[row_q * banks + bank] = no_lane;
         return;
       }
       // At the bank q is free now, at the lane of the other edge p.
-      lane_at_bank_[row_q + bank] = other;
+      lane_at_bank_[row_q * banks + bank] = other;
       lane = other;
-      edge = std::exchange(entries_[row_q + lane], entries_[row_p + lane]);
+      edge = std::exchange(entries_[row_q * lanes + lane], entries_[row_p * lanes + lane]);
       if (edge.spring == padding) {
-        entries_[row_p + lane] = {};
+        entries_[row_p * lanes + lane] = {};
         flip(first_lane + lane, p);
         flip(first_lane + lane, q);
         return;
       }
-      bank = edge.partner % lanes;
+      bank = bank_of();
     }
   }
 
   const std::span<const OwnedSpring> springs_;
+  const DoubleBank double_bank_;
   const std::span<const std::uint32_t> row_start_;
   const std::uint32_t words_;               // of a set of colors
   std::vector<std::uint64_t> free_;         // [tile][lane or bank][word], a bit per color
@@ -135,10 +140,9 @@ class EdgeColoring {
 
 // Rows of tile t are [row_start[t], row_start[t + 1]): as choose_owners() says. Returns the
 // entries of all rows, 32 per row.
-std::vector<ScheduledSpring> color_springs(std::span<const OwnedSpring> springs,
-                                           std::span<const std::uint32_t> row_start) {
-  if (words_of_colors(row_start) == 1) return EdgeColoring<true>(springs, row_start).take();
-  return EdgeColoring<false>(springs, row_start).take();
+std::vector<ScheduledSpring> color_springs(const OwnedSprings& owned, std::span<const std::uint32_t> row_start) {
+  if (words_of_colors(row_start) == 1) return EdgeColoring<true>(owned, row_start).take();
+  return EdgeColoring<false>(owned, row_start).take();
 }
 
 // Calls visit(index) for each bit that is set.
@@ -218,7 +222,7 @@ Schedule schedule_springs(std::size_t masses, std::vector<OwnedSpring> springs, 
   Schedule schedule;
   schedule.row_start.push_back(0);
   for (const std::uint32_t rows : owned.rows) schedule.row_start.push_back(schedule.row_start.back() + rows);
-  schedule.entries = color_springs(owned.springs, schedule.row_start);
+  schedule.entries = color_springs(owned, schedule.row_start);
   for (std::uint32_t tile = 0; tile < tiles_for(masses); ++tile) {
     PaddingPartners partners(owned, masses, tile);
     for (std::uint32_t row = schedule.row_start[tile]; row < schedule.row_start[tile + 1]; ++row)

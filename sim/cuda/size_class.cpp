@@ -235,8 +235,13 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;
   const bool viscous =
       std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.highest_length_rate > 0; });
-  launch_ =
-      choose_launch_configuration(configuration, view(), same_materials, viscous, batch_size, table_chunks_, brain);
+  const auto choose = [&](const BatchView& robots, std::size_t batch) {
+    return choose_launch_configuration(configuration, robots, same_materials, viscous, batch, table_chunks_, brain);
+  };
+  launch_ = choose(view(), batch_size);
+  BatchView many = view();
+  many.robot_count = many_robots;
+  launch_of_many_ = choose(many, batch_size + many_robots - size());
   const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(address_fields_, launch_.on_chip ? fields : 0);
   address_masses(0, old_fields, address_fields_);

@@ -79,6 +79,8 @@ class SizeClass {
   void choose_launch(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain = {});
   // Of whole robots.
   const LaunchConfiguration& launch() const { return launch_; }
+  // If the class had more robots than the device steps at once.
+  const LaunchConfiguration& launch_of_many() const { return launch_of_many_; }
   // If clusters step the robots in parts: those, and their launch. Reports are made of whole robots, without a step.
   const std::optional<LaunchConfiguration>& launch_in_parts() const { return launch_in_parts_; }
   BatchView view_of_parts() const { return parts_.view(view()); }
@@ -159,7 +161,7 @@ class SizeClass {
   std::vector<std::shared_ptr<const SlotOrder>> slot_tables_;
   std::vector<std::uint64_t> first_mass_;  // as in set_first_masses()
   std::vector<Material> materials_;        // [place][max_materials]
-  LaunchConfiguration launch_;
+  LaunchConfiguration launch_, launch_of_many_;
   std::optional<LaunchConfiguration> launch_in_parts_;
   DeviceParts parts_;
   bool parts_stale_ = true;

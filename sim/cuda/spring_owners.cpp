@@ -9,9 +9,7 @@
 namespace mercury::cuda {
 namespace {
 
-// The counters that a spring loads.
 std::uint32_t lane_counter(OwnedSpring s) { return cuda::lane_counter(s.owner); }
-std::uint32_t bank_counter(OwnedSpring s) { return s.owner / lanes * tile_counters + lanes + s.partner % lanes; }
 
 OwnedSpring exchanged(OwnedSpring s) { return {s.partner, s.owner}; }
 // Without a branch, which would often be mispredicted.
@@ -25,6 +23,7 @@ class OwnerSearch {
   OwnerSearch(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts)
       : springs_(std::move(springs)), tiles_(tiles_for(masses)), partly_empty_(masses % lanes != 0 && tiles_ > 1),
         load_((tiles_ + tiles_for(ghosts)) * tile_counters) {
+    if (load_.size() == tile_counters) find_double_bank();
     std::fill(load_.begin() + tiles_ * tile_counters, load_.end(), too_busy);
     if (partly_empty_) add_to_last_lanes(head_start);
     choose_first();
@@ -37,7 +36,7 @@ class OwnerSearch {
   }
 
   OwnedSprings take() {
-    return {std::move(springs_), std::move(limit_), std::move(first_candidate_), std::move(candidates_)};
+    return {std::move(springs_), double_bank_, std::move(limit_), std::move(first_candidate_), std::move(candidates_)};
   }
 
  private:
@@ -51,6 +50,16 @@ class OwnerSearch {
   struct Link {
     std::uint32_t counter, spring, before;
   };
+
+  // Of the mass that most springs join, if all rows but these few would be for its springs.
+  void find_double_bank() {
+    std::array<std::uint32_t, lanes> valence{};
+    for (const OwnedSpring s : springs_) ++valence[s.owner], ++valence[s.partner];
+    const auto most = std::ranges::max_element(valence);
+    if (*most / 2 > tiles_for(springs_.size())) double_bank_.slot = static_cast<std::uint32_t>(most - valence.begin());
+  }
+
+  std::uint32_t bank_counter(OwnedSpring s) const { return double_bank_.bank_counter(s); }
 
   void add_to_last_lanes(int springs) {
     for (std::uint32_t lane = 0; lane < lanes; ++lane) load_[(tiles_ - 1) * tile_counters + lane] += springs;
@@ -104,7 +113,7 @@ class OwnerSearch {
   // By counter the springs that load it, or would if their other mass owned them.
   void list_candidates() {
     first_candidate_.assign(load_.size() + 1, 0);
-    const auto for_each_counter = [](OwnedSpring s, auto visit) {
+    const auto for_each_counter = [this](OwnedSpring s, auto visit) {
       visit(lane_counter(s)), visit(bank_counter(s));
       visit(lane_counter(exchanged(s))), visit(bank_counter(exchanged(s)));
     };
@@ -198,7 +207,7 @@ class OwnerSearch {
       const std::uint32_t from = links_[at].counter;
       const bool is_lane = from % tile_counters < lanes;
       const auto load_lane = [](OwnedSpring s) { return lane_counter(s); };
-      const auto load_bank = [](OwnedSpring s) { return bank_counter(s); };
+      const auto load_bank = [this](OwnedSpring s) { return bank_counter(s); };
       if (is_lane ? extend(at, found, load_lane) : extend(at, found, load_bank)) return true;
     }
     return false;
@@ -252,8 +261,9 @@ class OwnerSearch {
   }
 
   std::vector<OwnedSpring> springs_;
-  std::uint32_t tiles_;                                      // without those of ghosts
-  bool partly_empty_;                                        // the last tile
+  std::uint32_t tiles_;  // without those of ghosts
+  bool partly_empty_;    // the last tile
+  DoubleBank double_bank_;
   std::vector<int> load_;                                    // [counter]
   std::vector<std::uint32_t> limit_;                         // [tile]
   std::vector<std::uint32_t> first_candidate_, candidates_;  // OwnedSprings

@@ -16,7 +16,10 @@
 //    none, the tile keeps its limit, and is done.
 // 3. A row of the last tile has fewer springs than one of another tile, if that tile is partly empty. So its masses own
 //    as few springs as possible: the search prefers their partners, and lowers the limit of the last tile first.
-// 4. A warp computes four rows at a time (rows_at_once). So limits become multiples of four where the sum of all limits
+// 4. A robot of one tile may have a mass that joins to nearly all others, as the middle of 2 x 2 x 2 voxels does: all
+//    rows are waiting for it. Its bank counts as two, one for owners in even and one for owners in odd lanes. So two
+//    lanes of a row may have it as their partner: they read it in one pass, and add to its sum in two.
+// 5. A warp computes four rows at a time (rows_at_once). So limits become multiples of four where the sum of all limits
 //    allows it, by further chains.
 #pragma once
 
@@ -32,13 +35,25 @@ struct OwnedSpring {
   std::uint16_t owner, partner;  // slots
 };
 
-// Counters of a tile: its 32 lanes, then its 32 banks.
-inline constexpr std::uint32_t tile_counters = 2 * lanes;
+// Counters of a tile: its 32 lanes, its 32 banks, the second bank of a mass that has two.
+inline constexpr std::uint32_t tile_counters = 2 * lanes + 1;
 constexpr std::uint32_t lane_counter(std::uint32_t owner) { return owner / lanes * tile_counters + owner % lanes; }
+
+// The slot whose bank counts as two, or none.
+struct DoubleBank {
+  static constexpr std::uint32_t none = 0xffffffffu;
+  std::uint32_t slot = none;
+
+  std::uint32_t bank_of(OwnedSpring s) const {
+    return s.partner == slot && s.owner % 2 != 0 ? lanes : s.partner % lanes;
+  }
+  std::uint32_t bank_counter(OwnedSpring s) const { return s.owner / lanes * tile_counters + lanes + bank_of(s); }
+};
 
 struct OwnedSprings {
   std::vector<OwnedSpring> springs;  // by their number
-  std::vector<std::uint32_t> rows;   // by tile: as many as its busiest lane or bank has springs, or up to three more
+  DoubleBank double_bank;
+  std::vector<std::uint32_t> rows;  // by tile: as many as its busiest lane or bank has springs, or up to three more
   // The numbers of the springs that load counter c, or would if their other mass owned them:
   // candidates[first_candidate[c] .. first_candidate[c + 1]).
   std::vector<std::uint32_t> first_candidate, candidates;

@@ -80,6 +80,8 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   __syncthreads();
   std::uint32_t end = arguments.steps;
   for (std::uint32_t i = 0; i < arguments.launch.robots_per_block; ++i) end = min(end, part.context.next_thought[i]);
+  // Before a robot that is apart goes on to its next thought, all have read when that will be.
+  if (arguments.launch.apart) __syncthreads();
   return end;
 }
 
@@ -132,19 +134,19 @@ __global__ void __maxnreg__(72)
       stepper.add_environment(step);
       if constexpr (solver == Solver::xpbd) {
         if (EnvironmentModel::has_faces || has_contacts || arguments.batch.perturbation_count > 0)
-          robot_barrier<Memory>();
+          robot_barrier<Memory, has_contacts>(launch);
         stepper.predict(step);
         stepper.export_state();
-        robot_barrier<Memory>();
+        robot_barrier<Memory, has_contacts>(launch);
       } else if (stepper.sums_apart()) {
-        robot_barrier<Memory>();
+        robot_barrier<Memory, has_contacts>(launch);
         stepper.accelerate(step);
         stepper.export_state();
-        robot_barrier<Memory>();
+        robot_barrier<Memory, has_contacts>(launch);
       }
       stepper.add_springs(step);
       stepper.prefetch_end();
-      barrier_after_springs<Memory>();
+      barrier_after_springs<Memory, has_contacts>(launch);
       stepper.end(step);
       stepper.export_state();
       stepper.prefetch_environment();
@@ -152,7 +154,7 @@ __global__ void __maxnreg__(72)
       if constexpr (has_contacts)
         list_contacts = stepper.contacts_stale(step);
       else
-        robot_barrier<Memory>();
+        robot_barrier<Memory, has_contacts>(launch);
     }
   }
   Part part(arguments, model);

@@ -25,12 +25,6 @@
 
 namespace mercury::cuda {
 
-// Waits for the warps of one robot of the block, by its number there. Barrier 0 is __syncthreads().
-__device__ inline void wait_for_robot(std::uint32_t number, std::uint32_t warps) {
-  if (warps == 1) return __syncwarp();
-  asm volatile("bar.sync %0, %1;" ::"r"(1 + number), "r"(warps * lanes) : "memory");
-}
-
 // Sums of 2, 4, 8 or 16 values over the lanes of a warp. Lanes exchange halves of what they have, so that lanes 2 i and
 // 2 i + 1 have the sum of the i-th of 16 values in the end. (A loop over halves put the values into local memory.)
 template <unsigned count>

@@ -15,6 +15,19 @@ __device__ inline std::uint32_t shared_address(const void* pointer) {
   return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
 }
 
+// Waits for the warps of one robot of the block, by its number there. Barrier 0 is __syncthreads().
+__device__ inline void wait_for_robot(std::uint32_t number, std::uint32_t warps) {
+  if (warps == 1) return __syncwarp();
+  asm volatile("bar.sync %0, %1;" ::"r"(1 + number), "r"(warps * lanes) : "memory");
+}
+// The number of this thread's robot in its block. It takes no register from the steps, and is computed where robots
+// wait apart.
+__device__ inline std::uint32_t number_in_block(const LaunchConfiguration& launch) {
+  std::uint32_t thread = threadIdx.x;
+  asm volatile("" : "+r"(thread));
+  return thread / (launch.warps_per_robot * lanes);
+}
+
 // Of all threads of the block, or of those of all parts of a robot.
 template <class Memory>
 __device__ void robot_barrier() {
@@ -26,11 +39,20 @@ __device__ void robot_barrier() {
 #endif
   __syncthreads();
 }
+// The same, or of the threads of each robot of the block if these are apart. In kernels with contacts they never are:
+// it would take registers from their steps.
+template <class Memory, bool has_contacts>
+__device__ void robot_barrier(const LaunchConfiguration& launch) {
+  if (!has_contacts && !Memory::in_parts && __builtin_expect(launch.apart, 0))
+    wait_for_robot(number_in_block(launch), launch.warps_per_robot);
+  else
+    robot_barrier<Memory>();
+}
 
-// The same between springs and masses: before it, parts write to each other's memory only to report a failure, which
+// The latter between springs and masses: before it, parts write to each other's memory only to report a failure, which
 // they wait for themselves, and to add contacts. Without contacts it need not wait for device memory.
-template <class Memory>
-__device__ void barrier_after_springs() {
+template <class Memory, bool has_contacts>
+__device__ void barrier_after_springs(const LaunchConfiguration& launch) {
 #if __CUDA_ARCH__ >= 900
   if constexpr (Memory::in_parts && !Memory::finds_contacts) {
     __syncthreads();
@@ -38,7 +60,7 @@ __device__ void barrier_after_springs() {
     return;
   }
 #endif
-  robot_barrier<Memory>();
+  robot_barrier<Memory, has_contacts>(launch);
 }
 
 // The phases of a step. A phase is skipped if the robot failed in an earlier one, or in an earlier step.

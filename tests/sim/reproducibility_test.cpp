@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "backend.h"
 #include "bodies.h"
@@ -76,6 +78,42 @@ TEST_P(Reproducibility, ARobotAloneMovesAsInTheBatch) {
   const auto hashes = run(configuration(), robots);
   for (std::size_t i = 0; i < robots.size(); ++i)
     EXPECT_EQ(run(configuration(), std::span(robots).subspan(i, 1)).front(), hashes[i]) << i;
+}
+
+// A GPU steps several of them in a block, with a common table of materials or with one for each robot. One explodes.
+TEST_P(Reproducibility, OneOfManySmallRobotsMovesAsAlone) {
+  constexpr std::int64_t few_steps = 100;
+  const Robot small = bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3);
+  const Robot larger = bodies::random_voxels({.x = 5, .y = 5, .z = 5}, 4);
+  for (const bool own_materials : {false, true}) {
+    std::vector<Robot> robots(600, small);
+    robots.insert(robots.end(), 300, larger);
+    for (std::size_t i = 0; i < robots.size() && own_materials; ++i) {
+      robots[i].materials.assign(materials_of(robots[i]).begin(), materials_of(robots[i]).end());
+      for (Material& material : robots[i].materials) material.phase += 0.01f * static_cast<float>(i);
+    }
+    const auto states_of = [&](std::span<const std::size_t> chosen, std::size_t first, std::size_t count) {
+      Simulation simulation(configuration(), std::span(robots).subspan(first, count));
+      for (std::size_t i = 0; i < count; ++i) {
+        State start = bodies::shaken(robots[first + i], 0.02f, 0.3f, first + i);
+        for (Vec3& x : start.positions) x.z += 0.05f;
+        if (first + i == 17) start.velocities[5].x = 1e10f;
+        simulation.set_state(i, start.positions, start.velocities);
+      }
+      simulation.step(few_steps / 2);
+      simulation.step(few_steps / 2);
+      std::vector<std::pair<std::uint64_t, bool>> states;
+      for (const std::size_t i : chosen)
+        states.emplace_back(simulation.hash(i - first), simulation.telemetry(i - first).exploded);
+      return states;
+    };
+    const std::array<std::size_t, 11> chosen{0, 1, 16, 17, 18, 301, 599, 600, 601, 744, 899};
+    const auto together = states_of(chosen, 0, robots.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      EXPECT_EQ(states_of(std::span(chosen).subspan(i, 1), chosen[i], 1).front(), together[i]) << chosen[i];
+      EXPECT_EQ(together[i].second, chosen[i] == 17) << chosen[i];
+    }
+  }
 }
 
 TEST_P(Reproducibility, TheOrderOfTheBatchDoesNotMatter) {
