@@ -77,18 +77,21 @@ bool kernel_has_contacts(const Environment& environment, bool viscous) {
 }
 
 // Small robots: several per block. Two blocks fill the multiprocessor's warps, so that one computes while the other
-// waits at a barrier; robots that are apart fill them in one where two would leave room for another robot.
+// waits at a barrier. Robots that are apart fill them in one where two would leave room for another robot; beside other
+// size classes, such a block would wait until a multiprocessor is empty.
 bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
                  std::size_t batch_size, const BrainBytes& brain) {
   share_tiles(launch, robots.tile_stride, even_warps(robots.tile_stride, resident_warps / 2));
   const std::uint32_t warps = launch.warps_per_robot, most = resident_warps / warps;
   const bool can_be_apart = launch.apart;
-  const std::uint32_t blocks = can_be_apart && most % 2 != 0 ? 1u : 2u;
+  const bool whole_batch = robots.robot_count == batch_size;
+  const std::uint32_t blocks = can_be_apart && whole_batch && most % 2 != 0 ? 1u : 2u;
   // All multiprocessors have as many robots in each round, and enough to fill a common table together.
   const std::size_t at_once = std::size_t{most / blocks * blocks} * limits.multiprocessors;
   const std::size_t rounds = (batch_size + at_once - 1) / at_once, places = rounds * blocks * limits.multiprocessors;
   auto n = static_cast<std::uint32_t>((batch_size + places - 1) / places);
   if (launch.shared_table) n = std::max(n, divide_up(launch.table_chunks, warps));
+  if (!whole_batch) n = most;
   for (n = std::min({n, most / blocks, robots.robot_count}); n > 0; --n) {
     launch.robots_per_block = n;
     launch.apart = can_be_apart && n > 1;

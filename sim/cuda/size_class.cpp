@@ -241,7 +241,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   launch_ = choose(view(), batch_size);
   BatchView many = view();
   many.robot_count = many_robots;
-  launch_of_many_ = choose(many, batch_size + many_robots - size());
+  launch_of_many_ = choose(many, many_robots + (batch_size - size()));
   const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(address_fields_, launch_.on_chip ? fields : 0);
   address_masses(0, old_fields, address_fields_);
