@@ -44,7 +44,7 @@ const std::vector<GeneratorParameter>& real_body_parameters() {
       made.push_back({.name = std::string(parameter.name),
                       .help = "With --physics real: " + std::string(parameter.help),
                       .unit = std::string(parameter.unit),
-                      .lowest = parameter.accepts.above_lowest ? 1e-6 : 0,
+                      .accepts = parameter.accepts,
                       .usual_highest = static_cast<double>(parameter.typical.high),
                       .advanced = true,
                       .shared = true,
@@ -156,10 +156,8 @@ class Check {
   void operator()(Value value) const {
     const auto number = static_cast<double>(value);
     // Options keep whole numbers as int.
-    const double highest = parameter_.highest.value_or(std::is_integral_v<Value> ? std::numeric_limits<int>::max()
-                                                                                 : std::numeric_limits<double>::max());
-    const bool too_large = parameter_.below_highest ? number >= highest : number > highest;
-    if (!std::isfinite(number) || number < parameter_.lowest || too_large) refuse(shortest_text(value));
+    const bool too_large = std::is_integral_v<Value> && number > std::numeric_limits<int>::max();
+    if (too_large || !parameter_.accepts(number)) refuse(shortest_text(value));
   }
 
  private:
@@ -179,11 +177,9 @@ void check(const GeneratorParameter& parameter, const ParameterValue& value) {
 
 std::string accepted_values(const GeneratorParameter& parameter) {
   if (!parameter.words.empty()) return list_of(parameter.words, " or ");
-  const std::string lowest = shortest_text(parameter.lowest), unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-  if (!parameter.highest) return lowest + unit + " or more";
-  const std::string highest = shortest_text(*parameter.highest);
-  return parameter.below_highest ? "at least " + lowest + " and below " + highest + unit
-                                 : lowest + " to " + highest + unit;
+  const bool is_real =
+      std::holds_alternative<float>(parameter.initial) || std::holds_alternative<double>(parameter.initial);
+  return parameter.accepts.text(!is_real) + (parameter.unit.empty() ? "" : " " + parameter.unit);
 }
 
 const Generator* find_generator(std::string_view kind) {

@@ -75,8 +75,8 @@ Genome moved(const Genome& genome, const ParameterTable<Genome>& table, double s
   Genome child = genome;
   for (const auto& row : table) {
     const double drawn = step_number(random, tail);
-    if (!row.description.highest || !chosen(row.description.name)) continue;
-    const double low = row.description.lowest, high = *row.description.highest;
+    if (!std::isfinite(row.description.accepts.highest) || !chosen(row.description.name)) continue;
+    const double low = row.description.accepts.lowest, high = row.description.accepts.highest;
     const double step = size * (high - low) * drawn;
     ParameterValue value = row.get(child);
     if (auto* number = std::get_if<double>(&value)) *number = within(*number + step, low, high);
@@ -90,11 +90,11 @@ Genome moved(const Genome& genome, const ParameterTable<Genome>& table, double s
 // A value as a number without bounds, and the reverse (bounded()). Its unit is a step of moved() with this size.
 constexpr double usual_step = 0.02;
 inline double number_of(const GeneratorParameter& description, double value) {
-  const double low = description.lowest, high = *description.highest;
+  const double low = description.accepts.lowest, high = description.accepts.highest;
   return unbounded(value, low, high) / (usual_step * (high - low));
 }
 inline double value_of(const GeneratorParameter& description, double number) {
-  const double low = description.lowest, high = *description.highest;
+  const double low = description.accepts.lowest, high = description.accepts.highest;
   return bounded(number * (usual_step * (high - low)), low, high);
 }
 

@@ -3,7 +3,8 @@
 // fill in. One table per generator; each row is a member and its description:
 //
 //   const ParameterTable<ShellOptions> table{
-//       parameter(&ShellOptions::lobes, {.name = "lobes", .help = "Lobes of the rim", .highest = 12}), ...};
+//       parameter(&ShellOptions::lobes,
+//                 {.name = "lobes", .help = "Lobes of the rim", .accepts = Accepts::between(0, 12)}), ...};
 //
 // The struct's own default is the parameter's default.
 #pragma once

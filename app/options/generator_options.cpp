@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "app/options/option_values.h"
 
@@ -27,12 +28,14 @@ struct Form {
   std::string operator()(std::int64_t) const { return parameter.unit.empty() ? "N" : upper_case(parameter.unit); }
   std::string operator()(double) const {
     if (!parameter.unit.empty()) return upper_case(parameter.unit);
-    return parameter.highest ? fmt::format("{}..{}", parameter.lowest, *parameter.highest) : "X";
+    const Accepts& accepts = parameter.accepts;
+    return std::isfinite(accepts.highest) ? fmt::format("{}..{}", accepts.lowest, accepts.highest) : "X";
   }
 };
 
 std::string description_of(const GeneratorParameter& parameter) {
-  const bool bounded = std::holds_alternative<std::int64_t>(parameter.initial) && parameter.highest;
+  const bool bounded =
+      std::holds_alternative<std::int64_t>(parameter.initial) && std::isfinite(parameter.accepts.highest);
   return fmt::format("{}{} (default {})", parameter.help, bounded ? ", " + accepted_values(parameter) : "",
                      option_text(parameter.initial));
 }

@@ -25,7 +25,7 @@ constexpr double step = 0.04;  // of a mutation, over the range of a number
 const ParameterTable<ShellGenome>& shell_genome_table() {
   using G = ShellGenome;
   const auto number = [](auto member, const char* name, double lowest, double highest) {
-    return parameter(member, {.name = name, .lowest = lowest, .highest = highest});
+    return parameter(member, {.name = name, .accepts = Accepts::between(lowest, highest)});
   };
   static const ParameterTable<G> rows{parameter(&G::form, {.name = "form", .words = form_names}),
                                       number(&G::segments, "segments", 12, 128),
@@ -103,29 +103,27 @@ const ParameterTable<ShellOptions>& option_table() {
       parameter(&Options::diameter, {.name = "diameter",
                                      .help = "Diameter at the widest place",
                                      .unit = "m",
-                                     .lowest = 0.2,
-                                     .highest = 20,
+                                     .accepts = Accepts::between(0.2, 20),
                                      .usual_highest = 4}),
       parameter(&Options::segments, {.name = "segments",
                                      .help = "Masses of a layer around the widest place",
-                                     .lowest = 12,
-                                     .highest = 128,
+                                     .accepts = Accepts::between(12, 128),
                                      .usual_highest = 64}),
       parameter(&Options::thickness, {.name = "thickness",
                                       .help = "Distance of the two layers",
                                       .unit = "m",
-                                      .lowest = 0.01,
-                                      .highest = 5,
+                                      .accepts = Accepts::between(0.01, 5),
                                       .usual_highest = 0.4,
                                       .advanced = true}),
-      parameter(
-          &Options::opening,
-          {.name = "opening", .help = "Mouth of bells, ends of tubes, holes of rings: 0 narrow, 1 wide", .highest = 1}),
-      parameter(&Options::lobes,
-                {.name = "lobes", .help = "Lobes around the axis; 0 draws them for each robot", .highest = 16}),
+      parameter(&Options::opening, {.name = "opening",
+                                    .help = "Mouth of bells, ends of tubes, holes of rings: 0 narrow, 1 wide",
+                                    .accepts = Accepts::between(0, 1)}),
+      parameter(&Options::lobes, {.name = "lobes",
+                                  .help = "Lobes around the axis; 0 draws them for each robot",
+                                  .accepts = Accepts::between(0, 16)}),
       parameter(&Options::active, {.name = "active",
                                    .help = "Share of the springs along the surface that are muscles",
-                                   .highest = 1,
+                                   .accepts = Accepts::between(0, 1),
                                    .advanced = true})};
   return rows;
 }

@@ -22,7 +22,7 @@ template <std::size_t n>
 TableRow<TaperedGenome> element(std::array<double, n> TaperedGenome::*member, std::size_t index, const char* name,
                                 double lowest, double highest) {
   return row_of<TaperedGenome>(
-      {.name = name + std::to_string(index + 1), .lowest = lowest, .highest = highest},
+      {.name = name + std::to_string(index + 1), .accepts = Accepts::between(lowest, highest)},
       [=](const TaperedGenome& genome) { return (genome.*member)[index]; },
       [=](TaperedGenome& genome, const ParameterValue& value) { (genome.*member)[index] = std::get<double>(value); });
 }
@@ -49,16 +49,15 @@ const ParameterTable<TaperedOptions>& tapered_table() {
       parameter(&Options::volume, {.name = "volume",
                                    .help = "Volume of the bodies",
                                    .unit = "liters",
-                                   .lowest = 0.1,
-                                   .highest = 1e5,
+                                   .accepts = Accepts::between(0.1, 1e5),
                                    .usual_highest = 100}),
-      parameter(
-          &Options::stations,
-          {.name = "stations", .help = "Cells from nose to tail", .lowest = 4, .highest = 100, .usual_highest = 40}),
+      parameter(&Options::stations, {.name = "stations",
+                                     .help = "Cells from nose to tail",
+                                     .accepts = Accepts::between(4, 100),
+                                     .usual_highest = 40}),
       parameter(&Options::layers, {.name = "layers",
                                    .help = "Cells from one edge to the other",
-                                   .lowest = 1,
-                                   .highest = 10,
+                                   .accepts = Accepts::between(1, 10),
                                    .usual_highest = 6,
                                    .advanced = true})};
   return rows;
@@ -70,7 +69,7 @@ const ParameterTable<TaperedGenome>& tapered_genome_table() {
   using G = TaperedGenome;
   static const ParameterTable<G> rows = [] {
     const auto number = [](auto member, const char* name, double lowest, double highest) {
-      return parameter(member, {.name = name, .lowest = lowest, .highest = highest});
+      return parameter(member, {.name = name, .accepts = Accepts::between(lowest, highest)});
     };
     ParameterTable<G> made{parameter(&G::bending, {.name = "bending", .words = bendings}),
                            number(&G::stations, "stations", 4, 100),

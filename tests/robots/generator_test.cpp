@@ -193,11 +193,11 @@ TEST_P(EveryGenerator, AcceptsItsDefaultsAndRefusesWhatIsOutOfRange) {
       EXPECT_THAT(message, testing::StartsWith(parameter.name + ": "));
       EXPECT_THAT(message, HasSubstr("give " + accepted_values(parameter)));
     };
-    if (std::holds_alternative<std::int64_t>(parameter.initial)) refuses(std::int64_t(parameter.lowest) - 1);
-    if (std::holds_alternative<double>(parameter.initial)) refuses(parameter.lowest - 1);
+    if (std::holds_alternative<std::int64_t>(parameter.initial)) refuses(std::int64_t(parameter.accepts.lowest) - 1);
+    if (std::holds_alternative<double>(parameter.initial)) refuses(parameter.accepts.lowest - 1);
     if (std::holds_alternative<double>(parameter.initial)) refuses(std::nan(""));
     if (std::holds_alternative<double>(parameter.initial)) refuses(HUGE_VAL);
-    if (std::holds_alternative<float>(parameter.initial)) refuses(static_cast<float>(parameter.lowest) - 1);
+    if (std::holds_alternative<float>(parameter.initial)) refuses(static_cast<float>(parameter.accepts.lowest) - 1);
     if (std::holds_alternative<std::string>(parameter.initial)) refuses("tartan");
     if (std::holds_alternative<SizeRange>(parameter.initial)) refuses(SizeRange{});
     // A value of another kind.
@@ -214,7 +214,8 @@ TEST_P(EveryGenerator, IsDescribedInFull) {
     EXPECT_THAT(parameter.help, testing::Not(IsEmpty()));
     EXPECT_FALSE(parameter.help.ends_with('.'));
     // A window's slider needs an end.
-    EXPECT_TRUE(std::holds_alternative<std::string>(parameter.initial) || parameter.highest || parameter.usual_highest)
+    EXPECT_TRUE(std::holds_alternative<std::string>(parameter.initial) || std::isfinite(parameter.accepts.highest) ||
+                parameter.usual_highest)
         << parameter.name;
   }
 }

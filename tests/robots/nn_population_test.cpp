@@ -67,7 +67,7 @@ TEST(NnPopulation, OptionsOutOfRangeAreNamed) {
   EXPECT_EQ(message({.hidden = std::vector<int>(16, 8)}), "hidden: 16 numbers are not accepted; give at most 15");
   EXPECT_EQ(message({.points = 63}), "points: 63 is not accepted; give 64 to 65535");
   EXPECT_EQ(message({.points = 65536}), "points: 65536 is not accepted; give 64 to 65535");
-  EXPECT_EQ(message({.alpha = -0.5f}), "alpha: -0.5 is not accepted; give 0 m or more");
+  EXPECT_EQ(message({.alpha = -0.5f}), "alpha: -0.5 is not accepted; give a finite number >= 0 m");
   EXPECT_EQ(message({.spacing = 1.5f}), "spacing: 1.5 is not accepted; give 0 to 1");
   EXPECT_EQ(message({.mirrored = 2}), "mirrored: 2 is not accepted; give 0 to 1");
 }

@@ -146,11 +146,11 @@ TEST(RandomVoxels, DefaultsAreSoundBodiesOverManySeeds) {
 
 TEST(RandomVoxels, RefusesOptionsThatCannotBeUsed) {
   const auto message = [](RandomVoxelOptions options) { return refusal([&] { random_voxel_robots(options, 1, 2); }); };
-  EXPECT_EQ(message({.smallest = {0, 1, 1}}), "voxels: 0 is not accepted; give 1 voxels or more");
+  EXPECT_EQ(message({.smallest = {0, 1, 1}}), "voxels: 0 is not accepted; give 1 or more voxels");
   EXPECT_EQ(message({.smallest = {3, 3, 3}, .largest = {2, 3, 3}}),
             "voxels: 3 to 2 is not accepted; the first size must not be above the second");
   EXPECT_EQ(message({.air = 1}), "air: 1 is not accepted; give at least 0 and below 1");
-  EXPECT_EQ(message({.patch = 0}), "patch: 0 is not accepted; give 1 voxels or more");
+  EXPECT_EQ(message({.patch = 0}), "patch: 0 is not accepted; give 1 or more voxels");
   EXPECT_EQ(message({.edge = 0}), "edge: 0 is not accepted; give 0.001 to 1000 m");
   EXPECT_EQ(message({.edge = 4294967296}), "edge: 4294967296 is not accepted; give 0.001 to 1000 m");
   EXPECT_EQ(message({.muscle = 0, .tissue = 0, .bone = 0}),

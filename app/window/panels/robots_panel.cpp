@@ -64,11 +64,12 @@ struct Control {
   }
   const char* help() const { return parameter.help.c_str(); }
   std::string item() const { return "generate." + parameter.name; }
-  double highest() const { return parameter.usual_highest.value_or(parameter.highest.value_or(1e6)); }
+  double lowest() const { return parameter.accepts.lowest + (parameter.accepts.above_lowest ? 1e-6 : 0); }
+  double highest() const { return parameter.usual_highest.value_or(std::min(parameter.accepts.highest, 1e6)); }
 
   bool operator()(std::int64_t& value) const {
     auto number = static_cast<int>(value);
-    const bool changed = whole_number(name().c_str(), help(), number, static_cast<int>(parameter.lowest),
+    const bool changed = whole_number(name().c_str(), help(), number, static_cast<int>(lowest()),
                                       static_cast<int>(highest()), context, item());
     value = number;
     return changed;
@@ -76,17 +77,16 @@ struct Control {
   template <class Number>
   requires std::is_floating_point_v<Number>
   bool operator()(Number& value) const {
-    const bool percent = parameter.unit.empty() && parameter.highest == 1;
+    const bool percent = parameter.unit.empty() && parameter.accepts.highest == 1;
     const double scale = percent ? 100 : 1;
     const std::string format = percent ? "%.0f %%" : "%.3g " + parameter.unit;
     auto shown = static_cast<float>(scale * static_cast<double>(value));
     const auto default_value = static_cast<float>(scale * static_cast<double>(std::get<Number>(parameter.initial)));
     const bool changed =
         slider(name().c_str(), help(), shown, default_value,
-               {static_cast<float>(scale * parameter.lowest), static_cast<float>(scale * highest()), format.c_str()});
+               {static_cast<float>(scale * lowest()), static_cast<float>(scale * highest()), format.c_str()});
     context.log.item(item());
-    if (changed)
-      value = static_cast<Number>(std::clamp(static_cast<double>(shown) / scale, parameter.lowest, highest()));
+    if (changed) value = static_cast<Number>(std::clamp(static_cast<double>(shown) / scale, lowest(), highest()));
     return changed;
   }
   bool operator()(std::string& word) const {
@@ -120,8 +120,7 @@ struct Control {
     row(fmt::format("largest [{}]", parameter.unit).c_str(), "along x, y and z");
     changed = ImGui::InputInt3("##largest", sizes.largest.data()) || changed;
     for (std::size_t i = 0; i < 3; ++i) {
-      sizes.smallest[i] =
-          std::clamp(sizes.smallest[i], static_cast<int>(parameter.lowest), static_cast<int>(highest()));
+      sizes.smallest[i] = std::clamp(sizes.smallest[i], static_cast<int>(lowest()), static_cast<int>(highest()));
       sizes.largest[i] = std::clamp(sizes.largest[i], sizes.smallest[i], static_cast<int>(highest()));
     }
     return changed;

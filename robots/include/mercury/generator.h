@@ -20,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include "mercury/parameters.h"
 #include "mercury/robot.h"
 #include "mercury/work_watch.h"
 
@@ -40,18 +41,16 @@ using ParameterValues = std::map<std::string, ParameterValue, std::less<>>;
 
 // What can be set of a generator.
 struct GeneratorParameter {
-  std::string name;                  // in lower case with underscores, different from those of all other generators
-  std::string help;                  // what it is, in some words without a full stop
-  std::string unit = {};             // "m", "voxels"; empty for a number without a unit
-  double lowest = 0;                 // of what is accepted; for a list or sizes, of each number
-  std::optional<double> highest{};   // none = any finite number
-  bool below_highest = false;        // `highest` itself is not accepted
-  std::size_t most_numbers = 0;      // of a list
-  std::vector<std::string> words{};  // of a word
-  std::optional<double> usual_highest{};  // end of a slider, where that is below `highest`
-  bool advanced = false;                  // a window shows it on demand only
-  bool shared = false;                    // all generators have it
-  ParameterValue initial{};               // the default; also says which kind of value it is
+  std::string name;       // in lower case with underscores, different from those of all other generators
+  std::string help;       // what it is, in some words without a full stop
+  std::string unit = {};  // "m", "voxels"; empty for a number without a unit
+  Accepts accepts = Accepts::at_least_zero;  // for a list or sizes, of each number
+  std::size_t most_numbers = 0;              // of a list
+  std::vector<std::string> words{};          // of a word
+  std::optional<double> usual_highest{};     // end of a slider, where that is below the highest that is accepted
+  bool advanced = false;                     // a window shows it on demand only
+  bool shared = false;                       // all generators have it
+  ParameterValue initial{};                  // the default; also says which kind of value it is
 };
 
 // Throws ParameterError(name, "7 is not accepted; give 1 to 5") unless the value is of the parameter's kind and in its
