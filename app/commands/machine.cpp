@@ -12,6 +12,7 @@
 #include "app/video/frame_writer.h"
 #include "app/video/position_bridge.h"
 #include "mercury/cuda_devices.h"
+#include "mercury/host_memory.h"
 #include "render/context/context.h"
 
 namespace mercury {
@@ -57,12 +58,10 @@ Finding processor() {
 }
 
 Finding memory() {
-  std::istringstream available(proc_value("/proc/meminfo", "MemAvailable"));
   std::istringstream total(proc_value("/proc/meminfo", "MemTotal"));
-  double free_kb = 0, all_kb = 0;
-  available >> free_kb;
-  total >> all_kb;
-  return {"memory", fmt::format("{:.1f} GiB, {:.1f} GiB free", all_kb / (1 << 20), free_kb / (1 << 20)), {}};
+  std::size_t kilobytes = 0;
+  total >> kilobytes;
+  return {"memory", fmt::format("{}, {} free", byte_text(1024 * kilobytes), byte_text(available_host_memory())), {}};
 }
 
 std::vector<Finding> gpus() {

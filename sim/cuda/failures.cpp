@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/cuda/failures.h"
 
-#include <cstdio>
+#include "mercury/host_memory.h"
 
 namespace mercury::cuda {
 namespace {
@@ -29,16 +29,6 @@ bool loses_the_device(cudaError_t error) {
   }
 }
 
-std::string size_text(std::size_t bytes) {
-  char text[32];
-  const double mebibytes = static_cast<double>(bytes) / (1 << 20);
-  if (mebibytes < 1024)
-    std::snprintf(text, sizeof text, "%.0f MiB", mebibytes);
-  else
-    std::snprintf(text, sizeof text, "%.1f GiB", mebibytes / 1024);
-  return text;
-}
-
 }  // namespace
 
 std::string failure_text(cudaError_t error, const char* what) {
@@ -61,9 +51,9 @@ std::string failure_text(cudaError_t error, const char* what) {
 
 std::string no_room_text(std::size_t bytes) {
   std::size_t free = 0, total = 0;
-  std::string text = "the GPU has no room for " + size_text(bytes) + " more";
+  std::string text = "the GPU has no room for " + byte_text(bytes) + " more";
   if (cudaMemGetInfo(&free, &total) == cudaSuccess)
-    text += "; " + size_text(free) + " of its " + size_text(total) + " are free";
+    text += "; " + byte_text(free) + " of its " + byte_text(total) + " are free";
   else
     (void)cudaGetLastError();
   return text + ": give it fewer or smaller robots, or end other programs that use it";

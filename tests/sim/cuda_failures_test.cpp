@@ -63,8 +63,8 @@ TEST_F(OnGpu, WithoutRoomSaysWhatIsNeededAndWhatIsFreeAndGoesOnAfterwards) {
       refusal = error.what();
     }
   }
-  EXPECT_THAT(refusal, MatchesRegex("the GPU has no room for [0-9.]+ [MG]iB more; [0-9.]+ [MG]iB of its "
-                                    "[0-9.]+ GiB are free: give it fewer or smaller robots, or end other "
+  EXPECT_THAT(refusal, MatchesRegex("the GPU has no room for [0-9.]+ [MG]B more; [0-9.]+ [MG]B of its "
+                                    "[0-9.]+ GB are free: give it fewer or smaller robots, or end other "
                                     "programs that use it"));
   // What was there goes on, and once there is room, the batch is accepted.
   before.step(10);
