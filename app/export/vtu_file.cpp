@@ -14,6 +14,7 @@
 #include <string>
 
 #include "app/export/writers.h"
+#include "mercury/names.h"
 
 namespace mercury {
 namespace {
@@ -187,13 +188,6 @@ void write_vtu(const ExportedRobot& robot, const Pose& pose, const std::filesyst
   files.keep();
 }
 
-std::string xml_text(const std::string& text) {
-  std::string result;
-  for (const char letter : text)
-    result += letter == '&' ? "&amp;" : letter == '<' ? "&lt;" : letter == '"' ? "&quot;" : std::string(1, letter);
-  return result;
-}
-
 std::filesystem::path frames_beside(const std::filesystem::path& pvd) {
   return pvd.parent_path() / (pvd.stem().string() + "-frames");
 }
@@ -215,7 +209,7 @@ void write_series(const ExportedRobot& robot, RecordedMotion& motion, const std:
     const std::string name = fmt::format("{:0{}}.vtu", frame, digits);
     frames.write(grid, motion.pose_with_velocities(frame), name);
     list.print("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", motion.time(frame),
-               xml_text((folder.filename() / name).string()));
+               markup_text((folder.filename() / name).string()));
     choices.watch(frame + 1, motion.frames());
   }
   list.text("</Collection>\n</VTKFile>\n");

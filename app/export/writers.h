@@ -120,7 +120,4 @@ void write_html(std::span<RecordedMotion> motions, const std::filesystem::path& 
 void write_html_motion(const ExportedRobot& robot, RecordedMotion& motion, const std::filesystem::path& path,
                        const ExportChoices& choices);
 
-// Text of an XML document, between quotes too.
-std::string xml_text(const std::string& text);
-
 }  // namespace mercury

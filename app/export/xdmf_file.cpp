@@ -11,6 +11,7 @@
 #include "app/export/writers.h"
 #include "app/recording/trajectory_layout.h"
 #include "mercury/error.h"
+#include "mercury/names.h"
 
 namespace mercury {
 namespace {
@@ -31,8 +32,8 @@ class XdmfWriter {
   XdmfWriter(OutputStream& file, const RecordedMotion& motion, const std::filesystem::path& path)
       : file_(file), motion_(motion) {
     // Readers look for it from the folder of the description.
-    group_ = xml_text(fmt::format("{}:/particles/{}/", recording_seen_from(motion, path), motion.group()));
-    frames_ = xml_text(frame_links_beside(path).filename().string() + ":/");
+    group_ = markup_text(fmt::format("{}:/particles/{}/", recording_seen_from(motion, path), motion.group()));
+    frames_ = markup_text(frame_links_beside(path).filename().string() + ":/");
   }
 
   void write(const Robot& robot) {

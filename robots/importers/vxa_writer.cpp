@@ -12,6 +12,7 @@
 
 #include "mercury/error.h"
 #include "mercury/import.h"
+#include "mercury/names.h"
 #include "mercury/origin.h"
 #include "mercury/real_body.h"
 #include "robots/file/whole_file.h"
@@ -27,24 +28,6 @@ constexpr double density = 1000;        // one mass of 1 kg for each voxel of 0.
 constexpr double temperature = 1;       // amplitude: CTE is the amplitude of the muscle [degrees]
 constexpr double usual_drag = 500;      // AggregateDragCoefficient
 constexpr std::size_t most_ascii = 78;  // up to "~"
-
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char letter : text) switch (letter) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      default:
-        safe += static_cast<unsigned char>(letter) < ' ' ? ' ' : letter;
-    }
-  return safe;
-}
 
 // The grid with substances grouped by what a palette holds: stiffness and amplitude. Phase and period are layers.
 struct Palette {
@@ -187,7 +170,7 @@ class VxaWriter {
       text_ += fmt::format(
           "<Material ID=\"{}\">\n<Name>{}</Name>\n<Display>\n<Red>{}</Red>\n<Green>{}</Green>\n"
           "<Blue>{}</Blue>\n<Alpha>1</Alpha>\n</Display>\n",
-          i + 1, escaped(body_.names[palette_.substances[i]]), moves(substance) ? 1 : 0, shade,
+          i + 1, markup_text(body_.names[palette_.substances[i]]), moves(substance) ? 1 : 0, shade,
           moves(substance) ? 0 : 1);
       text_ += fmt::format(
           "<Mechanical>\n<MatModel>0</MatModel>\n<Elastic_Mod>{:.17g}</Elastic_Mod>\n"
