@@ -71,6 +71,16 @@ std::string clock_text(double seconds) {
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
+std::string duration_text(double seconds) {
+  if (seconds < 10) return fmt::format("{:.1f} s", seconds);
+  const auto whole = static_cast<std::int64_t>(std::llround(seconds));
+  if (whole < 60) return fmt::format("{} s", whole);
+  const bool hours = whole >= 3600;
+  const std::int64_t rest = hours ? whole / 60 % 60 : whole % 60;
+  return fmt::format("{} {}", whole / (hours ? 3600 : 60), hours ? "h" : "min") +
+         (rest == 0 ? "" : fmt::format(" {} {}", rest, hours ? "min" : "s"));
+}
+
 std::string progress_bar(const std::string& what, const std::string& unit, const Done& done, std::int64_t total,
                          double elapsed, int columns) {
   constexpr int width = 24;

@@ -66,6 +66,8 @@ std::string with_magnitude(double value);
 
 // "0:04", "12:30", "1:02:03".
 std::string clock_text(double seconds);
+// "4.2 s", "53 s", "12 min 5 s", "3 h 7 min", "2 h".
+std::string duration_text(double seconds);
 
 // A watch that shows the progress on standard error, and throws Interrupted after the first Ctrl-C. Copies share what
 // they show.

@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
+#include "app/base/progress.h"
 #include "app/commands/description.h"
 #include "app/commands/run_film.h"
 #include "app/options/generator_options.h"
@@ -22,15 +22,6 @@ namespace {
 // "12,345 robots"
 std::string counted(std::size_t number, const char* one, const char* many) {
   return fmt::format("{} {}", with_commas(number), number == 1 ? one : many);
-}
-
-// "53 s", "12 min 5 s", "3 h 7 min".
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<long long>(std::llround(seconds));
-  if (seconds < 10) return fmt::format("{:.1f} s", seconds);
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
 // "voxel robots, --size 6x4x4, their bodies", or "what the user gave"

@@ -42,7 +42,7 @@ ALLOWED = {
     "app/window/toolkit": "sim/api robots/api render app/base",
     "app/window/dialogs": "sim/api robots/api app/window/toolkit",
     "app/window/viewport": "sim/api robots/api render app/scene app/live app/window/toolkit",
-    "app/window/panels": "sim/api robots/api evolution/api app/options app/scene app/export app/live app/window/toolkit app/window/dialogs app/window/viewport",
+    "app/window/panels": "sim/api robots/api evolution/api app/base app/options app/scene app/export app/live app/window/toolkit app/window/dialogs app/window/viewport",
     "app/window": "sim/api render app/base app/scene app/live app/window/toolkit app/window/viewport app/window/panels",
     "app/commands": "sim/api robots/api evolution/api evolution robots render app/base app/recording app/scene app/export app/video app/options app/window/toolkit app/window",
     "python": "sim/api robots/api evolution/api render app/base app/recording app/scene app/export app/video",

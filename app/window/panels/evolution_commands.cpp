@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <memory>
 #include <optional>
 #include <set>
 
+#include "app/base/progress.h"
 #include "app/live/robot_saving.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -180,9 +182,9 @@ std::string EvolveForm::duration_of(double trials, const EvolveRequest& request)
   springs /= static_cast<double>(founders_.size());
   const double steps = request.settings.trials.seconds / request.settings.configuration.dt;
   const double seconds = trials * steps * springs / rate;
-  return fmt::format(
-      "; about {} at the current speed of the scene",
-      seconds < 90 ? fmt::format("{:.0f} s", std::max(1.0, seconds)) : fmt::format("{:.0f} min", seconds / 60));
+  const double unit = seconds < 90 ? 1 : 60;  // an estimate
+  return "; about " + duration_text(unit * std::max(1.0, std::round(seconds / unit))) +
+         " at the current speed of the scene";
 }
 
 bool EvolveForm::draw(EventLog& log) {

@@ -31,7 +31,7 @@ namespace {
 constexpr std::size_t longest = 4000;  // of what is drawn [letters]; a copy has the rest
 
 std::string line_of(const PastMessage& message) {
-  return fmt::format("{}  {}  {}{}", clock_text(message.time), name_of(message.tone), message.text,
+  return fmt::format("{}  {}  {}{}", time_of_day(message.time), name_of(message.tone), message.text,
                      message.count > 1 ? fmt::format("  (x{})", message.count) : "");
 }
 
@@ -103,7 +103,7 @@ void MessagesPanel::draw_row(PanelContext& context, const PastMessage& message, 
   tooltip("click to copy");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(corner, {corner.x + 0.2f * text, corner.y + height}, color_of(message.tone));
-  const std::string when = fmt::format("{}  {}", clock_text(message.time), name_of(message.tone));
+  const std::string when = fmt::format("{}  {}", time_of_day(message.time), name_of(message.tone));
   list.AddText({corner.x + indent, corner.y}, palette().faint, when.c_str());
   list.AddText(nullptr, 0, {corner.x + indent, corner.y + text}, ImGui::GetColorU32(ImGuiCol_Text), shown.c_str(),
                nullptr, width);

@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
+#include "app/base/progress.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/panels/video_recorder.h"
@@ -196,8 +198,7 @@ void VideoRecorder::start_group_picture(PanelContext& context) {
 }
 
 void draw_recording_sign(ImDrawList& list, PanelContext& context, const ViewportArea& area) {
-  const auto seconds = static_cast<long>(context.recorder.seconds());
-  const std::string time = fmt::format("{}:{:02}", seconds / 60, seconds % 60);
+  const std::string time = clock_text(std::floor(context.recorder.seconds()));
   const float text = ImGui::GetFontSize();
   // Below the caption.
   const float top = std::max(area.low.y, context.caption.high.y);

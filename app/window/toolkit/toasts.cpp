@@ -45,7 +45,7 @@ ImU32 color_of(Tone tone) {
   }
 }
 
-std::string clock_text(std::chrono::system_clock::time_point time) {
+std::string time_of_day(std::chrono::system_clock::time_point time) {
   return fmt::format("{:%H:%M:%S}", fmt::localtime(std::chrono::system_clock::to_time_t(time)));
 }
 

@@ -30,7 +30,7 @@ struct PastMessage {
   int count = 1;
 };
 // "14:03:22", in local time.
-std::string clock_text(std::chrono::system_clock::time_point time);
+std::string time_of_day(std::chrono::system_clock::time_point time);
 
 class Toasts {
  public:

@@ -45,5 +45,15 @@ TEST(ClockText, ShowsMinutesAndHours) {
   EXPECT_EQ(clock_text(3723), "1:02:03");
 }
 
+TEST(DurationText, HasTheTwoLargestUnitsThatAreNotZero) {
+  EXPECT_EQ(duration_text(0), "0.0 s");
+  EXPECT_EQ(duration_text(4.24), "4.2 s");
+  EXPECT_EQ(duration_text(53.3), "53 s");
+  EXPECT_EQ(duration_text(59.7), "1 min");
+  EXPECT_EQ(duration_text(725), "12 min 5 s");
+  EXPECT_EQ(duration_text(3600), "1 h");
+  EXPECT_EQ(duration_text(3 * 3600 + 7 * 60 + 29), "3 h 7 min");
+}
+
 }  // namespace
 }  // namespace mercury::test
