@@ -13,7 +13,6 @@
 #include "mercury/stopwatch.h"
 #include "mercury/threads.h"
 #include "mercury/work_counter.h"
-#include "sim/cpu/advance.h"
 #include "sim/cpu/backend.h"
 #include "sim/cpu/grouping/cost_model.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/cpu/advance.h"
+#include "sim/cpu/backend.h"
 
 #include <array>
 #include <vector>
