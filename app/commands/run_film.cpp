@@ -29,22 +29,15 @@ std::string title_of(const std::string& quantity) {
   return unit.empty() ? title : fmt::format("{} [{}]", title, unit);
 }
 
-// With as few digits as write multiples of `step` exactly, or two that count if that takes more than 3.
-std::string tick_of(double value, double step) {
-  const auto is_whole = [](double x) { return std::abs(x - std::round(x)) < 1e-6; };
-  int digits = 0;
-  while (digits < 4 && !is_whole(step * std::pow(10, digits))) ++digits;
-  if (digits > 3) digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(step))));
-  return fmt::format("{:.{}f}", std::abs(value) < 1e-9 * step ? 0 : value, digits);
-}
-
 BoardAxis axis_of(const MapAxis& axis) {
   constexpr int most_ticks = 11;
   BoardAxis shown{.title = title_of(axis.quantity)};
   const int every = 1 + axis.cells / most_ticks;
   const double width = (axis.highest - axis.lowest) / axis.cells;
   for (int i = 0; i <= axis.cells; ++i)
-    shown.ticks.push_back(i % every != 0 ? "" : tick_of(axis.lowest + i * width, every * width));
+    shown.ticks.push_back(i % every != 0 ? ""
+                                         : render::tick_text(static_cast<float>(axis.lowest + i * width),
+                                                             static_cast<float>(every * width)));
   return shown;
 }
 

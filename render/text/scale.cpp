@@ -23,9 +23,9 @@ float restored(float spacing, float transformed) {
 }
 
 // "2", "0.05", "1e-05", with a real minus sign.
-std::string short_text(float value, int digits = 3) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*g", digits, double(value));
+std::string short_text(float value, int digits = 3, bool fixed = false) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), fixed ? "%.*f" : "%.*g", digits, double(value));
   std::string result(text.data());
   if (!result.empty() && result[0] == '-') result.replace(0, 1, "\u2212");
   return result;
@@ -83,15 +83,15 @@ std::string tick_text(float value, float step) {
   if (std::abs(value) < 1e-6f * std::abs(step)) value = 0;
   const float size = std::max(std::abs(value), std::abs(step));
   if (size >= 1e5f || std::abs(step) < 1e-4f) return short_text(value);
-  int digits = std::clamp(int(std::ceil(-std::log10(std::abs(step)) - 1e-4f)), 0, 6);
-  // A step of 0.25 needs one digit more than its magnitude suggests.
-  const float scaled = std::abs(step) * std::pow(10.0f, float(digits));
-  if (std::abs(scaled - std::round(scaled)) > 1e-3f) ++digits;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, double(value));
-  std::string result(text.data());
-  if (!result.empty() && result[0] == '-') result.replace(0, 1, "\u2212");
-  return result;
+  // A step of 0.25 needs one digit more than its magnitude suggests, 0.125 two; of others, two digits count.
+  const auto is_whole = [step](int digits) {
+    const float scaled = std::abs(step) * std::pow(10.0f, float(digits));
+    return std::abs(scaled - std::round(scaled)) <= 1e-3f;
+  };
+  const int first = int(std::ceil(-std::log10(std::abs(step)) - 1e-4f));
+  for (int digits = std::max(0, first); digits <= std::max(0, first) + 2; ++digits)
+    if (is_whole(digits)) return short_text(value, digits, true);
+  return short_text(value, std::max(0, first + 1), true);
 }
 
 std::vector<Tick> ticks_of(const Scale& scale, int most) {

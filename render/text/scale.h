@@ -31,7 +31,7 @@ struct ScaleFactors {
 };
 ScaleFactors factors_of(const Scale& scale);
 
-// "0.25", "1e-05": as few digits as distinguish neighboring ticks.
+// "0.25", "1e-05": as few digits as write multiples of `step`.
 std::string tick_text(float value, float step);
 
 // At most about `most` round values on the scale.

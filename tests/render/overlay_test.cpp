@@ -42,6 +42,11 @@ TEST(Font, WidthGrowsWithTextAndSize) {
 TEST(TickText, HasJustEnoughDigitsToDistinguishNeighbors) {
   EXPECT_EQ(tick_text(0.2f, 0.2f), "0.2");
   EXPECT_EQ(tick_text(0.25f, 0.25f), "0.25");
+  EXPECT_EQ(tick_text(0.375f, 0.125f), "0.375");
+  EXPECT_EQ(tick_text(12.5f, 12.5f), "12.5");
+  EXPECT_EQ(tick_text(2.0f / 3, 1.0f / 3), "0.67");
+  EXPECT_EQ(tick_text(24.68f, 12.34f), "24.68");
+  EXPECT_EQ(tick_text(36.963f, 12.321f), "37");
   EXPECT_EQ(tick_text(20, 5), "20");
   EXPECT_EQ(tick_text(-0.4f, 0.2f), "\u22120.4");
   EXPECT_EQ(tick_text(1e-9f, 0.1f), "0.0");
