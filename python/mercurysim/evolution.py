@@ -74,6 +74,7 @@ class Settings(TypedDict, total=False):
     species_distance: float  # neat: distance of brains below which robots are of one species
     species: int  # neat: at most
     stagnation: int  # neat: generations without a better robot after which a species dies out; 0 = none does
+    pipelined: bool  # children of a generation are made while the one before is tried
     seed: int
     seconds: float  # of a trial, settling included [s]
     settle: float  # at its start; nothing is measured before [s]

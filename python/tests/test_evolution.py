@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
+import inspect
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,17 @@ def test_a_run_is_that_of_the_program(run, tmp_path, mercury):
     assert same(run.individuals(), other.individuals()) and same(run.generations(), other.generations())
     assert [run.genome(id) for id in run.living()] == [other.genome(id) for id in other.living()]
     assert {**run.settings, "program": ""} == {**other.settings, "program": ""}
+
+
+def test_names_and_types_of_settings_are_those_of_the_tables(run):
+    listed = evolution.Settings.__annotations__
+    assert set(listed) == set(run.settings) - {"robots", "genes", "program"} | {"device", "threads"}
+    types = {name: hint.__forward_arg__ for name, hint in listed.items()}
+    of_tables = {name: type(value).__name__ for name, value in run.settings.items() if isinstance(value, (bool, int, float))}
+    assert {name: types[name] for name in of_tables} == of_tables
+    given = inspect.signature(mercurysim.evaluate).parameters
+    for name in given.keys() & of_tables.keys():
+        assert given[name].annotation.removesuffix(" | None") == of_tables[name], name
 
 
 def test_a_run_that_was_stopped_goes_on_as_if_it_had_never_stopped(run, tmp_path):
