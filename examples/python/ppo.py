@@ -52,8 +52,8 @@ def improve(seen, action, before, target, advantage, weight, epochs=8, parts=8, 
 mean, value = network(env.single_action_space.shape[0], 0.01).to(seen.device), network(1, 1).to(seen.device)
 log_std = nn.Parameter(torch.full_like(mean[-1].bias.detach(), -0.5))
 optimizer = torch.optim.Adam([*mean.parameters(), *value.parameters(), log_std], 1e-3)
-earned, idle = torch.zeros(len(seen), device=seen.device), torch.zeros(len(seen), dtype=bool, device=seen.device)
-center, scale, steps, start = 0, 1, 32, time.time()  # of observations (2); of each robot per iteration
+earned, idle = torch.zeros(len(seen), device=seen.device), torch.zeros(len(seen), dtype=torch.bool, device=seen.device)
+center, scale, steps, start = torch.zeros(()), torch.ones(()), 32, time.time()  # of observations (2); per robot and iteration
 print("seconds,steps,episodes,reached,return")
 for iteration in range(1, options.iterations + 1):
     rows, sums = [], torch.zeros(3, device=seen.device)
