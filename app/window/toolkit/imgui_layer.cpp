@@ -167,6 +167,10 @@ void ImGuiLayer::begin_frame(const std::vector<InputEvent>& events) {
   io.MousePos = pointer_.inside || held ? ImVec2(pointer_.x, pointer_.y) : ImVec2(-FLT_MAX, -FLT_MAX);
   std::copy(pointer_.down.begin(), pointer_.down.end(), io.MouseDown);
 #endif
+  // A press and a release each wait for a frame of their own, so where frames are slow the second press is late.
+  const float seconds = ImGui::GetIO().DeltaTime;
+  ImGui::GetIO().MouseDoubleClickTime = 0.3f + last_seconds_ + seconds;
+  last_seconds_ = seconds;
   ImGui::NewFrame();
 }
 

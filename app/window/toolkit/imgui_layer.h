@@ -49,6 +49,7 @@ class ImGuiLayer {
   float text_scale_ = 1, screen_scale_ = 0;
   bool changed_ = true;
   std::uint64_t frame_ = 0, drawn_ = 0;  // hashes of what the frame and the last drawn one look like
+  float last_seconds_ = 0;               // of the last frame
   struct {
     float x = 0, y = 0;
     bool inside = false;
