@@ -13,6 +13,9 @@
 #include <utility>
 
 #include "app/live/live_scene.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "mercury/random_voxel.h"
 #include "render/context/context.h"
 #include "render/renderer.h"
@@ -67,8 +70,8 @@ void measure_speed(Window& window, LiveScene& scene) {
   constexpr double seconds = 4;
   std::vector<Robot> robots;
   for (const DocumentRobot& robot : scene.document().robots) robots.push_back(*robot.body.robot);
-  scene.set_speed(unlimited_speed);
-  scene.play();
+  scene.time().set_speed(unlimited_speed);
+  scene.time().play();
   const auto playing = [&](double wanted) {
     const std::int64_t first = scene.snapshot().steps;
     std::int64_t pictures = 0, seen = first;
@@ -85,9 +88,9 @@ void measure_speed(Window& window, LiveScene& scene) {
   };
   playing(1);  // until the interval of samples is constant
   const auto [in_window, pictures] = playing(seconds);
-  scene.pause();
+  scene.time().pause();
   scene.wait_until_done();
-  Simulation simulation(scene.configuration(), robots);
+  Simulation simulation(scene.document().configuration, robots);
   std::int64_t call = 1;
   double begin = now(), spent = 0;
   std::int64_t first = 0;
@@ -123,33 +126,33 @@ int main(int argc, char** argv) {
   std::printf("%zu robots of %zu masses, %zu springs, on %s\n", count, robots[0].masses.size(),
               robots[0].springs.size(), scene.device_name().c_str());
   measure(
-      window, scene, "add all", [&] { scene.add(std::move(robots)); }, robots_are(count));
-  const RobotId some = scene.entries()[count / 2].id;
+      window, scene, "add all", [&] { scene.robots().add(std::move(robots)); }, robots_are(count));
+  const RobotId some = scene.robots().entries()[count / 2].id;
   measure(
-      window, scene, "duplicate one", [&] { scene.duplicate({some}); }, robots_are(count + 1));
+      window, scene, "duplicate one", [&] { scene.robots().duplicate({some}); }, robots_are(count + 1));
   measure(
-      window, scene, "remove one", [&] { scene.remove({some}); }, robots_are(count));
+      window, scene, "remove one", [&] { scene.robots().remove({some}); }, robots_are(count));
   measure(
       window, scene, "undo that", [&] { scene.undo(); }, robots_are(count + 1));
-  const RobotId first = scene.entries()[0].id;
+  const RobotId first = scene.robots().entries()[0].id;
   measure(
-      window, scene, "materials of one", [&] { scene.scale_materials({first}, {.stiffness = 1.5f}); },
+      window, scene, "materials of one", [&] { scene.parameters().scale_materials({first}, {.stiffness = 1.5f}); },
       [&] { return scene.snapshot().robots->robots[0].materials != nullptr; });
   std::vector<RobotId> all;
-  for (const RobotEntry& entry : scene.entries()) all.push_back(entry.id);
+  for (const RobotEntry& entry : scene.robots().entries()) all.push_back(entry.id);
   measure(
-      window, scene, "materials of all", [&] { scene.scale_materials(all, {.stiffness = 2}); },
+      window, scene, "materials of all", [&] { scene.parameters().scale_materials(all, {.stiffness = 2}); },
       [&] { return scene.snapshot().robots->robots.back().materials != nullptr; });
   measure(
       window, scene, "damping",
       [&] {
-        Configuration configuration = scene.configuration();
+        Configuration configuration = scene.document().configuration;
         configuration.damping = 0.5;
-        scene.set_configuration(configuration);
+        scene.parameters().set_configuration(configuration);
       },
       [&] { return scene.snapshot().configuration.damping == 0.5; });
   measure(
-      window, scene, "reset", [&] { scene.reset(); }, [&] { return scene.snapshot().resets > 0; });
+      window, scene, "reset", [&] { scene.time().reset(); }, [&] { return scene.snapshot().resets > 0; });
   double picture = 0;
   for (int i = 0; i < 20; ++i) picture += window.picture(scene) / 20;
   std::printf("a picture without edits %.2f ms\n", 1e3 * picture);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,7 @@ const DocumentRobot* SceneDocument::find(RobotId id) const {
   const auto found = std::ranges::find_if(robots, [&](const DocumentRobot& robot) { return robot.body.id == id; });
   return found == robots.end() ? nullptr : &*found;
 }
+DocumentRobot* SceneDocument::find(RobotId id) { return const_cast<DocumentRobot*>(std::as_const(*this).find(id)); }
 
 std::vector<std::string> actuator_names(const Robot& robot) {
   std::vector<std::string> names;
@@ -21,6 +23,29 @@ std::vector<std::string> actuator_names(const Robot& robot) {
   return names;
 }
 std::vector<std::string> neuron_names(const Robot& robot) { return brain_layout(robot).neurons; }
+
+bool hold(LiveRobot& robot, std::vector<float> ByHand::*list, std::size_t count, std::size_t index,
+          std::optional<float> wanted) {
+  const float value = wanted.value_or(std::numeric_limits<float>::quiet_NaN());
+  ByHand held = robot.by_hand ? *robot.by_hand : ByHand{};
+  std::vector<float>& values = held.*list;
+  values.resize(count, std::numeric_limits<float>::quiet_NaN());
+  if (values[index] == value || (std::isnan(values[index]) && std::isnan(value))) return false;
+  values[index] = value;
+  const auto is_free = [](const std::vector<float>& all) {
+    return std::ranges::all_of(all, [](float one) { return std::isnan(one); });
+  };
+  robot.by_hand =
+      is_free(held.drives) && is_free(held.neurons) ? nullptr : std::make_shared<const ByHand>(std::move(held));
+  return true;
+}
+
+bool release(LiveRobot& robot, std::vector<float> ByHand::*list) {
+  bool changed = false;
+  const std::size_t count = robot.by_hand ? (robot.by_hand.get()->*list).size() : 0;
+  for (std::size_t i = 0; i < count; ++i) changed = hold(robot, list, count, i, std::nullopt) || changed;
+  return changed;
+}
 
 HeldParts held_in(const SceneDocument& document) {
   HeldParts held;

@@ -48,15 +48,26 @@ struct SceneDocument {
   // Grows with each change of environment; an undo brings the old number back, and with it the states that robots had.
   std::uint64_t surroundings = 0;
 
-  const DocumentRobot* find(RobotId id) const;  // null if it is unknown
+  DocumentRobot* find(RobotId id);  // null if it is unknown
+  const DocumentRobot* find(RobotId id) const;
 };
 
 // What may be held of a robot by hand, in the order of ByHand.
 std::vector<std::string> actuator_names(const Robot& robot);
 std::vector<std::string> neuron_names(const Robot& robot);
+// Holds one value of a list with `count` of them, or releases it. Returns whether that changes anything.
+bool hold(LiveRobot& robot, std::vector<float> ByHand::*list, std::size_t count, std::size_t index,
+          std::optional<float> wanted);
+// Releases all of a list.
+bool release(LiveRobot& robot, std::vector<float> ByHand::*list);
 
 // What is held by hand, as options and scenes have it.
 HeldParts held_in(const SceneDocument& document);
+
+// "1 robot", "2 robots".
+inline std::string robot_count_text(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " robot" : " robots");
+}
 
 // The robot with its name and materials in the window, as it is saved.
 Robot whole_robot(const LiveRobot& robot);

@@ -129,12 +129,12 @@ bool is_of_scene(const std::pair<std::string, std::string>& option) {
 
 }  // namespace
 
-SceneFiles scene_files(const fs::path& path, const std::vector<SceneRobot>& robots, const Configuration& configuration,
-                       const ViewSettings& view, const HeldParts& held, const TrialStart& start) {
+SceneOutput scene_files(const fs::path& path, const std::vector<SceneRobot>& robots, const Configuration& configuration,
+                        const ViewSettings& view, const HeldParts& held, const TrialStart& start) {
   std::vector<Form> forms = forms_of(robots);
   keep_one_shape_per_kind(robots, forms);
   const fs::path folder = fs::absolute(path).parent_path(), beside = path.stem().string() + "-robots";
-  SceneFiles result;
+  SceneOutput result;
   std::vector<std::string> files;
   FileNames names;
   for (std::size_t i = 0; i < robots.size(); ++i) {

@@ -25,12 +25,12 @@ struct SceneRobot {
 // ones of a kind whose options differ from those of the first. `beside` are the indices of those robots, in the order
 // of their files. `attached` and `driven`: pins and springs, and drives by hand, by the robots' places in `robots`.
 // Throws InputError for a robot or a name that cannot be written.
-struct SceneFiles {
+struct SceneOutput {
   std::vector<FileToSave> files;
   std::vector<std::size_t> beside;
 };
-SceneFiles scene_files(const std::filesystem::path& path, const std::vector<SceneRobot>& robots,
-                       const Configuration& configuration, const ViewSettings& view, const HeldParts& held = {},
-                       const TrialStart& start = {});
+SceneOutput scene_files(const std::filesystem::path& path, const std::vector<SceneRobot>& robots,
+                        const Configuration& configuration, const ViewSettings& view, const HeldParts& held = {},
+                        const TrialStart& start = {});
 
 }  // namespace mercury

@@ -9,6 +9,10 @@
 #include <vector>
 
 #include "app/base/messages.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 
 namespace mercury::window {
 namespace {
@@ -61,8 +65,8 @@ void FrameReport::write_gl_messages(PanelContext& context) {
 }
 
 void FrameReport::write_robots(PanelContext& context) {
-  if (context.scene.robot_count() == robots_) return;
-  robots_ = context.scene.robot_count();
+  if (context.scene.robots().count() == robots_) return;
+  robots_ = context.scene.robots().count();
   std::vector<std::string> names;
   for (const DocumentRobot& robot : context.scene.document().robots) names.push_back(robot.body.name);
   context.log.write("robots", {{"count", robots_}, {"names", names}});
@@ -93,7 +97,7 @@ void FrameReport::write(PanelContext& context, const ShownView& shown, const Fra
                       {"steps", scene.snapshot().steps},
                       {"time", scene.snapshot().time},
                       {"shown", shown.time},
-                      {"playing", scene.playing() || scene.snapshot().playing},  // until the last step is shown
+                      {"playing", scene.time().playing() || scene.snapshot().playing},  // until the last step is shown
                       {"timeline",
                        {{"begin", timeline.begin},
                         {"head", timeline.head},
@@ -101,19 +105,19 @@ void FrameReport::write(PanelContext& context, const ShownView& shown, const Fra
                         {"recording", timeline.recording},
                         {"seeking", timeline.seeking},
                         {"looping", timeline.looping},
-                        {"bookmarks", scene.bookmarks()},
+                        {"bookmarks", scene.time().bookmarks()},
                         {"budget", timeline.budget}}},
                       {"second", second_of(scene.snapshot())},
                       {"ghosts", scene.drawn().scene().ghosts.size()},
                       {"cursor", context.cursor.time ? nlohmann::json(*context.cursor.time) : nlohmann::json()},
-                      {"selected", scene.selection().size()},
-                      {"attached", scene.attachments().size()},
+                      {"selected", scene.selection().robots().size()},
+                      {"attached", scene.mouse().attachments().size()},
                       {"panels", context.preferences.panels},
                       {"text", context.preferences.text_scale},
                       {"color", scene.view().color->key},
                       {"scale", {scene.drawn().scene().scale.low, scene.drawn().scene().scale.high}},
                       {"cut", scene.view().cut ? scene.view().cut->percent : -1},
-                      {"target", target_of(scene.configuration().environment)},
+                      {"target", target_of(scene.document().configuration.environment)},
                       {"theme", scene.view().theme == render::Theme::dark ? "dark" : "light"},
                       {"camera", name_of(context.camera.mode())},
                       {"on_device", scene.drawn().positions_on_device()},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/window/kept_settings.h"
 
+#include "app/live/command_text.h"
 #include "app/live/session_settings.h"
 #include "app/window/panels/commands.h"
 

@@ -12,8 +12,16 @@
 #include <optional>
 
 #include "app/base/interrupt.h"
+#include "app/live/background.h"
 #include "app/live/live_run.h"
 #include "app/live/live_scene.h"
+#include "app/live/picking.h"
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "app/scene/camera_controller.h"
 #include "app/window/frame_report.h"
 #include "app/window/kept_settings.h"
@@ -49,7 +57,7 @@ bool is_text_edit(const KeyPress& press, Action action) {
 
 // Of both sides.
 std::uint64_t changes_of(LiveScene& scene) {
-  const DrawnScene* second = scene.second_drawn();
+  const DrawnScene* second = scene.comparison().second_drawn();
   return scene.drawn().changes() + (second ? second->changes() : 0);
 }
 
@@ -162,14 +170,14 @@ void Viewer::fill_scene() {
   begins_close_ = options_.welcome && options_.playing;
   expects_robots_ =
       !options_.robots.empty() || !options_.files.empty() || !options_.generations.empty() || !options_.run.empty();
-  if (!options_.robots.empty()) scene_.add(std::move(options_.robots), false);
-  if (!options_.files.empty()) scene_.open(options_.files);
-  for (const RandomRobots& generation : options_.generations) scene_.generate(generation);
-  scene_.hold_opened(options_.held);
+  if (!options_.robots.empty()) scene_.robots().add(std::move(options_.robots), false);
+  if (!options_.files.empty()) scene_.files().open(options_.files);
+  for (const RandomRobots& generation : options_.generations) scene_.robots().generate(generation);
+  scene_.files().hold_opened(options_.held);
   if (!options_.run.empty()) open_first_run(context_, options_.run);
   for (const std::string& line : options_.notes) toasts_.show(Tone::info, line);
-  scene_.set_speed(options_.speed);
-  if (options_.playing) scene_.play();
+  scene_.time().set_speed(options_.speed);
+  if (options_.playing) scene_.time().play();
 }
 
 int Viewer::run() {
@@ -194,7 +202,7 @@ int Viewer::run() {
 }
 
 bool Viewer::anything_moves() const {
-  return frames_due_ > 0 || redraw_ || camera_moved_ || scene_.playing() || scene_.snapshot().timeline.seeking ||
+  return frames_due_ > 0 || redraw_ || camera_moved_ || scene_.time().playing() || scene_.snapshot().timeline.seeking ||
          camera_.gliding() || camera_.mode() == CameraMode::turntable || !toasts_.empty() || panels_.busy() ||
          thumbnails_.busy() || recorder_.busy() || screenshot_.busy() || !scene_.work().empty() || mouse_.busy() ||
          viewport_.coarse() || second_.coarse();
@@ -228,15 +236,16 @@ void Viewer::frame(double dt) {
   const auto scene_begin = Clock::now();
   if (camera_placed_) scene_.face(camera_.from_above(), camera_.facing());
   if (drawn_ > 0) scene_.drawn().see(shown_camera_, area_.aspect());
-  if (DrawnScene* second = scene_.second_drawn(); second && drawn_ > 0) second->see(shown_camera_, area_.aspect());
+  if (DrawnScene* second = scene_.comparison().second_drawn(); second && drawn_ > 0)
+    second->see(shown_camera_, area_.aspect());
   scene_.frame(area_.aspect());
   // Whoever edits a body sees its voxels. At low quality, round skins would take as long as all else.
   const bool rounded =
       !scene_.view().faceted && context_.body_edit.robot == 0 && viewport_.renderer().quality() != render::Quality::low;
   scene_.drawn().scene().rounded = rounded;
-  if (DrawnScene* second = scene_.second_drawn()) second->scene().rounded = rounded;
+  if (DrawnScene* second = scene_.comparison().second_drawn()) second->scene().rounded = rounded;
   run_.frame();
-  if (const auto plan = scene_.take_camera()) {
+  if (const auto plan = scene_.files().take_camera()) {
     camera_.follow(std::nullopt);
     camera_.set_mode(plan->mode);
     camera_placed_ = false;
@@ -268,14 +277,15 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   use_mouse();
   times_.mouse = since(mouse_begin);
   // In a steady view, the GPU draws the robots while the panels are made.
-  const bool early = camera_placed_ && !redraw_ && scene_.playing();
+  const bool early = camera_placed_ && !redraw_ && scene_.time().playing();
   bool draws = early && !left_out && draw_picture(dt);
   const auto panels_begin = Clock::now();
   split_area(panels_.draw_frame());
   panels_.draw_over(area_, shown_camera_, dt);
   draw_text();
   draw_handles();
-  mouse_.draw(scene_.points_at_second() ? *second_.area() : area_, shown_camera_, context_.body_edit.robot == 0);
+  mouse_.draw(scene_.mouse().points_at_second() ? *second_.area() : area_, shown_camera_,
+              context_.body_edit.robot == 0);
   panels_.draw_dialogs();
   times_.panels = since(panels_begin);
   context_.gestures = mouse_.used();
@@ -306,7 +316,7 @@ void Viewer::split_area(const ViewportArea& whole) {
   if (second_.changed()) {
     redraw_ = true;
     scene_.drawn().lay_out(area_.aspect());
-    if (DrawnScene* second = scene_.second_drawn()) second->lay_out(area_.aspect());
+    if (DrawnScene* second = scene_.comparison().second_drawn()) second->lay_out(area_.aspect());
   }
   if (second_.area()) log_.item("second", second_.area()->low, second_.area()->high);
   keep_anchor();
@@ -315,10 +325,10 @@ void Viewer::split_area(const ViewportArea& whole) {
 // A drag belongs to the side on which it began.
 void Viewer::use_mouse() {
   if (!second_.area())
-    scene_.point_at_second(false);
+    scene_.mouse().point_at_second(false);
   else if (!mouse_.busy())
-    scene_.point_at_second(ImGui::GetIO().MousePos.x >= second_.area()->low.x);
-  mouse_.update(scene_.points_at_second() ? *second_.area() : area_, shown_camera_);
+    scene_.mouse().point_at_second(ImGui::GetIO().MousePos.x >= second_.area()->low.x);
+  mouse_.update(scene_.mouse().points_at_second() ? *second_.area() : area_, shown_camera_);
 }
 
 void Viewer::draw_text() {
@@ -334,7 +344,7 @@ void Viewer::draw_text() {
   if (titles_ > 0)  // they are above the caption
     context_.caption = {area_.low, {area_.high.x, std::max(context_.caption.high.y, area_.low.y + titles_)}};
   draw_ghost_figures(scene_, area_, titles_, shown_camera_, log_);
-  DrawnScene* const second = scene_.second_drawn();
+  DrawnScene* const second = scene_.comparison().second_drawn();
   if (!second || !second_.area()) return;
   options.caption = second->scene().caption != scene_.drawn().scene().caption;
   draw_viewport_text(second->scene(), second->bounds(), *second_.area(), shown_camera_, options, no_log_);
@@ -350,14 +360,14 @@ void Viewer::draw_handles() {
   context_.legend = legend_.box();
   changed |= cut_handle_.draw(scene_, area_, shown_camera_, view, log_);
   target_handle_.draw(scene_, area_, shown_camera_, log_);
-  if (mouse_.hovered_hit() && !scene_.points_at_second())
+  if (mouse_.hovered_hit() && !scene_.mouse().points_at_second())
     draw_voxel_outline(context_, *mouse_.hovered_hit(), area_, shown_camera_);
   if (changed) scene_.set_view(view);
 }
 
 // The index of the robot that a plan names, by name or number; none = the group, or no such robot.
 std::optional<std::size_t> Viewer::followed(const CameraPlan& plan) const {
-  const std::vector<RobotEntry> entries = scene_.entries();
+  const std::vector<RobotEntry> entries = scene_.robots().entries();
   for (std::size_t i = 0; i < entries.size(); ++i)
     if (!plan.robot.empty() && (entries[i].name == plan.robot || std::to_string(i) == plan.robot)) return i;
   return std::nullopt;
@@ -390,7 +400,7 @@ void Viewer::update_renderer() {
     plan.mode = camera_.mode();  // unless the user has changed it, that of the scene
     const auto robot = followed(plan);
     camera_.set_mode(CameraMode::still);
-    camera_.set_orbit(direction_of(plan, has_ground(scene_.configuration().environment)));
+    camera_.set_orbit(direction_of(plan, has_ground(scene_.document().configuration.environment)));
     camera_.start(live.camera_boxes(), area_.aspect());
     camera_.begin(plan, robot ? robot : camera_.followed());
     if (std::exchange(begins_close_, false)) begin_close();
@@ -423,7 +433,7 @@ void Viewer::keep_anchor() {
   }
   const auto at = anchor_ ? robots.index_of(anchor_->robot) : std::nullopt;
   if (at) camera_.shift(live.cell_center(*at) - anchor_->cell);
-  const auto current = scene_.current() ? robots.index_of(*scene_.current()) : std::nullopt;
+  const auto current = scene_.selection().current() ? robots.index_of(*scene_.selection().current()) : std::nullopt;
   std::size_t chosen = current.value_or(0);
   const auto distance = [&](std::size_t i) { return (live.cell_center(i) - camera_.orbit().target).norm(); };
   for (std::size_t i = 1; i < robots.robots.size() && !current; ++i)
@@ -432,7 +442,7 @@ void Viewer::keep_anchor() {
 }
 
 bool Viewer::leaves_gpu_to_steps() const {
-  if (!scene_.playing() || std::isfinite(scene_.speed()) || scene_.cuda_device() < 0) return false;
+  if (!scene_.time().playing() || std::isfinite(scene_.time().speed()) || scene_.cuda_device() < 0) return false;
   return !redraw_ && !mouse_.busy() && !camera_.gliding() && !recorder_.busy();
 }
 
@@ -461,7 +471,7 @@ bool Viewer::draw_picture(double dt) {
   const bool changed = shown_changes_ != changes_of(scene_);
   // A new area or new bodies move the camera once.
   const bool jumps = redraw_ && !moved_before;
-  const bool moving = (camera_moved_ && !jumps) || (stepped && scene_.playing()) || mouse_.busy();
+  const bool moving = (camera_moved_ && !jumps) || (stepped && scene_.time().playing()) || mouse_.busy();
   if (!moving && !stepped && !changed && !redraw_ && !viewport_.coarse() && !second_.coarse()) return false;
   if (pacing_.keeps_robots(leaves_gpu_to_steps())) return false;
   const auto begin = Clock::now();

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_selection.h"
 #include "app/scene/appearance.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/theme.h"
@@ -65,7 +67,8 @@ float ActuatorsPanel::drive_now(const LiveScene& scene, const LiveRobot& robot, 
 void ActuatorsPanel::draw(PanelContext& context) {
   LiveScene& scene = context.scene;
   const std::vector<DocumentRobot>& all = scene.document().robots;
-  const DocumentRobot* shown = scene.current() ? scene.document().find(*scene.current()) : nullptr;
+  const DocumentRobot* shown =
+      scene.selection().current() ? scene.document().find(*scene.selection().current()) : nullptr;
   if (!shown && !all.empty()) shown = &all.front();
   if (!shown) {
     note("There are no robots.");
@@ -77,7 +80,7 @@ void ActuatorsPanel::draw(PanelContext& context) {
     robot = snapshot.robots->robots[*index];  // as it was at the moment shown
   show(robot.robot);
   if (robot.robot->brain) scene.watch_brain(robot.id);
-  std::vector<RobotId> robots = scene.selection();
+  std::vector<RobotId> robots = scene.selection().robots();
   if (robots.empty()) robots = {robot.id};
   heading(robot.name.c_str());
   if (body_.actuators.empty()) {
@@ -95,7 +98,7 @@ void ActuatorsPanel::draw(PanelContext& context) {
            !std::ranges::all_of(one->body.by_hand->drives, [](float u) { return std::isnan(u); });
   });
   ImGui::BeginDisabled(!any);
-  if (ImGui::Button("Release all", {-1, 0})) scene.release_actuators(robots);
+  if (ImGui::Button("Release all", {-1, 0})) scene.parameters().release_actuators(robots);
   ImGui::EndDisabled();
   context.log.item("actuators.release");
   tooltip("all muscles follow their sines and brains again");
@@ -134,7 +137,7 @@ void ActuatorsPanel::draw_actuator(PanelContext& context, const LiveRobot& robot
   ImGui::Unindent(1.1f * text);
   ImGui::PopID();
   if (!moved && !released) return;
-  context.scene.drive_actuator(robots, actuator.name, released ? std::nullopt : std::optional(drive));
+  context.scene.parameters().drive_actuator(robots, actuator.name, released ? std::nullopt : std::optional(drive));
   if (released) context.scene.end_edit();
   context.log.write("drive",
                     {{"actuator", actuator.name}, {"drive", released ? nlohmann::json() : nlohmann::json(drive)}});

@@ -9,6 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/picking.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "app/window/panels/commands.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -39,18 +43,18 @@ void toggle_body_editor(PanelContext& context) {
     context.body_edit.robot = 0;
     return;
   }
-  const std::optional<RobotId> current = context.scene.current();
+  const std::optional<RobotId> current = context.scene.selection().current();
   if (!current) {
     context.toasts.show(Tone::info, "select the robot to edit first");
     return;
   }
-  if (!context.scene.has_voxels(*current)) {
+  if (!context.scene.robots().has_voxels(*current)) {
     context.toasts.show(Tone::info, fmt::format("{} has no grid of voxels; only voxel robots can be edited",
                                                 name_of_robot(context.scene, *current)));
     return;
   }
   context.body_edit.robot = *current;
-  context.scene.pause();  // a body that holds still is easier to hit
+  context.scene.time().pause();  // a body that holds still is easier to hit
 }
 
 void draw_body_editor(PanelContext& context, const ViewportArea& area) {
@@ -104,7 +108,7 @@ void draw_body_editor(PanelContext& context, const ViewportArea& area) {
 
 void draw_voxel_outline(PanelContext& context, const Hit& hit, const ViewportArea& area, const render::Camera& camera) {
   const BodyEdit& body = context.body_edit;
-  if (body.robot == 0 || body.robot != hit.robot || !context.scene.voxel_side(hit)) return;
+  if (body.robot == 0 || body.robot != hit.robot || !context.scene.robots().voxel_side(hit)) return;
   const DrawnScene& drawn = context.scene.drawn();
   const LiveRobots& robots = *context.scene.snapshot().robots;
   // The hit may be older than the last edit.
@@ -154,9 +158,9 @@ void draw_voxel_outline(PanelContext& context, const Hit& hit, const ViewportAre
 bool edit_body_at(PanelContext& context, const Hit& hit) {
   const BodyEdit& body = context.body_edit;
   if (body.robot == 0 || body.robot != hit.robot) return false;
-  const std::optional<VoxelSide> side = context.scene.voxel_side(hit);
+  const std::optional<VoxelSide> side = context.scene.robots().voxel_side(hit);
   if (!side) return true;
-  if (context.scene.edit_voxel(hit.robot, *side, body.edit)) {
+  if (context.scene.robots().edit_voxel(hit.robot, *side, body.edit)) {
     const Robot& robot = *context.scene.document().find(hit.robot)->body.robot;
     context.log.write("edited", {{"masses", robot.masses.size()}, {"springs", robot.springs.size()}});
   }

@@ -13,6 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_selection.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/plot.h"
@@ -78,7 +82,7 @@ std::optional<RobotId> thinking_robot(const LiveScene& scene) {
     const DocumentRobot* robot = scene.document().find(id);
     return robot && robot->body.robot->brain;
   };
-  for (const RobotId id : scene.selection())
+  for (const RobotId id : scene.selection().robots())
     if (thinks(id)) return id;
   for (const DocumentRobot& robot : scene.document().robots)
     if (robot.body.robot->brain) return robot.body.id;
@@ -198,7 +202,7 @@ void BrainPanel::draw(PanelContext& context) {
   if (!robot) {
     note("No robot of the scene has a brain. sample:hunter has one: it seeks the target.");
     static const bool has_sample = std::ranges::count(sample_names(), "sample:hunter") > 0;
-    if (has_sample && ImGui::Button("Open a hunter")) context.scene.open({sample_or_path("sample:hunter")});
+    if (has_sample && ImGui::Button("Open a hunter")) context.scene.files().open({sample_or_path("sample:hunter")});
     context.log.item("brain.sample");
     return;
   }
@@ -328,7 +332,7 @@ void BrainPanel::draw_menu(PanelContext& context, const BrainActivity& now, std:
   ImGui::EndDisabled();
   context.log.item("brain.release");
   if (wanted) {
-    context.scene.clamp_neuron(now.robot, menu_of_, *wanted);
+    context.scene.parameters().clamp_neuron(now.robot, menu_of_, *wanted);
     context.log.write("clamp", {{"neuron", name}, {"value", *wanted ? nlohmann::json(**wanted) : nlohmann::json()}});
   }
   // A whole drag of the slider is one undo step.
@@ -340,10 +344,10 @@ void BrainPanel::draw_held(PanelContext& context, RobotId robot, std::span<const
   const auto count = std::ranges::count_if(held, [](float value) { return !std::isnan(value); });
   if (count == 0) return;
   note(fmt::format("{} held by hand", count == 1 ? "1 neuron is" : fmt::format("{} neurons are", count)).c_str());
-  if (ImGui::Button("Release all")) context.scene.release_neurons(robot);
+  if (ImGui::Button("Release all")) context.scene.parameters().release_neurons(robot);
   context.log.item("brain.release_all");
   ImGui::SameLine();
-  if (ImGui::Button("Compare")) context.scene.show_ghosts({robot});
+  if (ImGui::Button("Compare")) context.scene.comparison().show_ghosts({robot});
   context.log.item("brain.compare");
   tooltip("a ghost shows the robot with its whole brain, from now on");
 }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/scene_robots.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/embedded.h"
 #include "app/window/toolkit/theme.h"
@@ -230,7 +231,7 @@ void BrowserPanel::draw(PanelContext& context) {
     std::vector<Robot> robots;
     for (const RobotFolderEntry& entry : entries_)
       if (entry.robot) robots.push_back(*entry.robot);
-    context.scene.add(std::move(robots));
+    context.scene.robots().add(std::move(robots));
   }
   context.log.item("browser.all");
   ImGui::EndDisabled();
@@ -281,7 +282,7 @@ void BrowserPanel::draw_card(PanelContext& context, std::size_t index, float wid
                shortened(name, width - 2 * margin).c_str());
   if (entry.robot) list.AddText({corner.x + margin, below.y + 1.2f * line}, palette().faint, size_of(entry).c_str());
   if (hovered && pointer_rests()) show_details(entry);
-  if (clicked && entry.robot) context.scene.add({*entry.robot});
+  if (clicked && entry.robot) context.scene.robots().add({*entry.robot});
   if (clicked && !entry.robot) context.toasts.show(Tone::error, entry.error);
 }
 

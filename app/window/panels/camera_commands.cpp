@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "app/live/scene_robots.h"
 #include "app/window/toolkit/widgets.h"
 
 namespace mercury::window {
@@ -83,7 +84,7 @@ void go_to_bookmark(PanelContext& context, std::size_t place) {
     return;
   }
   std::optional<std::size_t> robot;
-  const std::vector<RobotEntry> entries = context.scene.entries();
+  const std::vector<RobotEntry> entries = context.scene.robots().entries();
   for (std::size_t i = 0; i < entries.size() && !plan->robot.empty(); ++i)
     if (entries[i].name == plan->robot || std::to_string(i) == plan->robot) robot = i;
   context.camera.go_to(*plan, robot);

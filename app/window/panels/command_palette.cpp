@@ -12,6 +12,11 @@
 #include <cstdlib>
 #include <utility>
 
+#include "app/live/measurements.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "app/options/trial_start.h"
 #include "app/scene/color_quantity.h"
 #include "app/window/panels/commands.h"
@@ -90,10 +95,10 @@ constexpr Choice choices[] = {
 
 // As one edit that can be undone.
 void change_configuration(PanelContext& context, const std::function<void(Configuration&)>& change) {
-  Configuration configuration = context.scene.configuration();
+  Configuration configuration = context.scene.document().configuration;
   change(configuration);
   context.scene.end_edit();
-  context.scene.set_configuration(configuration);
+  context.scene.parameters().set_configuration(configuration);
   context.scene.end_edit();
 }
 
@@ -107,7 +112,7 @@ void add_switches(PanelContext& context, std::vector<PaletteEntry>& entries) {
     entries.push_back({choice.name, "View", choice.chosen(view) ? "on" : "",
                        [&context, &choice] { change_view(context, choice.choose); }, choice.words});
   for (const ColorQuantity& quantity : color_quantities())
-    if (quantity.exists_in(context.scene.configuration().environment))
+    if (quantity.exists_in(context.scene.document().configuration.environment))
       entries.push_back(
           {fmt::format("color by {}", quantity.name), "View", view.color == &quantity ? "on" : "",
            [&context, &quantity] { change_view(context, [&](ViewSettings& now) { color_by(now, quantity); }); }});
@@ -185,9 +190,9 @@ void add_number(PanelContext& context, std::vector<PaletteEntry>& entries, const
   entries.push_back({name, "Tune", fmt::format("{:.4g}{}{}", now, unit.empty() ? "" : " ", unit),
                      [&context, name, now, unit, set = std::move(set)] {
                        ask_number(context, name, now, unit, [&context, set](double value) {
-                         Configuration configuration = context.scene.configuration();
+                         Configuration configuration = context.scene.document().configuration;
                          set(configuration, value);
-                         context.scene.set_configuration(configuration);
+                         context.scene.parameters().set_configuration(configuration);
                        });
                      }});
 }
@@ -209,15 +214,16 @@ void add_view_number(PanelContext& context, std::vector<PaletteEntry>& entries, 
 
 void add_view_numbers(PanelContext& context, std::vector<PaletteEntry>& entries) {
   const ViewSettings& view = context.scene.view();
-  add_view_number(
-      context, entries, "columns of the grid (0 = automatic)", view.grid ? static_cast<double>(view.grid->columns) : 0,
-      "", {0, 1000}, [&context](double value) {
-        const auto columns = static_cast<int>(value), robots = static_cast<int>(context.scene.entries().size());
-        change_view(context, [&](ViewSettings& now) {
-          now.grid =
-              columns > 0 ? std::optional(Grid{columns, std::max(1, (robots + columns - 1) / columns)}) : std::nullopt;
-        });
-      });
+  add_view_number(context, entries, "columns of the grid (0 = automatic)",
+                  view.grid ? static_cast<double>(view.grid->columns) : 0, "", {0, 1000}, [&context](double value) {
+                    const auto columns = static_cast<int>(value),
+                               robots = static_cast<int>(context.scene.robots().entries().size());
+                    change_view(context, [&](ViewSettings& now) {
+                      now.grid = columns > 0
+                                     ? std::optional(Grid{columns, std::max(1, (robots + columns - 1) / columns)})
+                                     : std::nullopt;
+                    });
+                  });
   constexpr double degrees = 57.29578;
   add_view_number(context, entries, "field of view", degrees * static_cast<double>(context.camera.field_of_view),
                   "degrees", {5, 90},
@@ -227,13 +233,13 @@ void add_view_numbers(PanelContext& context, std::vector<PaletteEntry>& entries)
                     change_view(context,
                                 [&](ViewSettings& now) { now.shown.arrows.length = static_cast<float>(value); });
                   });
-  add_view_number(context, entries, "speed", context.scene.speed(), "times real time", {1e-3, 1e3},
-                  [&context](double value) { context.scene.set_speed(value); });
+  add_view_number(context, entries, "speed", context.scene.time().speed(), "times real time", {1e-3, 1e3},
+                  [&context](double value) { context.scene.time().set_speed(value); });
 }
 
 // Where robots made for water are torn apart, the safe variants come first.
 void add_environments(PanelContext& context, std::vector<PaletteEntry>& entries) {
-  const Configuration& configuration = context.scene.configuration();
+  const Configuration& configuration = context.scene.document().configuration;
   const std::vector<EnvironmentOffer> offers = environment_offers(configuration, has_water_robots(context.scene));
   for (const EnvironmentOffer& offer : offers) {
     const bool is_now = !offer.adjust && name_of(configuration.environment) == offer.environment;
@@ -256,11 +262,11 @@ void add_environments(PanelContext& context, std::vector<PaletteEntry>& entries)
 
 // Where robots begin.
 void add_start(PanelContext& context, std::vector<PaletteEntry>& entries) {
-  const TrialStart start = context.scene.start();
+  const TrialStart start = context.scene.document().start;
   const auto change = [&context](const std::function<void(TrialStart&)>& set) {
-    TrialStart changed = context.scene.start();
+    TrialStart changed = context.scene.document().start;
     set(changed);
-    context.scene.set_start(changed);
+    context.scene.parameters().set_start(changed);
   };
   constexpr std::string_view words = "start brain trial";
   for_each_parameter(start.trials, [&]<class Value>(const auto& parameter, const Value& value) {
@@ -297,7 +303,7 @@ void add_start(PanelContext& context, std::vector<PaletteEntry>& entries) {
 }
 
 void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
-  const Configuration& configuration = context.scene.configuration();
+  const Configuration& configuration = context.scene.document().configuration;
   add_number(context, entries, "time step", 1000 * configuration.dt, "ms",
              [](Configuration& changed, double value) { changed.dt = value / 1000; });
   add_number(context, entries, "damping", configuration.damping, "1/s",
@@ -337,14 +343,14 @@ void add_parameters(PanelContext& context, std::vector<PaletteEntry>& entries) {
            fmt::format("{:.4g}, {:.4g}, {:.4g}{}{}", now[0], now[1], now[2], unit.empty() ? "" : " ", unit),
            [&context, label, now, unit, name = std::string(parameter.name)] {
              ask_numbers(context, label, now, unit, [&context, name](const std::vector<double>& numbers) {
-               Configuration changed = context.scene.configuration();
+               Configuration changed = context.scene.document().configuration;
                for_each_parameter(changed.environment, [&]<class Other>(const auto& other, Other& target) {
                  if constexpr (std::is_same_v<Other, Vec3>)
                    if (other.name == name)
                      target = {static_cast<float>(numbers[0]), static_cast<float>(numbers[1]),
                                static_cast<float>(numbers[2])};
                });
-               context.scene.set_configuration(changed);
+               context.scene.parameters().set_configuration(changed);
              });
            }});
     }
@@ -504,9 +510,9 @@ std::vector<PaletteEntry> settings_for_palette(PanelContext& context, const std:
   add_view_numbers(context, entries);
   add_parameters(context, entries);
   add_start(context, entries);
-  for (const RobotEntry& robot : context.scene.entries())
+  for (const RobotEntry& robot : context.scene.robots().entries())
     entries.push_back({robot.name, "Robots", fmt::format("{} springs", robot.springs), [&context, id = robot.id] {
-                         context.scene.select(id);
+                         context.scene.selection().select(id);
                          frame_robots(context, {id});
                        }});
   return entries;

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "app/live/messages.h"
+#include "app/live/robot_saving.h"
+#include "app/live/scene_comparison.h"
 #include "app/scene/view_settings.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/key_bindings.h"

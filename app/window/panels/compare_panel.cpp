@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_selection.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/widgets.h"
@@ -33,7 +35,7 @@ class ComparePanel : public Panel {
 namespace {
 
 void set_second(PanelContext& context, const std::optional<SideDifference>& difference) {
-  context.scene.set_second(difference);
+  context.scene.comparison().set_second(difference);
   if (difference) context.preferences.compared = difference->text();
   context.log.write("compare", {{"with", difference ? difference->text() : ""}});
 }
@@ -50,7 +52,7 @@ SideDifference other_environment(const Configuration& configuration) {
 
 // The second view begins with what it had last, if that still is something else than the first.
 SideDifference usual_difference(const PanelContext& context) {
-  const Configuration& first = context.scene.configuration();
+  const Configuration& first = context.scene.document().configuration;
   try {
     if (!context.preferences.compared.empty()) {
       const SideDifference last(context.preferences.compared);
@@ -65,7 +67,7 @@ SideDifference usual_difference(const PanelContext& context) {
 
 void toggle_second_view(PanelContext& context) {
   LiveScene& scene = context.scene;
-  if (scene.second()) return set_second(context, std::nullopt);
+  if (scene.comparison().second()) return set_second(context, std::nullopt);
   if (scene.snapshot().timeline.recording)
     context.toasts.show(Tone::info, "a recording has one side; go on simulating from a frame to compare");
   set_second(context, usual_difference(context));
@@ -73,17 +75,17 @@ void toggle_second_view(PanelContext& context) {
 
 void toggle_ghosts(PanelContext& context, GhostOf of) {
   LiveScene& scene = context.scene;
-  if (!scene.ghosts().empty()) {
-    scene.hide_ghosts();
+  if (!scene.comparison().ghosts().empty()) {
+    scene.comparison().hide_ghosts();
     context.log.write("ghosts", {{"count", 0}});
     return;
   }
-  const std::vector<RobotId> robots = scene.selection();
+  const std::vector<RobotId> robots = scene.selection().robots();
   if (robots.empty()) {
     context.toasts.show(Tone::info, "select the robots that get a ghost first");
     return;
   }
-  const std::size_t count = scene.show_ghosts(robots, of);
+  const std::size_t count = scene.comparison().show_ghosts(robots, of);
   context.log.write("ghosts", {{"count", count}});
   if (count == 0) {
     context.toasts.show(Tone::info, "the selected robots have no parent in the window");
@@ -101,8 +103,8 @@ void ComparePanel::draw(PanelContext& context) {
 
 void ComparePanel::draw_views(PanelContext& context) {
   heading("Two views");
-  const std::optional<SideDifference> now = context.scene.second();
-  const Configuration& first = context.scene.configuration();
+  const std::optional<SideDifference> now = context.scene.comparison().second();
+  const Configuration& first = context.scene.document().configuration;
   const auto preset = [&](const char* name, const char* text, const char* help, const SideDifference& difference) {
     const bool on = now == difference;
     ImGui::PushID(name);
@@ -179,8 +181,8 @@ void ComparePanel::draw_ghosts(PanelContext& context) {
   combo("of", "what the ghost of a robot is; automatic: its parent, or itself unchanged if it has none or was changed",
         ghost_of_, {"automatic", "itself unchanged", "its parent"});
   context.log.item("compare.ghost_of");
-  const bool on = !scene.ghosts().empty();
-  ImGui::BeginDisabled(!on && scene.selection().empty());
+  const bool on = !scene.comparison().ghosts().empty();
+  ImGui::BeginDisabled(!on && scene.selection().robots().empty());
   if (ImGui::Button(on ? "Hide the ghosts" : "Ghosts of the selected robots", {-1, 0}))
     toggle_ghosts(context, static_cast<GhostOf>(ghost_of_));
   ImGui::EndDisabled();
@@ -188,7 +190,7 @@ void ComparePanel::draw_ghosts(PanelContext& context) {
   tooltip("translucent copies that go on as they were, from the moment shown on (key A)");
   if (!on)
     note("A ghost shows a robot before it was tuned, edited or mutated. It counts nowhere and nothing pulls at it.");
-  for (const GhostFigures& figures : scene.ghost_figures()) {
+  for (const GhostFigures& figures : scene.comparison().ghost_figures()) {
     ImGui::Bullet();
     std::string text = text_of(figures);
     std::ranges::replace(text, '\n', ' ');

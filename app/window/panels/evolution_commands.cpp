@@ -13,6 +13,9 @@
 
 #include "app/base/progress.h"
 #include "app/live/robot_saving.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/error.h"
@@ -117,7 +120,7 @@ EvolveForm::EvolveForm(PanelContext& context, std::vector<LiveRobot> founders)
 
 EvolveRequest EvolveForm::request() const {
   EvolveRequest request = values_;
-  request.settings.configuration = context_.scene.configuration();
+  request.settings.configuration = context_.scene.document().configuration;
   request.folder = name_.empty() ? fs::path() : (fs::path(folder_) / name_).lexically_normal();
   return request;
 }
@@ -290,20 +293,21 @@ void open_paths(PanelContext& context, const std::vector<fs::path>& paths) {
       run = found;
   }
   if (run) open_run(context, *run);
-  context.scene.open(robots);
+  context.scene.files().open(robots);
 }
 
 void open_run(PanelContext& context, const fs::path& folder) {
   show_panel(context);
   context.run.open(folder, [&context](std::vector<Robot> robots, const RunView& view) {
-    context.scene.show(std::move(robots), view.settings.configuration, "open " + context.run.name());
+    context.scene.robots().show(std::move(robots), view.settings.configuration, "open " + context.run.name());
   });
 }
 
 void open_first_run(PanelContext& context, const fs::path& folder) {
   show_panel(context);
-  context.run.open(
-      folder, [&context](std::vector<Robot> robots, const RunView&) { context.scene.add(std::move(robots), false); });
+  context.run.open(folder, [&context](std::vector<Robot> robots, const RunView&) {
+    context.scene.robots().add(std::move(robots), false);
+  });
 }
 
 void choose_run(PanelContext& context) {
@@ -331,11 +335,11 @@ void add_individual(PanelContext& context, std::uint64_t id) {
       return other.body.name == robot.name && *other.body.robot == robot;
     });
     if (same == robots.end()) {
-      const std::vector<RobotId> added = context.scene.add({robot}, false);
-      if (!added.empty()) context.scene.select(added.front());
+      const std::vector<RobotId> added = context.scene.robots().add({robot}, false);
+      if (!added.empty()) context.scene.selection().select(added.front());
       return;
     }
-    context.scene.select(same->body.id);
+    context.scene.selection().select(same->body.id);
   });
 }
 
@@ -347,7 +351,7 @@ ImTextureID thumbnail_of_individual(PanelContext& context, std::uint64_t id) {
 }
 
 void evolve_selected(PanelContext& context) {
-  if (context.scene.robot_count() == 0)
+  if (context.scene.robots().count() == 0)
     context.toasts.show(Tone::info, "there are no robots to evolve");
   else if (context.run.activity() != LiveRun::Activity::none)
     context.toasts.show(Tone::info, "an evolution is running already; stop it in the Evolution panel first");

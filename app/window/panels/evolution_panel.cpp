@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/live/scene_robots.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/panels/run_sections.h"
@@ -65,7 +66,7 @@ void draw_commands(PanelContext& context) {
   context.log.item("evolution.open");
   tooltip("open the folder of an evolution, running or finished; or drop it on the window");
   ImGui::SameLine();
-  ImGui::BeginDisabled(context.scene.robot_count() == 0);
+  ImGui::BeginDisabled(context.scene.robots().count() == 0);
   if (primary_button("Evolve...", {width, 0})) evolve_selected(context);
   context.log.item("evolution.evolve");
   tooltip(
@@ -105,7 +106,7 @@ void draw_button(PanelContext& context, float width) {
     tooltip("stop in an orderly way; the run can go on later");
   } else if (view && !view->is_over()) {
     ImGui::BeginDisabled(run.activity() != Activity::none || !run.problem().empty());
-    if (ImGui::Button("Go on", {width, 0})) run.resume(context.scene.configuration().device);
+    if (ImGui::Button("Go on", {width, 0})) run.resume(context.scene.document().configuration.device);
     context.log.item("evolution.resume");
     ImGui::EndDisabled();
     tooltip("continue this run in the background, as if it had never stopped");
@@ -120,7 +121,7 @@ void ask_for_generations(PanelContext& context, int generation) {
     if (error != std::errc() || end != text.data() + text.size() || more < 1 || more > 1'000'000)
       context.toasts.show(Tone::warning, "\"" + text + "\" is not accepted; give 1 to 1000000 generations");
     else
-      context.run.resume(context.scene.configuration().device, generation + more);
+      context.run.resume(context.scene.document().configuration.device, generation + more);
   };
   context.dialogs.ask_text("Go on", "How many generations more?", "50", "Go on", go_on);
 }

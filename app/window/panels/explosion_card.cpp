@@ -7,6 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "app/live/picking.h"
+#include "app/live/replay_log.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "app/window/panels/commands.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -34,7 +39,7 @@ void ask_for_repro(PanelContext& context, const ExplodedRobot& robot) {
                             [&context, id = robot.robot](const FileChoice& answer) {
                               save_with_confirmation(context, "repro",
                                                      [&context, id, folder = answer.paths.front()](bool overwrite) {
-                                                       return context.scene.save_repro(id, folder, overwrite);
+                                                       return context.scene.files().save_repro(id, folder, overwrite);
                                                      });
                             });
 }
@@ -53,7 +58,7 @@ void ExplosionCard::choose(int steps) {
 }
 
 void ExplosionCard::update(PanelContext& context, const ViewportArea& area, const render::Camera& camera) {
-  context.scene.pause_on_explosion(context.preferences.pause_on_explosion);
+  context.scene.time().pause_on_explosion(context.preferences.pause_on_explosion);
   for (const Explosion& explosion : context.scene.take_explosions())
     context.log.write("exploded",
                       {{"robot", explosion.robot}, {"time", explosion.time}, {"spring", explosion.culprit_spring}});
@@ -64,12 +69,12 @@ void ExplosionCard::update(PanelContext& context, const ViewportArea& area, cons
     });
   });
   if (!chosen()) chosen_ = robots_.empty() ? std::nullopt : std::optional(robots_.front().robot);
-  if (const auto selected = context.scene.current(); std::exchange(selected_, selected) != selected)
+  if (const auto selected = context.scene.selection().current(); std::exchange(selected_, selected) != selected)
     for (const ExplodedRobot& robot : robots_)
       if (robot.robot == selected) chosen_ = selected;
   const ExplodedRobot* const robot = chosen();
   marks_.clear();
-  if (!robot || !(context.scene.is_selected(robot->robot) || high_.x > low_.x)) return;
+  if (!robot || !(context.scene.selection().contains(robot->robot) || high_.x > low_.x)) return;
   const std::vector<Box> covered{box(), context.legend, context.first_steps, context.message};
   marks_ = draw_explosion_mark(*robot, covered, context.log, area, camera);
 }
@@ -123,7 +128,7 @@ void ExplosionCard::draw_heading(PanelContext& context, const ExplodedRobot& rob
 
 void ExplosionCard::draw_buttons(PanelContext& context, const ExplodedRobot& robot, const ViewportArea& area) {
   if (ImGui::Button("Show it")) {
-    context.scene.select(robot.robot);
+    context.scene.selection().select(robot.robot);
     context.camera.set_mode(CameraMode::still);
     context.camera.frame({&robot.box, 1}, area.aspect());
   }
@@ -132,7 +137,7 @@ void ExplosionCard::draw_buttons(PanelContext& context, const ExplodedRobot& rob
   if (ImGui::Button("Save repro...")) ask_for_repro(context, robot);
   context.log.item("explosion.repro");
   ImGui::SameLine();
-  if (ImGui::Button("Reset")) context.scene.reset();
+  if (ImGui::Button("Reset")) context.scene.time().reset();
   context.log.item("explosion.reset");
   ImGui::SameLine();
   if (ImGui::Button("Dismiss"))

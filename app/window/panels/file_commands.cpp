@@ -8,6 +8,11 @@
 #include <optional>
 
 #include "app/export/export_format.h"
+#include "app/live/robot_saving.h"
+#include "app/live/scene_exports.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 
 namespace mercury::window {
 namespace {
@@ -31,7 +36,7 @@ void save_one(PanelContext& context, const RobotEntry& robot) {
                             [&context, id = robot.id](const FileChoice& answer) {
                               const fs::path path = answer.paths.front();
                               save_with_confirmation(context, "robot", [&context, id, path](bool overwrite) {
-                                return context.scene.save(id, path, overwrite);
+                                return context.scene.files().save(id, path, overwrite);
                               });
                             });
 }
@@ -49,7 +54,8 @@ void save_many(PanelContext& context, const std::vector<RobotId>& robots) {
                               const RobotFormat format = answer.format == 1 ? RobotFormat::cbor : RobotFormat::json;
                               save_with_confirmation(context, fmt::format("{} robots", robots.size()),
                                                      [&context, robots, folder, format](bool overwrite) {
-                                                       return context.scene.save_all(robots, folder, format, overwrite);
+                                                       return context.scene.files().save_all(robots, folder, format,
+                                                                                             overwrite);
                                                      });
                             });
 }
@@ -57,7 +63,7 @@ void save_many(PanelContext& context, const std::vector<RobotId>& robots) {
 // Robots that neither a seed nor a file can bring back.
 std::vector<RobotId> robots_to_lose(const LiveScene& scene) {
   std::vector<RobotId> lost;
-  for (const RobotEntry& robot : scene.entries()) {
+  for (const RobotEntry& robot : scene.robots().entries()) {
     const DocumentRobot* document = scene.document().find(robot.id);
     const bool random = document && document->source.generation;
     if (robot.unsaved && (robot.tuned || !random)) lost.push_back(robot.id);
@@ -111,7 +117,7 @@ void report(PanelContext& context, const std::string& what, const SaveResult& re
 namespace fs = std::filesystem;
 
 std::optional<RobotId> robot_to_export(PanelContext& context) {
-  if (const auto current = context.scene.current()) return current;
+  if (const auto current = context.scene.selection().current()) return current;
   const std::vector<RobotId> robots = selected_or_all(context.scene);
   if (robots.empty()) {
     context.toasts.show(Tone::info, "there is no robot to export");
@@ -197,16 +203,16 @@ void save_robots(PanelContext& context) {
     save_many(context, robots);
     return;
   }
-  for (const RobotEntry& entry : context.scene.entries())
+  for (const RobotEntry& entry : context.scene.robots().entries())
     if (entry.id == robots.front()) save_one(context, entry);
 }
 
 void save_scene(PanelContext& context) {
-  if (context.scene.entries().empty()) {
+  if (context.scene.robots().entries().empty()) {
     context.toasts.show(Tone::info, "there are no robots to save in a scene");
     return;
   }
-  const fs::path last = context.scene.scene_file();
+  const fs::path last = context.scene.files().scene_file();
   context.dialogs.ask_files({.kind = FileRequest::Kind::save,
                              .title = "Save the scene",
                              .button = "Save",
@@ -219,7 +225,7 @@ void save_scene(PanelContext& context) {
                               save_with_confirmation(context, "scene", [&context, path](bool overwrite) {
                                 SaveResult result;
                                 with_window_camera(context,
-                                                   [&] { result = context.scene.save_scene(path, overwrite); });
+                                                   [&] { result = context.scene.files().save_scene(path, overwrite); });
                                 return result;
                               });
                             });
@@ -241,8 +247,8 @@ void quit_with_confirmation(PanelContext& context, std::function<void()> quit) {
                        .on_accept = then,
                        .other_button = "Save...",
                        .on_other = [&context, lost] {
-                         context.scene.clear_selection();
-                         for (const RobotId robot : lost) context.scene.select(robot, false);
+                         context.scene.selection().clear();
+                         for (const RobotId robot : lost) context.scene.selection().select(robot, false);
                          save_robots(context);
                        }});
 }
@@ -276,7 +282,7 @@ void save_csv(PanelContext& context, const std::string& what, std::function<std:
                             [&context, what, make = std::move(make)](const FileChoice& answer) {
                               const std::filesystem::path path = answer.paths.front();
                               save_with_confirmation(context, what, [&context, path, text = make()](bool overwrite) {
-                                return context.scene.save_text(path, text, overwrite);
+                                return save_files({{path, text}}, overwrite);
                               });
                             });
 }
@@ -287,7 +293,7 @@ void export_pose(PanelContext& context) {
   const std::string name = name_of_robot(context.scene, *robot);
   ask_file(context, "the pose of " + name, name, holds_pose, [&context, id = *robot](const fs::path& path) {
     save_with_confirmation(context, "pose", [&context, id, path](bool overwrite) {
-      return context.scene.export_pose(id, path, overwrite);
+      return context.scene.exports().pose(id, path, overwrite);
     });
   });
 }
@@ -313,7 +319,7 @@ void export_motion(PanelContext& context) {
         ask_file(context, "the motion of " + who, name, holds,
                  [&context, robots, length = *seconds](const fs::path& path) {
                    begin_export(context, path, [&context, robots, path, length](bool overwrite) {
-                     return context.scene.export_motion(robots, path, length, overwrite);
+                     return context.scene.exports().motion(robots, path, length, overwrite);
                    });
                  });
       });
@@ -342,7 +348,7 @@ void export_run(PanelContext& context) {
     const fs::path path = answer.paths.front();
     const std::vector<std::string> words = pages.at(static_cast<std::size_t>(answer.format)).words;
     begin_export(context, path, [&context, run, words, path](bool overwrite) {
-      return context.scene.export_run(run, words, path, overwrite);
+      return context.scene.exports().run(run, words, path, overwrite);
     });
   });
 }

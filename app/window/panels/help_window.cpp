@@ -8,6 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "app/live/background.h"
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_robots.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 
@@ -158,7 +161,7 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& view, std::init
     fading_ = fading_ || (preferences.gestures_used[i] && opacity_[i] > 0);
     if (opacity_[i] > 0) shown.push_back(i);
   }
-  if (context.scene.robot_count() == 0 && context.scene.work().empty()) {
+  if (context.scene.robots().count() == 0 && context.scene.work().empty()) {
     draw_empty_hint(context, view);
     return;
   }
@@ -179,7 +182,7 @@ void FirstSteps::draw(PanelContext& context, const ViewportArea& view, std::init
   }
   if (area.height() < 0.5f * view.height()) return;
   // A narrow side has other texts there.
-  if (rows.size() > 1 && (context.scene.second() || !context.scene.ghosts().empty())) return;
+  if (rows.size() > 1 && (context.scene.comparison().second() || !context.scene.comparison().ghosts().empty())) return;
   float y = area.high.y - (2.1f * static_cast<float>(rows.size()) + 0.5f) * text;
   if (!rows.empty()) context.first_steps = {{area.low.x, y}, area.high};
   for (const std::vector<std::size_t>& row : rows) {

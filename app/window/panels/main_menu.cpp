@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/toolkit/theme.h"
@@ -60,10 +64,10 @@ void Panels::draw_file_menu() {
     const LiveScene& scene = context_.scene;
     menu_item("Open...", Action::open);
     if (ImGui::MenuItem("Open a run...")) choose_run(context_);
-    menu_item("Save the scene...", Action::save_scene, scene.robot_count() > 0);
-    menu_item(scene.selection().empty() ? "Save all robots..." : "Save selected robots...", Action::save,
-              scene.robot_count() > 0);
-    const bool robots = scene.robot_count() > 0;
+    menu_item("Save the scene...", Action::save_scene, scene.robots().count() > 0);
+    menu_item(scene.selection().robots().empty() ? "Save all robots..." : "Save selected robots...", Action::save,
+              scene.robots().count() > 0);
+    const bool robots = scene.robots().count() > 0;
     if (ImGui::MenuItem("Export the pose...", nullptr, false, robots)) export_pose(context_);
     context_.log.item("menu.export_pose");
     if (ImGui::MenuItem("Export the motion...", nullptr, false, robots)) export_motion(context_);
@@ -83,24 +87,24 @@ void Panels::draw_file_menu() {
 void Panels::draw_edit_menu() {
   if (ImGui::BeginMenu("Edit")) {
     const LiveScene& scene = context_.scene;
-    const bool selected = !scene.selection().empty();
-    menu_item(fmt::format("Undo {}", scene.undo_name()).c_str(), Action::undo, scene.can_undo());
-    menu_item(fmt::format("Redo {}", scene.redo_name()).c_str(), Action::redo, scene.can_redo());
+    const bool selected = !scene.selection().robots().empty();
+    menu_item(fmt::format("Undo {}", scene.history().undo_name()).c_str(), Action::undo, scene.history().can_undo());
+    menu_item(fmt::format("Redo {}", scene.history().redo_name()).c_str(), Action::redo, scene.history().can_redo());
     ImGui::Separator();
     menu_item("New random robots", Action::new_random);
     menu_item("Duplicate", Action::duplicate, selected);
     menu_item("Rename...", Action::rename, selected);
     menu_item("Edit the body", Action::edit_body, selected, context_.body_edit.robot != 0);
     menu_item("Mutate", Action::mutate, selected);
-    menu_item("Breed from two", Action::breed, scene.selection().size() == 2);
-    menu_item("Evolve...", Action::evolve, scene.robot_count() > 0);
+    menu_item("Breed from two", Action::breed, scene.selection().robots().size() == 2);
+    menu_item("Evolve...", Action::evolve, scene.robots().count() > 0);
     menu_item("Remove", Action::remove, selected);
     menu_item("Keep only the selected", Action::keep_selected, selected);
-    menu_item("Keep the best...", Action::keep_best, scene.robot_count() > 1);
-    menu_item("Remove pins and springs", Action::detach, scene.has_attachments(selected_or_all(scene)));
+    menu_item("Keep the best...", Action::keep_best, scene.robots().count() > 1);
+    menu_item("Remove pins and springs", Action::detach, scene.mouse().has_attachments(selected_or_all(scene)));
     ImGui::Separator();
-    menu_item("Select all", Action::select_all, scene.robot_count() > 0);
-    menu_item("Invert the selection", Action::invert_selection, scene.robot_count() > 0);
+    menu_item("Select all", Action::select_all, scene.robots().count() > 0);
+    menu_item("Invert the selection", Action::invert_selection, scene.robots().count() > 0);
     ImGui::EndMenu();
   }
   context_.log.item("menu.Edit");
@@ -111,16 +115,17 @@ void Panels::draw_view_menu() {
     for (const PanelEntry& panel : panel_table())
       if (ImGui::MenuItem(panel.title, panel.tooltip)) show(panel.title);
     ImGui::Separator();
-    menu_item("Frame", Action::frame, context_.scene.robot_count() > 0);
+    menu_item("Frame", Action::frame, context_.scene.robots().count() > 0);
     menu_item("Drag arrows", Action::drag_arrows, true, context_.scene.view().shown.arrows.drag);
     const ArrowKinds& arrows = context_.scene.view().shown.arrows;
     menu_item("Contact arrows", Action::contact_arrows, true, arrows.contact);
     menu_item("Force arrows", Action::force_arrows, true, arrows.force);
     menu_item("Dark or light", Action::theme);
-    menu_item("Two views", Action::compare, context_.scene.robot_count() > 0, context_.scene.second().has_value());
+    menu_item("Two views", Action::compare, context_.scene.robots().count() > 0,
+              context_.scene.comparison().second().has_value());
     menu_item("Ghosts of the selected", Action::ghosts,
-              !context_.scene.selection().empty() || !context_.scene.ghosts().empty(),
-              !context_.scene.ghosts().empty());
+              !context_.scene.selection().robots().empty() || !context_.scene.comparison().ghosts().empty(),
+              !context_.scene.comparison().ghosts().empty());
     menu_item("Left panels", Action::left_panels, true, column_open(Side::left));
     menu_item("Right panels", Action::right_panels, true, column_open(Side::right));
     menu_item("Hide panels", Action::hide_panels);

@@ -11,6 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/measurement_tables.h"
+#include "app/live/measurements.h"
+#include "app/live/scene_comparison.h"
 #include "app/scene/side_difference.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
@@ -125,8 +128,9 @@ void MeasurePanel::draw_plots(PanelContext& context, float height) {
   const std::array<std::string, 3> suffixes = suffixes_of(scene.snapshot());
   std::deque<Curve> curves;
   for (const RobotId robot : robots)
-    curves.push_back(
-        {name_of_robot(scene, robot), {scene.series(robot), scene.second_series(robot), scene.ghost_series(robot)}});
+    curves.push_back({name_of_robot(scene, robot),
+                      {scene.measurements().series(robot), scene.comparison().second_series(robot),
+                       scene.comparison().ghost_series(robot)}});
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     if (!shown_[i]) continue;
     const MeasureName& measure = measures()[i];
@@ -178,7 +182,9 @@ void MeasurePanel::draw_buttons(PanelContext& context) {
       "Ctrl and a click or drag show that moment");
   ImGui::SameLine();
   if (ImGui::Button("Save as CSV...", {half, 0}))
-    save_csv(context, "measurements", [&context] { return context.scene.csv(selected_or_all(context.scene)); });
+    save_csv(context, "measurements", [&context] {
+      return series_csv(context.scene.document(), context.scene.measurements(), selected_or_all(context.scene));
+    });
   context.log.item("measure.csv");
   tooltip("all quantities over time, of the selected robots, or of all if none is selected");
 }

@@ -27,6 +27,7 @@
 #include "app/window/viewport/orbit_controller.h"
 #include "app/window/viewport/thumbnails.h"
 #include "app/window/viewport/viewport.h"
+#include "mercury/generator.h"
 
 namespace mercury::window {
 

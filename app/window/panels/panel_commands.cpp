@@ -7,6 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panels.h"
 #include "app/window/panels/video_recorder.h"
@@ -17,23 +21,23 @@ namespace mercury::window {
 namespace {
 
 void toggle_fastest(PanelContext& context) {
-  context.scene.set_speed(context.scene.speed() == unlimited_speed ? 1 : unlimited_speed);
+  context.scene.time().set_speed(context.scene.time().speed() == unlimited_speed ? 1 : unlimited_speed);
 }
 
 void undo(PanelContext& context) {
   LiveScene& scene = context.scene;
-  if (scene.can_undo()) context.toasts.show(Tone::info, "undone: " + scene.undo_name());
+  if (scene.history().can_undo()) context.toasts.show(Tone::info, "undone: " + scene.history().undo_name());
   scene.undo();
 }
 
 void redo(PanelContext& context) {
   LiveScene& scene = context.scene;
-  if (scene.can_redo()) context.toasts.show(Tone::info, "redone: " + scene.redo_name());
+  if (scene.history().can_redo()) context.toasts.show(Tone::info, "redone: " + scene.history().redo_name());
   scene.redo();
 }
 
 void color_robots(PanelContext& context, const ColorQuantity& quantity) {
-  if (!quantity.exists_in(context.scene.configuration().environment)) return;
+  if (!quantity.exists_in(context.scene.document().configuration.environment)) return;
   change_view(context, [&](ViewSettings& view) { color_by(view, quantity); });
   context.toasts.show(Tone::info, fmt::format("colored by {}", quantity.key));
 }
@@ -70,7 +74,7 @@ void toggle_mode(PanelContext& context) {
 
 void toggle_following(PanelContext& context) {
   if (context.camera.mode() == CameraMode::follow) return context.camera.set_mode(CameraMode::still);
-  const std::optional<RobotId> current = context.scene.current();
+  const std::optional<RobotId> current = context.scene.selection().current();
   context.camera.follow(current ? context.scene.snapshot().robots->index_of(*current) : std::nullopt);
 }
 
@@ -80,24 +84,25 @@ struct Deed {
   void (*perform)(PanelContext& context);
 };
 constexpr Deed deeds[] = {
-    {Action::play_pause, [](PanelContext& context) { context.scene.toggle(); }},
-    {Action::step, [](PanelContext& context) { context.scene.step(); }},
-    {Action::step_back, [](PanelContext& context) { context.scene.step_back(); }},
-    {Action::first_moment, [](PanelContext& context) { context.scene.seek(context.scene.snapshot().timeline.begin); }},
-    {Action::present, [](PanelContext& context) { context.scene.seek(context.scene.snapshot().timeline.head); }},
+    {Action::play_pause, [](PanelContext& context) { context.scene.time().toggle(); }},
+    {Action::step, [](PanelContext& context) { context.scene.time().step(); }},
+    {Action::step_back, [](PanelContext& context) { context.scene.time().step_back(); }},
+    {Action::first_moment,
+     [](PanelContext& context) { context.scene.time().seek(context.scene.snapshot().timeline.begin); }},
+    {Action::present, [](PanelContext& context) { context.scene.time().seek(context.scene.snapshot().timeline.head); }},
     {Action::loop, mark_loop},
     {Action::bookmark, toggle_bookmark},
-    {Action::next_bookmark, [](PanelContext& context) { context.scene.seek_bookmark(1); }},
-    {Action::previous_bookmark, [](PanelContext& context) { context.scene.seek_bookmark(-1); }},
+    {Action::next_bookmark, [](PanelContext& context) { context.scene.time().seek_bookmark(1); }},
+    {Action::previous_bookmark, [](PanelContext& context) { context.scene.time().seek_bookmark(-1); }},
     {Action::go_on, go_on},
     {Action::fork, fork},
-    {Action::faster, [](PanelContext& context) { context.scene.change_speed(1); }},
-    {Action::slower, [](PanelContext& context) { context.scene.change_speed(-1); }},
-    {Action::real_time, [](PanelContext& context) { context.scene.set_speed(1); }},
+    {Action::faster, [](PanelContext& context) { context.scene.time().change_speed(1); }},
+    {Action::slower, [](PanelContext& context) { context.scene.time().change_speed(-1); }},
+    {Action::real_time, [](PanelContext& context) { context.scene.time().set_speed(1); }},
     {Action::fastest, toggle_fastest},
-    {Action::reset, [](PanelContext& context) { context.scene.reset(); }},
+    {Action::reset, [](PanelContext& context) { context.scene.time().reset(); }},
 
-    {Action::frame, [](PanelContext& context) { frame_robots(context, context.scene.selection()); }},
+    {Action::frame, [](PanelContext& context) { frame_robots(context, context.scene.selection().robots()); }},
     {Action::follow, toggle_following},
     {Action::turntable, toggle_mode<CameraMode::turntable>},
     {Action::top_view, toggle_mode<CameraMode::top>},
@@ -113,17 +118,19 @@ constexpr Deed deeds[] = {
     {Action::set_bookmark_4, [](PanelContext& context) { set_bookmark(context, 3); }},
 
     {Action::new_random, generate_robots},
-    {Action::duplicate, [](PanelContext& context) { context.scene.duplicate(context.scene.selection()); }},
-    {Action::remove, [](PanelContext& context) { context.scene.remove(context.scene.selection()); }},
+    {Action::duplicate,
+     [](PanelContext& context) { context.scene.robots().duplicate(context.scene.selection().robots()); }},
+    {Action::remove, [](PanelContext& context) { context.scene.robots().remove(context.scene.selection().robots()); }},
     {Action::mutate, mutate_selected},
     {Action::breed, breed_selected},
     {Action::evolve, evolve_selected},
     {Action::edit_body, toggle_body_editor},
     {Action::rename, rename_selected},
-    {Action::keep_selected, [](PanelContext& context) { keep_only(context, context.scene.selection()); }},
+    {Action::keep_selected, [](PanelContext& context) { keep_only(context, context.scene.selection().robots()); }},
     {Action::keep_best, [](PanelContext& context) { ask_for_best(context); }},
-    {Action::detach, [](PanelContext& context) { context.scene.remove_attachments(selected_or_all(context.scene)); }},
-    {Action::select_all, [](PanelContext& context) { context.scene.select_all(); }},
+    {Action::detach,
+     [](PanelContext& context) { context.scene.mouse().remove_attachments(selected_or_all(context.scene)); }},
+    {Action::select_all, [](PanelContext& context) { context.scene.selection().select_all(); }},
     {Action::invert_selection, invert_selection},
     {Action::undo, undo},
     {Action::redo, redo},
@@ -220,7 +227,7 @@ void Panels::escape() {
   else if (context_.body_edit.robot != 0)
     context_.body_edit.robot = 0;
   else
-    context_.scene.clear_selection();
+    context_.scene.selection().clear();
 }
 
 }  // namespace mercury::window

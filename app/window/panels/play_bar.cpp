@@ -8,6 +8,9 @@
 #include <cmath>
 #include <string>
 
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "app/window/toolkit/imgui_layer.h"
 #include "app/window/toolkit/key_map.h"
 #include "app/window/toolkit/plot.h"
@@ -69,12 +72,13 @@ std::string factor_text(double factor) {
 void draw_achieved_speed(const LiveScene& scene, bool unlimited) {
   constexpr double near = 0.03;
   const double achieved = scene.snapshot().achieved_speed;
-  if (scene.playing() && !(achieved > 0)) return;  // not known yet
-  const bool late = scene.playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.speed();
-  if (scene.playing() && !unlimited && std::abs(achieved - scene.speed()) <= near * scene.speed()) return;
-  const std::string shown = !scene.playing() ? "paused"
-                            : unlimited      ? "\xc3\x97 " + factor_text(achieved)
-                                             : "reaches \xc3\x97 " + factor_text(achieved);
+  if (scene.time().playing() && !(achieved > 0)) return;  // not known yet
+  const bool late = scene.time().playing() && !unlimited && achieved > 0 && achieved < 0.9 * scene.time().speed();
+  if (scene.time().playing() && !unlimited && std::abs(achieved - scene.time().speed()) <= near * scene.time().speed())
+    return;
+  const std::string shown = !scene.time().playing() ? "paused"
+                            : unlimited             ? "\xc3\x97 " + factor_text(achieved)
+                                                    : "reaches \xc3\x97 " + factor_text(achieved);
   // A narrow window has no room for all of it.
   if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(shown.c_str()).x) return;
   ImGui::PushStyleColor(ImGuiCol_Text, late ? palette().warning : palette().faint);
@@ -86,16 +90,16 @@ void draw_achieved_speed(const LiveScene& scene, bool unlimited) {
 void draw_speed(PanelContext& context) {
   LiveScene& scene = context.scene;
   const float text = ImGui::GetFontSize();
-  const bool unlimited = scene.speed() == unlimited_speed;
+  const bool unlimited = scene.time().speed() == unlimited_speed;
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Speed");
   ImGui::SameLine();
   ImGui::SetNextItemWidth(9 * text);
-  auto speed = static_cast<float>(unlimited ? 100 : scene.speed());
+  auto speed = static_cast<float>(unlimited ? 100 : scene.time().speed());
   const std::string shown = unlimited ? "-" : "\xc3\x97 " + factor_text(static_cast<double>(speed));
   ImGui::BeginDisabled(unlimited);
   if (number_slider("##speed", speed, 0.001f, 100, shown.c_str(), true) && std::isfinite(speed))
-    scene.set_speed(static_cast<double>(speed));
+    scene.time().set_speed(static_cast<double>(speed));
   ImGui::EndDisabled();
   context.log.item("speed");
   tooltip(fmt::format("simulated seconds per second, 1/1000 to 100 (keys {} and {})",
@@ -104,12 +108,12 @@ void draw_speed(PanelContext& context) {
   ImGui::SameLine();
   if (toggle_button("\xc3\x97"
                     "1",
-                    scene.speed() == 1))
-    scene.set_speed(1);
+                    scene.time().speed() == 1))
+    scene.time().set_speed(1);
   context.log.item("speed.one");
   tooltip(with_keys(context.keys, "real time", Action::real_time).c_str());
   ImGui::SameLine();
-  if (toggle_button("Fastest", unlimited)) scene.set_speed(unlimited ? 1 : unlimited_speed);
+  if (toggle_button("Fastest", unlimited)) scene.time().set_speed(unlimited ? 1 : unlimited_speed);
   context.log.item("speed.fastest");
   tooltip(with_keys(context.keys, "as fast as possible", Action::fastest).c_str());
   ImGui::SameLine();
@@ -118,19 +122,20 @@ void draw_speed(PanelContext& context) {
 
 void draw_buttons(PanelContext& context) {
   LiveScene& scene = context.scene;
-  if (icon_button("##reset", Icon::reset, with_keys(context.keys, "reset to the start", Action::reset))) scene.reset();
+  if (icon_button("##reset", Icon::reset, with_keys(context.keys, "reset to the start", Action::reset)))
+    scene.time().reset();
   context.log.item("reset");
   ImGui::SameLine();
   if (icon_button("##step_back", Icon::step_back, with_keys(context.keys, "one time step back", Action::step_back)))
-    scene.step_back();
+    scene.time().step_back();
   context.log.item("step_back");
   ImGui::SameLine();
-  if (icon_button("##toggle", scene.playing() ? Icon::pause : Icon::play,
-                  with_keys(context.keys, scene.playing() ? "pause" : "play", Action::play_pause), true))
-    scene.toggle();
+  if (icon_button("##toggle", scene.time().playing() ? Icon::pause : Icon::play,
+                  with_keys(context.keys, scene.time().playing() ? "pause" : "play", Action::play_pause), true))
+    scene.time().toggle();
   context.log.item("play");
   ImGui::SameLine();
-  if (icon_button("##step", Icon::step, with_keys(context.keys, "one time step", Action::step))) scene.step();
+  if (icon_button("##step", Icon::step, with_keys(context.keys, "one time step", Action::step))) scene.time().step();
   context.log.item("step");
 }
 
@@ -139,7 +144,7 @@ void draw_time(const LiveScene& scene, float middle) {
   const Snapshot& snapshot = scene.snapshot();
   ImGui::PushFont(large_font());
   ImGui::SetCursorPosY(middle - ImGui::GetFontSize() / 2 - ImGui::GetStyle().FramePadding.y);  // ImGui adds the padding
-  ImGui::TextUnformatted(time_text(snapshot.time, scene.speed() < 0.05 ? 3 : 2).c_str());
+  ImGui::TextUnformatted(time_text(snapshot.time, scene.time().speed() < 0.05 ? 3 : 2).c_str());
   ImGui::PopFont();
   tooltip(
       fmt::format("simulated time, {} steps of {:.4g} ms", snapshot.steps, 1000 * snapshot.configuration.dt).c_str());
@@ -147,9 +152,9 @@ void draw_time(const LiveScene& scene, float middle) {
 
 // At the right end, if there is room.
 void draw_rate(const LiveScene& scene) {
-  const double per_second = scene.playing() ? scene.snapshot().springs_per_second : 0;
+  const double per_second = scene.time().playing() ? scene.snapshot().springs_per_second : 0;
   const std::string text = fmt::format("{}   {}", per_second > 0 ? short_number(per_second) + " springs/s" : "",
-                                       name_of(scene.configuration().environment));
+                                       name_of(scene.document().configuration.environment));
   const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
   if (room <= ImGui::GetFontSize()) return;
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
@@ -212,8 +217,8 @@ void draw_track(const LiveScene& scene, const TimelineState& timeline, const Tra
   bar(track.begin, track.end, thick, palette().grid);
   if (timeline.looping) bar(timeline.loop_begin, timeline.loop_end, 2.4f * thick, packed({90, 170, 230, 255}, 0.35f));
   bar(track.begin, now, thick, palette().accent);
-  if (const auto begin = scene.loop_begin()) bar(*begin, *begin, 2.2f * thick, palette().warning);
-  for (const double mark : scene.bookmarks()) {
+  if (const auto begin = scene.time().loop_begin()) bar(*begin, *begin, 2.2f * thick, palette().warning);
+  for (const double mark : scene.time().bookmarks()) {
     const float x = track.x(mark), size = 1.8f * thick;
     list.AddTriangleFilled({x - size, track.low.y}, {x + size, track.low.y}, {x, track.low.y + 2 * size},
                            palette().warning);
@@ -272,7 +277,7 @@ void draw_actions(PanelContext& context, const TimelineState& timeline) {
     fork(context);
   if (strip_button(context, "Loop", "timeline.loop",
                    with_keys(context.keys, "begin a loop here, close it here, end it", Action::loop),
-                   timeline.looping || context.scene.loop_begin()))
+                   timeline.looping || context.scene.time().loop_begin()))
     mark_loop(context);
   if (strip_button(context, "Mark", "timeline.mark",
                    with_keys(context.keys, "set or remove a bookmark here", Action::bookmark), false))
@@ -319,7 +324,7 @@ void draw_timeline_strip(PanelContext& context) {
   LiveScene& scene = context.scene;
   const TimelineState timeline = scene.snapshot().timeline;
   const std::size_t budget = static_cast<std::size_t>(context.preferences.timeline_megabytes) << 20;
-  if (timeline.budget != budget) scene.set_timeline_budget(budget);
+  if (timeline.budget != budget) scene.time().set_timeline_budget(budget);
   const float memory = ImGui::CalcTextSize("memory 8888 of 8888 MB").x, height = ImGui::GetFrameHeight();
   const float width =
       ImGui::GetContentRegionAvail().x - actions_width() - memory - ImGui::GetStyle().ItemInnerSpacing.x;
@@ -340,30 +345,30 @@ void draw_timeline_strip(PanelContext& context) {
 }
 
 void begin_scrub(PanelContext& context) {
-  context.scrub.plays_on = context.scene.playing();
-  context.scene.pause();
+  context.scrub.plays_on = context.scene.time().playing();
+  context.scene.time().pause();
   context.scrub.time = std::nan("");
 }
 
 void scrub_to(PanelContext& context, double time) {
-  if (time != context.scrub.time) context.scene.seek(time);
+  if (time != context.scrub.time) context.scene.time().seek(time);
   context.scrub.time = time;
 }
 
 void end_scrub(PanelContext& context) {
-  if (std::exchange(context.scrub.plays_on, false)) context.scene.play();
+  if (std::exchange(context.scrub.plays_on, false)) context.scene.time().play();
 }
 
 void fork(PanelContext& context) {
   LiveScene& scene = context.scene;
-  const std::vector<RobotId> selected = scene.selection();
+  const std::vector<RobotId> selected = scene.selection().robots();
   if (selected.empty()) {
     context.toasts.show(Tone::info, "select the robots to fork first");
     return;
   }
-  const std::vector<RobotId> copies = scene.fork(selected);
-  scene.clear_selection();
-  for (const RobotId id : copies) scene.select(id, false);
+  const std::vector<RobotId> copies = scene.robots().fork(selected);
+  scene.selection().clear();
+  for (const RobotId id : copies) scene.selection().select(id, false);
   // Those that part are seen together.
   std::vector<RobotId> both = selected;
   both.insert(both.end(), copies.begin(), copies.end());
@@ -375,7 +380,7 @@ void fork(PanelContext& context) {
 
 void mark_loop(PanelContext& context) {
   const std::string now = moment_text(context.scene.snapshot().time);
-  switch (context.scene.mark_loop()) {
+  switch (context.scene.time().mark_loop()) {
     case LoopMark::begun:
       context.toasts.show(Tone::info, "a loop begins at " + now + "; go to its end and press again");
       break;
@@ -390,13 +395,13 @@ void mark_loop(PanelContext& context) {
 
 void toggle_bookmark(PanelContext& context) {
   LiveScene& scene = context.scene;
-  context.toasts.show(Tone::info, (scene.toggle_bookmark() ? "bookmark at " : "no bookmark any more at ") +
+  context.toasts.show(Tone::info, (scene.time().toggle_bookmark() ? "bookmark at " : "no bookmark any more at ") +
                                       moment_text(scene.snapshot().time));
 }
 
 void go_on(PanelContext& context) {
   if (!context.scene.snapshot().timeline.viewing) return;
-  context.scene.go_on();
+  context.scene.time().go_on();
   context.toasts.show(Tone::info, "goes on from " + moment_text(context.scene.snapshot().time));
 }
 

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/picking.h"
+#include "app/live/scene_mouse.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/plot.h"
@@ -65,7 +67,7 @@ void Probe::sample(const LiveScene& scene) {
   const Snapshot& snapshot = scene.snapshot();
   if (snapshot.timeline.viewing && !snapshot.timeline.recording) return;
   const auto index = snapshot.robots->index_of(hit_.robot);
-  const HitDetails now = scene.describe(hit_);  // keeps velocities in snapshots
+  const HitDetails now = scene.mouse().describe(hit_);  // keeps velocities in snapshots
   if (!index || hit_.mass >= snapshot.robots->robots[*index].robot->masses.size()) return;
   const auto velocities = snapshot.velocities_of(*index);
   while (!times_.empty() && times_.back() > snapshot.time) {

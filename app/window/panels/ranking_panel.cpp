@@ -11,6 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/measurement_tables.h"
+#include "app/live/measurements.h"
+#include "app/live/scene_selection.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/panels/robot_list.h"
@@ -80,7 +83,8 @@ constexpr const char* help_of_robot = "its place in this order, and its name";
 
 void RankingPanel::draw(PanelContext& context) {
   std::vector<Row> rows;
-  for (const RankingRow& row : context.scene.ranking()) rows.push_back({name_of_robot(context.scene, row.robot), row});
+  for (const RankingRow& row : context.scene.measurements().ranking())
+    rows.push_back({name_of_robot(context.scene, row.robot), row});
   const auto flags = ImGuiTableFlags_Sortable | ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY |
                      ImGuiTableFlags_ScrollX | ImGuiTableFlags_Resizable | ImGuiTableFlags_BordersOuter;
   const float height = ImGui::GetContentRegionAvail().y - 3.4f * ImGui::GetFrameHeightWithSpacing();
@@ -116,7 +120,8 @@ void RankingPanel::draw_notes(PanelContext& context, const std::vector<Row>& row
   ImGui::EndDisabled();
   ImGui::SameLine();
   if (ImGui::Button("Save as CSV...##ranking", {half, 0}))
-    save_csv(context, "ranking", [&context] { return context.scene.ranking_csv(); });
+    save_csv(context, "ranking",
+             [&context] { return ranking_csv(context.scene.document(), context.scene.measurements()); });
   context.log.item("ranking.csv");
 }
 
@@ -186,13 +191,14 @@ void RankingPanel::draw_row(PanelContext& context, int index, const Row& row) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   if (thumbnail_row("##row", thumbnail_of_robot(context, robot), fmt::format("{}.\n{}", index + 1, row.name),
-                    context.scene.is_selected(robot),
+                    context.scene.selection().contains(robot),
                     ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick)) {
     if (ImGui::IsMouseDoubleClicked(0))
       frame_robots(context, {robot});
     else
       selection_.click(context.scene, robot, order_);
-    context.log.write("row", {{"robot", row.name}, {"place", index}, {"selected", context.scene.selection().size()}});
+    context.log.write("row",
+                      {{"robot", row.name}, {"place", index}, {"selected", context.scene.selection().robots().size()}});
   }
   // The row is as wide as the table, of which a part may show.
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();

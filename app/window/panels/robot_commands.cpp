@@ -10,6 +10,12 @@
 #include <unordered_set>
 #include <variant>
 
+#include "app/live/command_text.h"
+#include "app/live/measurements.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+
 namespace mercury::window {
 namespace {
 
@@ -27,9 +33,9 @@ std::vector<render::Bounds> boxes_of(LiveScene& scene, const std::vector<RobotId
 }  // namespace
 
 std::vector<RobotId> selected_or_all(const LiveScene& scene) {
-  std::vector<RobotId> robots = scene.selection();
+  std::vector<RobotId> robots = scene.selection().robots();
   if (robots.empty())
-    for (const RobotEntry& entry : scene.entries()) robots.push_back(entry.id);
+    for (const RobotEntry& entry : scene.robots().entries()) robots.push_back(entry.id);
   return robots;
 }
 
@@ -56,45 +62,46 @@ void frame_robots(PanelContext& context, const std::vector<RobotId>& robots) {
 
 void generate_robots(PanelContext& context) {
   RobotCreation& creation = context.creation;
-  context.scene.generate(creation.generation, creation.replace, creation.lively);
+  context.scene.robots().generate(creation.generation, creation.replace, creation.lively);
   ++creation.generation.seed;
 }
 
 void mutate_selected(PanelContext& context) {
-  if (context.scene.selection().empty()) {
+  if (context.scene.selection().robots().empty()) {
     context.toasts.show(Tone::info, "select the robots to mutate first");
     return;
   }
-  context.scene.mutate(context.scene.selection(), context.creation.mutation);
+  context.scene.robots().mutate(context.scene.selection().robots(), context.creation.mutation);
   ++context.creation.mutation.seed;
 }
 
 void breed_selected(PanelContext& context) {
-  const std::vector<RobotId> parents = context.scene.selection();
+  const std::vector<RobotId> parents = context.scene.selection().robots();
   if (parents.size() != 2) {
     context.toasts.show(Tone::info, "select the two robots to breed from first");
     return;
   }
-  context.scene.breed(parents[0], parents[1], context.creation.mutation.seed);
+  context.scene.robots().breed(parents[0], parents[1], context.creation.mutation.seed);
   ++context.creation.mutation.seed;
 }
 
 void rename_selected(PanelContext& context) {
-  const std::optional<RobotId> robot = context.scene.current();
+  const std::optional<RobotId> robot = context.scene.selection().current();
   if (!robot) {
     context.toasts.show(Tone::info, "select the robot to rename first");
     return;
   }
   const std::string name = name_of_robot(context.scene, *robot);
-  context.dialogs.ask_text("Rename", fmt::format("A new name for {}:", name), name, "Rename",
-                           [&context, id = *robot](const std::string& text) { context.scene.rename(id, text); });
+  context.dialogs.ask_text(
+      "Rename", fmt::format("A new name for {}:", name), name, "Rename",
+      [&context, id = *robot](const std::string& text) { context.scene.robots().rename(id, text); });
 }
 
 void invert_selection(PanelContext& context) {
   std::vector<RobotId> others;
-  for (const RobotEntry& entry : context.scene.entries())
+  for (const RobotEntry& entry : context.scene.robots().entries())
     if (!entry.selected) others.push_back(entry.id);
-  context.scene.set_selection(others);
+  context.scene.selection().set(others);
 }
 
 void keep_only(PanelContext& context, const std::vector<RobotId>& robots) {
@@ -104,15 +111,15 @@ void keep_only(PanelContext& context, const std::vector<RobotId>& robots) {
   }
   const std::unordered_set<RobotId> kept(robots.begin(), robots.end());
   std::vector<RobotId> removed;
-  for (const RobotEntry& entry : context.scene.entries())
+  for (const RobotEntry& entry : context.scene.robots().entries())
     if (!kept.contains(entry.id)) removed.push_back(entry.id);
-  context.scene.remove(removed);
+  context.scene.robots().remove(removed);
 }
 
 void ask_for_best(PanelContext& context, std::vector<RobotId> order) {
   const bool given = !order.empty();
   if (!given) {
-    std::vector<RankingRow> rows = context.scene.ranking();
+    std::vector<RankingRow> rows = context.scene.measurements().ranking();
     std::ranges::stable_sort(rows, [](const RankingRow& a, const RankingRow& b) {
       return ranks_before(a, b, a.distance_at_equal_age, b.distance_at_equal_age);
     });
@@ -146,7 +153,7 @@ void with_window_camera(PanelContext& context, const std::function<void()>& act)
 
 void copy_as_command(PanelContext& context, const char* subcommand) {
   CommandText command;
-  with_window_camera(context, [&] { command = context.scene.command(subcommand); });
+  with_window_camera(context, [&] { command = context.scene.files().command(subcommand); });
   ImGui::SetClipboardText(command.text.c_str());
   context.log.write("copied", {{"text", command.text}});
   context.toasts.show(Tone::success, "copied: " + command.text);
@@ -175,7 +182,8 @@ void toggle_arrows(PanelContext& context, Action action) {
   ViewSettings view = context.scene.view();
   bool& shown = view.shown.arrows.*kind.shown;
   shown = !shown;
-  if (shown && !kind.exists(context.scene.configuration().environment)) context.toasts.show(Tone::info, kind.missing);
+  if (shown && !kind.exists(context.scene.document().configuration.environment))
+    context.toasts.show(Tone::info, kind.missing);
   context.log.write("view", {{kind.name, shown}});
   context.scene.set_view(view);
 }

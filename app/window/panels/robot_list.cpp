@@ -7,6 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/picking.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 #include "app/window/panels/commands.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -31,7 +35,7 @@ constexpr std::size_t searchable = 8;  // robots from which on a field to search
 constexpr const char* id = "##robotmenu";
 
 void request(PanelContext& context, RobotId robot, std::optional<Hit> hit) {
-  if (!context.scene.is_selected(robot)) context.scene.select(robot);
+  if (!context.scene.selection().contains(robot)) context.scene.selection().select(robot);
   context.robot_menu = {.requested = true, .robot = robot, .hit = std::move(hit)};
 }
 
@@ -53,10 +57,10 @@ struct Items {
 void draw_mass_items(const Items& items, PanelContext& context, const std::vector<RobotId>& selection) {
   LiveScene& scene = context.scene;
   if (const std::optional<Hit>& hit = context.robot_menu.hit) {
-    if (items.item("Pin this mass")) scene.pin(*hit);
+    if (items.item("Pin this mass")) scene.mouse().pin(*hit);
     ImGui::Separator();
   }
-  if (scene.has_attachments(selection)) {
+  if (scene.mouse().has_attachments(selection)) {
     items.command("Remove pins and springs", Action::detach);
     ImGui::Separator();
   }
@@ -69,20 +73,20 @@ void RowSelection::click(LiveScene& scene, RobotId robot, std::span<const RobotI
   auto first = std::ranges::find(rows, anchor_), last = std::ranges::find(rows, robot);
   if (io.KeyShift && first != rows.end() && last != rows.end()) {
     if (last < first) std::swap(first, last);
-    std::vector<RobotId> selected = io.KeyCtrl ? scene.selection() : std::vector<RobotId>{};
+    std::vector<RobotId> selected = io.KeyCtrl ? scene.selection().robots() : std::vector<RobotId>{};
     selected.insert(selected.end(), first, last + 1);
-    scene.set_selection(selected);
+    scene.selection().set(selected);
     return;
   }
   if (io.KeyCtrl)
-    scene.toggle_selected(robot);
+    scene.selection().toggle(robot);
   else
-    scene.select(robot);
+    scene.selection().select(robot);
   anchor_ = robot;
 }
 
 void RobotList::draw(PanelContext& context, float room) {
-  std::vector<RobotEntry> all = context.scene.entries();
+  std::vector<RobotEntry> all = context.scene.robots().entries();
   const auto selected = std::ranges::count_if(all, &RobotEntry::selected);
   const std::size_t count = all.size();
   heading(
@@ -172,7 +176,7 @@ void RobotList::draw_row(PanelContext& context, const RobotEntry& entry, int ind
   ImGui::TableNextColumn();
   bool shown = !entry.hidden;
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ImGui::GetStyle().FramePadding.x, 0});
-  if (ImGui::Checkbox("##shown", &shown)) context.scene.set_hidden(entry.id, !shown);
+  if (ImGui::Checkbox("##shown", &shown)) context.scene.selection().set_hidden(entry.id, !shown);
   ImGui::PopStyleVar();
   tooltip("draw this robot; physics goes on either way");
 }
@@ -188,9 +192,9 @@ void draw_robot_menu(PanelContext& context, const std::function<void(Action)>& e
   if (std::exchange(menu.requested, false)) ImGui::OpenPopup(id);
   if (!ImGui::BeginPopup(id)) return;
   LiveScene& scene = context.scene;
-  const std::vector<RobotId> selection = scene.selection();
+  const std::vector<RobotId> selection = scene.selection().robots();
   const Items items{context, execute};
-  const bool one = selection.size() == 1, hidden = scene.is_hidden(menu.robot);
+  const bool one = selection.size() == 1, hidden = scene.selection().is_hidden(menu.robot);
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
   ImGui::TextUnformatted(one ? name_of_robot(scene, selection.front()).c_str()
                              : fmt::format("{} robots", selection.size()).c_str());
@@ -200,7 +204,7 @@ void draw_robot_menu(PanelContext& context, const std::function<void(Action)>& e
   items.command("Frame", Action::frame);
   items.command("Follow", Action::follow, one);
   if (items.item(hidden ? "Show" : "Hide"))
-    for (const RobotId robot : selection) scene.set_hidden(robot, !hidden);
+    for (const RobotId robot : selection) scene.selection().set_hidden(robot, !hidden);
   ImGui::Separator();
   items.command("Rename...", Action::rename, one);
   items.command("Edit the body", Action::edit_body, one);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/live/live_scene.h"
+#include "app/live/scene_robots.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/key_bindings.h"
 

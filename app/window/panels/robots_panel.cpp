@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "app/live/background.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 #include "app/options/generator_options.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
@@ -228,24 +231,24 @@ void RobotsPanel::draw_strengths(PanelContext& context) {
 
 void RobotsPanel::draw_commands(PanelContext& context) {
   LiveScene& scene = context.scene;
-  const std::vector<RobotId> selection = scene.selection();
+  const std::vector<RobotId> selection = scene.selection().robots();
   const auto explain = [&](const char* text, Action action) { tooltip(with_keys(context.keys, text, action).c_str()); };
   const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
   if (ImGui::Button("Open...", {width, 0})) open_robots(context);
   context.log.item("open");
   explain("open robot files, or drop files and folders on the window", Action::open);
   ImGui::SameLine();
-  ImGui::BeginDisabled(scene.robot_count() == 0);
+  ImGui::BeginDisabled(scene.robots().count() == 0);
   if (primary_button(selection.empty() ? "Save all..." : "Save...", {width, 0})) save_robots(context);
   context.log.item("save");
   explain("save the selected robots, or all if none is selected", Action::save);
   ImGui::SameLine();
-  if (ImGui::Button("Clear", {width, 0})) scene.clear();
+  if (ImGui::Button("Clear", {width, 0})) scene.robots().clear();
   context.log.item("clear");
   tooltip("remove all robots; undo brings them back");
   ImGui::EndDisabled();
   ImGui::BeginDisabled(selection.empty());
-  if (ImGui::Button("Duplicate", {width, 0})) scene.duplicate(selection);
+  if (ImGui::Button("Duplicate", {width, 0})) scene.robots().duplicate(selection);
   context.log.item("duplicate");
   explain("add a copy of each selected robot", Action::duplicate);
   ImGui::SameLine();
@@ -253,7 +256,7 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   context.log.item("mutate");
   explain("add a changed copy of each selected robot", Action::mutate);
   ImGui::SameLine();
-  if (ImGui::Button("Remove", {width, 0})) scene.remove(selection);
+  if (ImGui::Button("Remove", {width, 0})) scene.robots().remove(selection);
   context.log.item("remove");
   explain("remove the selected robots", Action::remove);
   const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
@@ -264,7 +267,7 @@ void RobotsPanel::draw_commands(PanelContext& context) {
   explain("add a child of the two selected robots", Action::breed);
   ImGui::EndDisabled();
   ImGui::SameLine();
-  ImGui::BeginDisabled(scene.robot_count() == 0);
+  ImGui::BeginDisabled(scene.robots().count() == 0);
   if (primary_button("Evolve...", {half, 0})) evolve_selected(context);
   context.log.item("evolve");
   explain("let the selected robots evolve, or all, in the background", Action::evolve);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/panels/robot_list.h"
@@ -154,7 +156,7 @@ void TreePanel::draw(PanelContext& context) {
 
 std::string TreePanel::text_of(const PanelContext& context, const Row& row, std::size_t robots) {
   if (!row.robot)
-    return fmt::format("{}: {} robot{}", name_of(context.scene.configuration().environment), robots,
+    return fmt::format("{}: {} robot{}", name_of(context.scene.document().configuration.environment), robots,
                        robots == 1 ? "" : "s");
   if (row.leaf) return *row.leaf;
   if (row.branch)
@@ -172,7 +174,7 @@ void TreePanel::draw_row(PanelContext& context, const Row& row, int index) {
   const float left = corner.x + 1.1f * text * depth, top = corner.y + (height - text) / 2;
   const float right = corner.x + ImGui::GetContentRegionAvail().x;
   ImGui::PushID(index);
-  const bool clicked = ImGui::Selectable("##row", is_robot && scene.is_selected(row.robot->body.id),
+  const bool clicked = ImGui::Selectable("##row", is_robot && scene.selection().contains(row.robot->body.id),
                                          ImGuiSelectableFlags_AllowDoubleClick, {0, height});
   if (index < 40) context.log.item(fmt::format("tree.{}", index));
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -192,7 +194,7 @@ void TreePanel::draw_row(PanelContext& context, const Row& row, int index) {
   const float room = right - begin - ImGui::CalcTextSize(figures.c_str()).x - 0.8f * text;
   const bool strong = !row.robot || is_robot;
   list.AddText({begin, top}, strong ? ImGui::GetColorU32(ImGuiCol_Text) : palette().faint,
-               shortened(text_of(context, row, scene.robot_count()), room).c_str());
+               shortened(text_of(context, row, scene.robots().count()), room).c_str());
   list.AddText({right - ImGui::CalcTextSize(figures.c_str()).x - 0.3f * text, top}, palette().faint, figures.c_str());
   if (is_robot) {
     const std::string kind = kind_of(*row.robot->body.robot);
@@ -212,7 +214,7 @@ void TreePanel::draw_row(PanelContext& context, const Row& row, int index) {
   } else if (row.robot) {
     selection_.click(scene, row.robot->body.id, order_);
   }
-  context.log.write("tree", {{"row", text_of(context, row, scene.robot_count())}});
+  context.log.write("tree", {{"row", text_of(context, row, scene.robots().count())}});
 }
 
 std::unique_ptr<Panel> make_tree_panel(PanelContext&) { return std::make_unique<TreePanel>(); }

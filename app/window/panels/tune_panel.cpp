@@ -13,6 +13,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/widgets.h"
@@ -160,7 +163,7 @@ bool solver_section(Configuration& configuration, EventLog& log) {
 // Where robots begin. It changes the scene itself.
 void start_section(PanelContext& context) {
   heading("Start");
-  TrialStart edited = context.scene.start();
+  TrialStart edited = context.scene.document().start;
   constexpr TrialSettings usual = one_trial();
   bool changed = false;
   for_each_parameter(edited.trials, [&](const auto& parameter, auto& value) {
@@ -189,7 +192,7 @@ void start_section(PanelContext& context) {
     }
     context.log.item("tune.start_seed");
   }
-  if (changed) context.scene.set_start(edited);
+  if (changed) context.scene.parameters().set_start(edited);
 }
 
 bool environment_section(PanelContext& context, EnvironmentChoice& choice, Configuration& configuration) {
@@ -237,7 +240,7 @@ void MaterialsSection::draw(PanelContext& context) {
     note("There are no robots.");
     return;
   }
-  const std::size_t selected = context.scene.selection().size();
+  const std::size_t selected = context.scene.selection().robots().size();
   note(fmt::format("of {}",
                    selected == 0
                        ? fmt::format("all {} robots; select some to change only those", robots.size())
@@ -246,7 +249,7 @@ void MaterialsSection::draw(PanelContext& context) {
   draw_factors(context, robots);
   if (ImGui::Button("Reset materials", {-1, 0})) {
     scale_ = {};
-    context.scene.reset_materials(robots);
+    context.scene.parameters().reset_materials(robots);
     context.scene.end_edit();
   }
   context.log.item("materials.reset");
@@ -262,11 +265,11 @@ void MaterialsSection::draw_factors(PanelContext& context, const std::vector<Rob
       slider("all amplitudes", "factor on how far muscles contract", scale_.amplitude, 1, {0, 3, "\xc3\x97 %.2f"});
   changed |= slider("all frequencies", "factor on how fast muscles beat", scale_.frequency, 1, {0, 5, "\xc3\x97 %.2f"});
   changed |= slider("all phases", "added to the phase of every muscle", scale_.phase, 0, {-pi, pi, "%.2f rad"});
-  if (changed) context.scene.scale_materials(robots, scale_);
+  if (changed) context.scene.parameters().scale_materials(robots, scale_);
 }
 
 void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId>& robots) {
-  const RobotId shown = context.scene.current().value_or(robots.front());
+  const RobotId shown = context.scene.selection().current().value_or(robots.front());
   const DocumentRobot* document = context.scene.document().find(shown);
   if (!document || !ImGui::CollapsingHeader("One material")) return;
   const Robot& robot = *document->body.robot;
@@ -281,7 +284,7 @@ void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId
         material_ = id;
     ImGui::EndCombo();
   }
-  const std::span<const Material> table = context.scene.materials(shown);
+  const std::span<const Material> table = context.scene.parameters().materials(shown);
   if (static_cast<std::size_t>(material_) >= table.size()) return;
   const auto id = static_cast<std::size_t>(material_);
   Material material = table[id];
@@ -296,7 +299,8 @@ void MaterialsSection::draw_one(PanelContext& context, const std::vector<RobotId
   row("half wave", "only the negative half of the sine acts: the muscle shortens and comes back");
   changed |= ImGui::Checkbox("##half wave", &material.half_wave);
   context.log.item("materials.half_wave");
-  if (changed && is_valid(material)) context.scene.set_material(robots, static_cast<MaterialId>(material_), material);
+  if (changed && is_valid(material))
+    context.scene.parameters().set_material(robots, static_cast<MaterialId>(material_), material);
 }
 
 std::vector<EnvironmentOffer> environment_offers(const Configuration& configuration, bool made_for_water) {
@@ -394,7 +398,7 @@ bool EnvironmentChoice::draw_hint(PanelContext& context, Configuration& configur
   const bool land = is_dry(configuration.environment);
   const std::size_t strangers = land ? made_.for_water : made_.for_land;
   if (strangers == 0) return false;
-  const std::string who = fmt::format("{} of {} robots {} made for {}", strangers, context.scene.robot_count(),
+  const std::string who = fmt::format("{} of {} robots {} made for {}", strangers, context.scene.robots().count(),
                                       strangers == 1 ? "is" : "are", land ? "water" : "land");
   if (!land) {
     note(fmt::format("{}: without weight and floor, their gaits move them little", who).c_str());
@@ -422,8 +426,9 @@ bool EnvironmentChoice::draw_hint(PanelContext& context, Configuration& configur
 }
 
 void TunePanel::draw(PanelContext& context) {
-  Configuration configuration = context.scene.configuration();
-  if (draw_physics_sliders(context, environment_, configuration)) context.scene.set_configuration(configuration);
+  Configuration configuration = context.scene.document().configuration;
+  if (draw_physics_sliders(context, environment_, configuration))
+    context.scene.parameters().set_configuration(configuration);
   start_section(context);
   materials_.draw(context);
   // All changes until the mouse button is released are one undo step.

@@ -8,6 +8,9 @@
 #include <memory>
 
 #include "app/base/progress.h"
+#include "app/live/group_video.h"
+#include "app/live/scene_exports.h"
+#include "app/live/scene_robots.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/panels/video_recorder.h"
@@ -95,7 +98,7 @@ void draw_picture(PanelContext& context) {
          "0: all is sharp, or as the style has it",
          settings.aperture, 0, {0, 0.3f, settings.aperture > 0 ? "%.3f" : "sharp", false});
   settings.aperture = std::clamp(settings.aperture, 0.0f, 1.0f);
-  ImGui::BeginDisabled(context.scene.entries().empty());
+  ImGui::BeginDisabled(context.scene.robots().entries().empty());
   if (ImGui::Button("Save a picture", {-1, 0})) context.recorder.start_group_picture(context);
   context.log.item("video.picture");
   ImGui::EndDisabled();
@@ -113,7 +116,7 @@ void draw_group(PanelContext& context) {
   combo("size", "of the video or picture", settings.group_size,
         {"1280 \xc3\x97 720", "1920 \xc3\x97 1080", "2560 \xc3\x97 1440", "3840 \xc3\x97 2160"});
   draw_group_options(settings);
-  ImGui::BeginDisabled(context.scene.entries().empty());
+  ImGui::BeginDisabled(context.scene.robots().entries().empty());
   if (primary_button("Make the video", {-1, 0})) context.recorder.start_group_video(context);
   context.log.item("video.group");
   ImGui::EndDisabled();
@@ -175,7 +178,7 @@ void VideoRecorder::capture_frame(PanelContext& context, WindowSize pixels) {
 
 void VideoRecorder::start_group(PanelContext& context, const GroupVideoOptions& options) {
   group_is_picture_ = options.still.has_value();
-  with_window_camera(context, [&] { group_ = context.scene.export_video(options); });
+  with_window_camera(context, [&] { group_ = context.scene.exports().video(options); });
   context.log.write("filming", {{"file", options.output}});
 }
 

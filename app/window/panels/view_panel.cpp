@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "app/live/scene_robots.h"
 #include "app/window/panels/commands.h"
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/key_map.h"
@@ -223,7 +224,7 @@ bool draw_appearance_section(PanelContext& context, ViewSettings& view, TextSize
   heading("Layout and appearance");
   EventLog& log = context.log;
   Preferences& preferences = context.preferences;
-  bool changed = draw_layout(view, static_cast<int>(context.scene.entries().size()), log);
+  bool changed = draw_layout(view, static_cast<int>(context.scene.robots().entries().size()), log);
   int theme = view.theme == render::Theme::dark ? 0 : 1;
   if (combo("theme", with_keys(context.keys, "of the view and the panels", Action::theme).c_str(), theme,
             {"dark", "light"})) {
@@ -299,7 +300,7 @@ void TextSizeRow::draw_pinned(PanelContext& context) {
 
 void ViewPanel::draw(PanelContext& context) {
   ViewSettings view = context.scene.view();
-  const Environment& environment = context.scene.configuration().environment;
+  const Environment& environment = context.scene.document().configuration.environment;
   const auto& scale = context.scene.drawn().scene().scale;
   bool changed = draw_color_section(view, {scale.low, scale.high}, environment, context.keys, context.log);
   changed |= draw_show_section(view, context.keys, context.log);

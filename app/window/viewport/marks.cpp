@@ -9,6 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "app/live/picking.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_selection.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
 #include "render/cut.h"
@@ -35,9 +39,10 @@ std::optional<std::size_t> robot_with_handle(LiveScene& scene, const May& may) {
   const auto shown = [&](RobotId id) {
     const auto index = snapshot.robots->index_of(id);
     const bool seen = index && *index < scene.drawn().offsets().size() && !snapshot.telemetry[*index].exploded;
-    return seen && !scene.is_hidden(id) && may(*snapshot.robots->robots[*index].robot) ? index : std::nullopt;
+    return seen && !scene.selection().is_hidden(id) && may(*snapshot.robots->robots[*index].robot) ? index
+                                                                                                   : std::nullopt;
   };
-  for (const RobotId id : scene.selection())
+  for (const RobotId id : scene.selection().robots())
     if (const auto index = shown(id)) return index;
   for (const DocumentRobot& robot : scene.document().robots)
     if (const auto index = shown(robot.body.id)) return index;
@@ -166,10 +171,10 @@ void write(const std::vector<std::string>& lines, const Box& place) {
 
 std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const ViewportArea& area,
                                     const render::Camera& camera) {
-  const auto index = scene.pointed_snapshot().robots->index_of(hit.robot);
-  const DrawnScene& drawn = scene.pointed_drawn();
+  const auto index = scene.mouse().pointed_snapshot().robots->index_of(hit.robot);
+  const DrawnScene& drawn = scene.mouse().pointed_drawn();
   if (!index || *index >= drawn.offsets().size()) return std::nullopt;
-  const Robot& robot = *scene.pointed_snapshot().robots->robots[*index].robot;
+  const Robot& robot = *scene.mouse().pointed_snapshot().robots->robots[*index].robot;
   const std::span<const Vec3> positions = drawn.positions_of(*index);
   const auto place = [&](std::uint16_t mass) {
     return seen_at(area, camera, render::Vector3(positions[mass]) + drawn.offsets()[*index]);
@@ -195,7 +200,7 @@ std::optional<ImVec2> draw_hit_mark(LiveScene& scene, const Hit& hit, const View
 }
 
 void write_figures(const LiveScene& scene, const Hit& hit) {
-  const HitDetails figures = scene.describe(hit);
+  const HitDetails figures = scene.mouse().describe(hit);
   ImGui::TextUnformatted(figures.robot.c_str());
   ImGui::PushStyleColor(ImGuiCol_Text, palette().faint);
   const std::string speed = figures.mass.speed ? fmt::format("{:.3f} m/s", *figures.mass.speed) : "...";
@@ -255,7 +260,7 @@ void TargetHandle::draw(LiveScene& scene, const ViewportArea& area, const render
   const std::optional<std::size_t> robot = robot_with_handle(scene, seeks_target);
   if (!robot) return;
   const render::Vector3 offset = scene.drawn().offsets()[*robot];
-  const render::Vector3 target = offset + render::Vector3(scene.configuration().environment.target);
+  const render::Vector3 target = offset + render::Vector3(scene.document().configuration.environment.target);
   const std::optional<ImVec2> at = seen_at(area, camera, target);
   const float text = ImGui::GetFontSize(), radius = 0.5f * text;
   if (!at || !handle_button("##target", *at, radius, area)) return;
@@ -285,13 +290,13 @@ void TargetHandle::move_to_mouse(LiveScene& scene, const ViewportArea& area, con
   // Beyond some distance, a ray that is nearly level with the plane meets it too far away.
   if (!(along > 0) || along > 4 * back.norm()) return;
   const render::Vector3 wanted = ray.origin + along * ray.direction - offset;
-  Configuration configuration = scene.configuration();
+  Configuration configuration = scene.document().configuration;
   Vec3& moved = configuration.environment.target;
   if (io.KeyShift)
     moved.z = wanted.z;
   else
     moved = {wanted.x, wanted.y, moved.z};
-  scene.set_configuration(configuration);
+  scene.parameters().set_configuration(configuration);
 }
 
 std::vector<Box> draw_explosion_mark(const ExplodedRobot& robot, std::span<const Box> covered, EventLog& log,

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "app/live/live_scene.h"
+#include "app/live/picking.h"
 #include "app/window/toolkit/event_log.h"
 #include "app/window/viewport/viewport.h"
 #include "render/camera.h"

@@ -9,6 +9,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/live/picking.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_selection.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/viewport/marks.h"
 
@@ -73,7 +77,7 @@ void MouseController::press(const ViewportArea& area, const render::Camera& came
     drag_ = button == 0 ? (io.KeyShift && !io.KeyCtrl ? Drag::box : Drag::turn) : Drag::pan;
     if (button == 2 || !io.KeyCtrl) return;
     if (button == 1) {
-      const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, io.MousePos));
+      const std::optional<Hit> hit = scene_.mouse().pick(ray_at(area, camera, io.MousePos));
       if (!hit) return;
       drag_ = Drag::push;
       pushed_ = hit->point;
@@ -81,10 +85,10 @@ void MouseController::press(const ViewportArea& area, const render::Camera& came
       return;
     }
     drag_ = Drag::pull;
-    if (const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, io.MousePos))) {
+    if (const std::optional<Hit> hit = scene_.mouse().pick(ray_at(area, camera, io.MousePos))) {
       pull_depth_ = (hit->point - camera.eye).dot(forward_of(camera));
-      scene_.begin_perturbation(*hit);
-      scene_.select(hit->robot);
+      scene_.mouse().begin_perturbation(*hit);
+      scene_.selection().select(hit->robot);
       log_.write("pull",
                  {{"robot", hit->robot}, {"mass", hit->mass}, {"at", {hit->point.x, hit->point.y, hit->point.z}}});
     }
@@ -97,10 +101,10 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
   const float moved = std::abs(io.MousePos.x - pressed_at_.x) + std::abs(io.MousePos.y - pressed_at_.y);
   if (moved > 4) dragged_ = true;
   if (drag_ == Drag::pull) {
-    if (!scene_.perturbation()) return;
+    if (!scene_.mouse().perturbation()) return;
     const render::Ray ray = ray_at(area, camera, io.MousePos);
     const float along = pull_depth_ / std::max(0.05f, ray.direction.dot(forward_of(camera)));
-    scene_.move_perturbation(ray.origin + along * ray.direction);
+    scene_.mouse().move_perturbation(ray.origin + along * ray.direction);
     used_.pulled = used_.pulled || dragged_;
     return;
   }
@@ -113,17 +117,17 @@ void MouseController::drag(const ViewportArea& area, const render::Camera& camer
 
 void MouseController::release(const ViewportArea& area, const render::Camera& camera) {
   if (drag_ == Drag::pull) {
-    if (const auto pull = scene_.perturbation())
+    if (const auto pull = scene_.mouse().perturbation())
       log_.write(
           "pulled",
           {{"force", pull->force}, {"at", {pull->at.x, pull->at.y, pull->at.z}}, {"stays", ImGui::GetIO().KeyShift}});
     if (ImGui::GetIO().KeyShift)
-      scene_.attach_perturbation();
+      scene_.mouse().attach_perturbation();
     else
-      scene_.end_perturbation();
+      scene_.mouse().end_perturbation();
   } else if (drag_ == Drag::push) {
     const render::Vector3 velocity = push_speed * (pushed_to(area, camera) - pushed_);
-    if (dragged_ && scene_.push({velocity.x, velocity.y, velocity.z})) {
+    if (dragged_ && scene_.parameters().push({velocity.x, velocity.y, velocity.z})) {
       log_.write("push", {{"velocity", {velocity.x, velocity.y, velocity.z}}});
       toasts_.show(Tone::info, fmt::format("pushed all robots by {:.2f} m/s", velocity.norm()));
     }
@@ -136,18 +140,18 @@ void MouseController::release(const ViewportArea& area, const render::Camera& ca
 }
 
 void MouseController::click(const ViewportArea& area, const render::Camera& camera) {
-  const std::optional<Hit> hit = scene_.pick(ray_at(area, camera, pressed_at_));
+  const std::optional<Hit> hit = scene_.mouse().pick(ray_at(area, camera, pressed_at_));
   if (drag_ == Drag::pan) {
     if (hit && button_ == 1 && actions_.menu) actions_.menu(*hit);
     return;
   }
   if (hit && actions_.click && actions_.click(*hit)) return;
   const bool add = ImGui::GetIO().KeyShift;
-  if (!hit && !add) scene_.clear_selection();
+  if (!hit && !add) scene_.selection().clear();
   pinned_ = hit;
   if (hit) log_.write("pinned", {{"robot", hit->robot}, {"mass", hit->mass}});
-  if (hit && add) scene_.toggle_selected(hit->robot);
-  if (hit && !add) scene_.select(hit->robot);
+  if (hit && add) scene_.selection().toggle(hit->robot);
+  if (hit && !add) scene_.selection().select(hit->robot);
   if (hit && follows_) {
     camera_.follow(scene_.snapshot().robots->index_of(hit->robot));
     const DocumentRobot* robot = scene_.document().find(hit->robot);
@@ -160,16 +164,16 @@ void MouseController::select_box(const ViewportArea& area, const render::Camera&
   const ImVec2 end = ImGui::GetIO().MousePos;
   const ImVec2 low{std::min(pressed_at_.x, end.x), std::min(pressed_at_.y, end.y)};
   const ImVec2 high{std::max(pressed_at_.x, end.x), std::max(pressed_at_.y, end.y)};
-  const std::span<const render::Bounds> bounds = scene_.pointed_drawn().bounds();
+  const std::span<const render::Bounds> bounds = scene_.mouse().pointed_drawn().bounds();
   const LiveRobots& robots = *scene_.snapshot().robots;
-  std::vector<RobotId> selected = scene_.selection();
+  std::vector<RobotId> selected = scene_.selection().robots();
   for (std::size_t i = 0; i < std::min(bounds.size(), robots.size()); ++i) {
     if (bounds[i].empty() || (bounds[i].center() - camera.eye).dot(forward_of(camera)) <= 0) continue;
     const ImVec2 at = on_screen(area, camera, bounds[i].center());
     if (at.x >= low.x && at.x <= high.x && at.y >= low.y && at.y <= high.y) selected.push_back(robots.robots[i].id);
   }
-  scene_.set_selection(selected);
-  log_.write("box", {{"selected", scene_.selection().size()}});
+  scene_.selection().set(selected);
+  log_.write("box", {{"selected", scene_.selection().robots().size()}});
 }
 
 void MouseController::hover(const ViewportArea& area, const render::Camera& camera) {
@@ -183,7 +187,7 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
   rest_time_ += static_cast<double>(io.DeltaTime);
   if (rest_time_ < mark_delay || ImGui::GetTime() < next_pick_) return;
   const auto begin = std::chrono::steady_clock::now();
-  hovered_ = scene_.pick(ray_at(area, camera, io.MousePos));
+  hovered_ = scene_.mouse().pick(ray_at(area, camera, io.MousePos));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   next_pick_ = ImGui::GetTime() + std::max(pick_period, seconds / pick_share);
 }
@@ -193,8 +197,8 @@ void MouseController::draw(const ViewportArea& area, const render::Camera& camer
   draw_pull(area, camera);
   draw_push(area, camera);
   draw_box();
-  const bool stays =
-      pinned_ && scene_.is_selected(pinned_->robot) && scene_.pointed_snapshot().robots->index_of(pinned_->robot);
+  const bool stays = pinned_ && scene_.selection().contains(pinned_->robot) &&
+                     scene_.mouse().pointed_snapshot().robots->index_of(pinned_->robot);
   if (!stays) pinned_.reset();
   if (!figures) return;
   if (pinned_) draw_hit_mark(scene_, *pinned_, area, camera);
@@ -212,7 +216,7 @@ std::optional<std::size_t> MouseController::hovered() const {
 render::Vector3 MouseController::pushed_to(const ViewportArea& area, const render::Camera& camera) const {
   const render::Ray ray = ray_at(area, camera, ImGui::GetIO().MousePos);
   const float drop = (pushed_.z - ray.origin.z) / ray.direction.z;
-  if (has_ground(scene_.configuration().environment) && drop > 0 && std::isfinite(drop))
+  if (has_ground(scene_.document().configuration.environment) && drop > 0 && std::isfinite(drop))
     return ray.origin + std::min(drop, 4 * pull_depth_) * ray.direction;
   return ray.origin + pull_depth_ / std::max(0.05f, ray.direction.dot(forward_of(camera))) * ray.direction;
 }
@@ -232,7 +236,7 @@ void MouseController::draw_push(const ViewportArea& area, const render::Camera& 
 }
 
 void MouseController::draw_pull(const ViewportArea& area, const render::Camera& camera) const {
-  if (const auto pull = scene_.perturbation()) {
+  if (const auto pull = scene_.mouse().perturbation()) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 at = on_screen(area, camera, pull->at), target = on_screen(area, camera, pull->target);
     const float text = ImGui::GetFontSize();
@@ -248,7 +252,7 @@ void MouseController::draw_springs(const ViewportArea& area, const render::Camer
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float text = ImGui::GetFontSize();
   list.PushClipRect(area.low, area.high);
-  for (const PerturbationDetails& spring : scene_.attachments()) {
+  for (const PerturbationDetails& spring : scene_.mouse().attachments()) {
     const ImVec2 at = on_screen(area, camera, spring.at), target = on_screen(area, camera, spring.target);
     list.AddLine(at, target, palette().warning, 0.1f * text);
     list.AddCircleFilled(at, 0.2f * text, palette().warning);

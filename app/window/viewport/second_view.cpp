@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_selection.h"
 #include "app/scene/side_difference.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
@@ -118,9 +120,10 @@ void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, float top, c
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect(area.low, area.high);
   std::vector<ViewportArea> taken;
-  for (const GhostFigures& figures : scene.ghost_figures()) {
+  for (const GhostFigures& figures : scene.comparison().ghost_figures()) {
     const auto robot = scene.snapshot().robots->index_of(figures.robot);
-    if (!robot || *robot >= boxes.size() || boxes[*robot].empty() || scene.is_hidden(figures.robot)) continue;
+    if (!robot || *robot >= boxes.size() || boxes[*robot].empty() || scene.selection().is_hidden(figures.robot))
+      continue;
     if (!render::covered_by(boxes[*robot], camera, static_cast<int>(area.width()), static_cast<int>(area.height())))
       continue;
     const Place place = place_of(boxes[*robot], area, camera);
@@ -135,7 +138,7 @@ void draw_ghost_figures(LiveScene& scene, const ViewportArea& area, float top, c
 }
 
 ViewportArea SecondView::split(LiveScene& scene, const ViewportArea& whole) {
-  const bool two = scene.second_drawn() != nullptr;
+  const bool two = scene.comparison().second_drawn() != nullptr;
   changed_ = two != area_.has_value();
   area_.reset();
   if (!two) {
@@ -161,7 +164,7 @@ bool SecondView::update(LiveScene& scene, render::Quality quality) {
     place(ImGui::GetIO().DisplayFramebufferScale);
   }
   if (viewport_->renderer().quality() != quality) viewport_->renderer().set_quality(quality);
-  const DrawnScene& drawn = *scene.second_drawn();
+  const DrawnScene& drawn = *scene.comparison().second_drawn();
   if (revision_ == drawn.bodies_revision()) return false;
   drawn.set_bodies(viewport_->renderer());
   revision_ = drawn.bodies_revision();
@@ -169,7 +172,7 @@ bool SecondView::update(LiveScene& scene, render::Quality quality) {
 }
 
 void SecondView::draw(LiveScene& scene, const render::Camera& camera, bool moving) {
-  if (viewport_) viewport_->draw(without_text(scene.second_drawn()->scene()), camera, moving);
+  if (viewport_) viewport_->draw(without_text(scene.comparison().second_drawn()->scene()), camera, moving);
 }
 
 void SecondView::finish() {

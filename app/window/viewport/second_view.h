@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/live/live_scene.h"
+#include "app/live/scene_comparison.h"
 #include "app/window/toolkit/event_log.h"
 #include "app/window/viewport/viewport.h"
 

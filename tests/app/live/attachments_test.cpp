@@ -6,6 +6,11 @@
 #include <iterator>
 #include <set>
 
+#include "app/live/scene_files.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "app/options/scene_file.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
@@ -29,10 +34,10 @@ class Attachments : public test::FolderTest {
   void make(LiveScene& scene) const {
     test::make_robots(scene, 2);
     const std::vector<RobotId> ids = ids_of(scene);
-    scene.pin({.robot = ids[0], .index = 0, .mass = 4});
-    scene.begin_perturbation({.robot = ids[1], .index = 1, .mass = 3}, 25);
-    scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.5f, -0.25f, 0));
-    scene.attach_perturbation();
+    scene.mouse().pin({.robot = ids[0], .index = 0, .mass = 4});
+    scene.mouse().begin_perturbation({.robot = ids[1], .index = 1, .mass = 3}, 25);
+    scene.mouse().move_perturbation(scene.mouse().perturbation()->at + render::Vector3(0.5f, -0.25f, 0));
+    scene.mouse().attach_perturbation();
     scene.wait_until_done();
   }
   template <class Held>
@@ -74,10 +79,10 @@ TEST_F(Attachments, UndoAndRedoTakeEachOfThemAwayAndPutItBack) {
   make(scene);
   const std::vector<std::string> both = texts_of(scene);
   ASSERT_THAT(both, SizeIs(2));
-  EXPECT_EQ(scene.undo_name(), "attach a spring");
+  EXPECT_EQ(scene.history().undo_name(), "attach a spring");
   scene.undo();
   EXPECT_THAT(texts_of(scene), ElementsAre("0:4"));
-  EXPECT_EQ(scene.undo_name(), "pin a mass");
+  EXPECT_EQ(scene.history().undo_name(), "pin a mass");
   test::undo_and_wait(scene);
   EXPECT_THAT(texts_of(scene), IsEmpty());
   EXPECT_THAT(scene.snapshot().perturbations, IsEmpty());
@@ -86,7 +91,7 @@ TEST_F(Attachments, UndoAndRedoTakeEachOfThemAwayAndPutItBack) {
   scene.wait_until_done();
   EXPECT_EQ(texts_of(scene), both);
   EXPECT_THAT(scene.snapshot().perturbations, SizeIs(2));
-  scene.remove_attachments(ids_of(scene));
+  scene.mouse().remove_attachments(ids_of(scene));
   EXPECT_THAT(texts_of(scene), IsEmpty());
   scene.undo();
   EXPECT_EQ(texts_of(scene), both);
@@ -96,7 +101,7 @@ TEST_F(Attachments, ARobotThatComesBackHasItsPinAgain) {
   LiveScene scene(test::on_cpu());
   make(scene);
   const std::vector<std::string> both = texts_of(scene);
-  scene.remove({ids_of(scene)[0]});
+  scene.robots().remove({ids_of(scene)[0]});
   scene.wait_until_done();
   EXPECT_THAT(texts_of(scene), SizeIs(1));
   test::undo_and_wait(scene);
@@ -108,8 +113,8 @@ TEST_F(Attachments, APinThatComesBackFromBeforeAResetHoldsItsMassWhereItIs) {
   test::RobotScene scene(1);
   const RobotId id = ids_of(scene)[0];
   test::step_and_wait(scene, 800);
-  scene.pin({.robot = id, .index = 0, .mass = 4});
-  scene.remove_attachments({id});
+  scene.mouse().pin({.robot = id, .index = 0, .mass = 4});
+  scene.mouse().remove_attachments({id});
   test::reset_and_wait(scene);
   scene.undo();
   test::step_and_wait(scene, 200);
@@ -119,7 +124,7 @@ TEST_F(Attachments, APinThatComesBackFromBeforeAResetHoldsItsMassWhereItIs) {
 TEST_F(Attachments, ASceneFileKeepsThem) {
   LiveScene scene(test::on_cpu(Land{}));
   make(scene);
-  ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
+  ASSERT_TRUE(scene.files().save_scene(path("held.toml")).ok());
   EXPECT_THAT(read("held.toml"), HasSubstr("attach = [\n  \"0:4\",\n  \"1:3:"));
   LiveScene again(test::on_cpu());
   test::open_and_wait(again, {path("held.toml")});
@@ -142,9 +147,9 @@ TEST_F(Attachments, AKeptSceneFileIsRead) {
 TEST_F(Attachments, ACommandNamesThem) {
   LiveScene scene(test::on_cpu());
   make(scene);
-  const std::string text = scene.command("view").text;
+  const std::string text = scene.files().command("view").text;
   for (const std::string& one : texts_of(scene)) EXPECT_THAT(text, HasSubstr(" --attach=" + one));
-  EXPECT_THAT(scene.command("render").notes, testing::Contains(HasSubstr("pins")));
+  EXPECT_THAT(scene.files().command("render").notes, testing::Contains(HasSubstr("pins")));
 }
 
 TEST_F(Attachments, GoingBackBeforeAPinTakesItAwayAndUndoBringsItBack) {
@@ -152,10 +157,10 @@ TEST_F(Attachments, GoingBackBeforeAPinTakesItAwayAndUndoBringsItBack) {
   test::step_and_wait(scene, 100);
   const double before = scene.snapshot().time;
   test::step_and_wait(scene, 50);
-  scene.pin({.robot = ids_of(scene)[0], .index = 0, .mass = 4});
+  scene.mouse().pin({.robot = ids_of(scene)[0], .index = 0, .mass = 4});
   test::step_and_wait(scene, 50);
   test::seek_and_wait(scene, before);
-  scene.go_on();
+  scene.time().go_on();
   test::step_and_wait(scene, 10);
   EXPECT_THAT(texts_of(scene), IsEmpty());
   EXPECT_THAT(scene.snapshot().perturbations, IsEmpty());
@@ -193,15 +198,15 @@ TEST_F(Drives, ASceneFileKeepsThem) {
   LiveScene scene(test::on_cpu());
   test::open_and_wait(scene, {path("fins.json"), path("fins.json")});
   const std::vector<RobotId> ids = ids_of(scene);
-  scene.drive_actuator(ids, "left: \"fin\"", -0.25f);
-  scene.drive_actuator({ids[1]}, "tail", 1);
-  ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
+  scene.parameters().drive_actuator(ids, "left: \"fin\"", -0.25f);
+  scene.parameters().drive_actuator({ids[1]}, "tail", 1);
+  ASSERT_TRUE(scene.files().save_scene(path("held.toml")).ok());
   LiveScene again(test::on_cpu());
   test::open_and_wait(again, {path("held.toml")});
   EXPECT_THAT(drives_of(again), ElementsAre("0:left: \"fin\":-0.25", "1:left: \"fin\":-0.25", "1:tail:1"));
   EXPECT_THAT(again.take_messages(), IsEmpty());
   // The physics has them from the first step on.
-  scene.reset();
+  scene.time().reset();
   for (LiveScene* one : {&scene, &again}) {
     test::step_and_wait(*one, 200);
   }
@@ -210,7 +215,7 @@ TEST_F(Drives, ASceneFileKeepsThem) {
   test::open_and_wait(free, {path("fins.json"), path("fins.json")});
   test::step_and_wait(free, 200);
   EXPECT_FALSE(same_bits(free.snapshot().positions.host(), again.snapshot().positions.host()));
-  EXPECT_THAT(again.command("view").text, HasSubstr(" --drive="));
+  EXPECT_THAT(again.files().command("view").text, HasSubstr(" --drive="));
 }
 
 TEST_F(Drives, WhatDoesNotExistIsReported) {
@@ -256,23 +261,24 @@ TEST_F(HeldNeurons, ASceneFileKeepsThem) {
   LiveScene scene(test::on_cpu());
   test::open_and_wait(scene, {path("thinker.json"), path("thinker.json")});
   const std::vector<RobotId> ids = ids_of(scene);
-  scene.clamp_neuron(ids[0], 1, 0.0f);
-  scene.clamp_neuron(ids[1], 0, -0.25f);
-  scene.clamp_neuron(ids[1], 3, 1e-3f);
-  ASSERT_TRUE(scene.save_scene(path("held.toml")).ok());
+  scene.parameters().clamp_neuron(ids[0], 1, 0.0f);
+  scene.parameters().clamp_neuron(ids[1], 0, -0.25f);
+  scene.parameters().clamp_neuron(ids[1], 3, 1e-3f);
+  ASSERT_TRUE(scene.files().save_scene(path("held.toml")).ok());
   LiveScene again(test::on_cpu());
   test::open_and_wait(again, {path("held.toml")});
   EXPECT_THAT(neurons_of(again), ElementsAre("0:left: a 1:0", "1:left: a 0:-0.25", "1:motor 1:0.001"));
   EXPECT_THAT(again.take_messages(), IsEmpty());
-  EXPECT_THAT(again.command("view").text, HasSubstr(" --neuron='0:left: a 1:0' "));
-  EXPECT_THAT(again.command("view").notes, IsEmpty());
-  EXPECT_THAT(again.command("render").notes, testing::Contains(HasSubstr("held by hand are not in the command")));
+  EXPECT_THAT(again.files().command("view").text, HasSubstr(" --neuron='0:left: a 1:0' "));
+  EXPECT_THAT(again.files().command("view").notes, IsEmpty());
+  EXPECT_THAT(again.files().command("render").notes,
+              testing::Contains(HasSubstr("held by hand are not in the command")));
   // The physics has them from the first step on.
-  scene.reset();
+  scene.time().reset();
   const std::vector<Vec3> held = positions_after(again, 200);
   EXPECT_TRUE(same_bits(positions_after(scene, 200), held));
   Robot thinker = load_robot(path("thinker.json"));
-  Simulation alone(again.configuration(), std::vector{thinker, thinker});
+  Simulation alone(again.document().configuration, std::vector{thinker, thinker});
   alone.clamp_neuron(0, 1, 0.0f);
   alone.clamp_neuron(1, 0, -0.25f);
   alone.clamp_neuron(1, 3, 1e-3f);
@@ -280,7 +286,7 @@ TEST_F(HeldNeurons, ASceneFileKeepsThem) {
   std::vector<Vec3> positions(alone.mass_count());
   alone.read_positions(positions);
   EXPECT_TRUE(same_bits(positions, held));
-  Simulation free(again.configuration(), std::vector{thinker, thinker});
+  Simulation free(again.document().configuration, std::vector{thinker, thinker});
   free.step(200);
   free.read_positions(positions);
   EXPECT_FALSE(same_bits(positions, held));

@@ -4,6 +4,12 @@
 
 #include <algorithm>
 
+#include "app/live/measurements.h"
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "app/scene/side_difference.h"
 #include "app/scene/view_words.h"
 #include "mercury/error.h"
@@ -40,7 +46,7 @@ Simulation alone(const LiveScene& scene, const Configuration& configuration) {
 }
 
 void stiffen(LiveScene& scene, RobotId robot) {
-  scene.scale_materials({robot}, {.stiffness = 1.7f, .frequency = 1.3f});
+  scene.parameters().scale_materials({robot}, {.stiffness = 1.7f, .frequency = 1.3f});
 }
 
 class ComparisonOn : public BackendTest {
@@ -54,15 +60,15 @@ INSTANTIATE_TEST_SUITE_P(All, ComparisonOn, every_device, BackendTest::name);
 TEST_P(ComparisonOn, SecondSideIsARunOfItsOwnWithThatConfiguration) {
   test::RobotScene scene(3, options());
   for (const char* text : {"solver=xpbd", "environment=land", "damping=0.7,density=400", "dt=0.00025"}) {
-    scene.reset();
-    scene.set_second(SideDifference(text));
+    scene.time().reset();
+    scene.comparison().set_second(SideDifference(text));
     test::step_and_wait(scene, 120);
-    Simulation second = alone(scene, SideDifference(text).over(scene.configuration()));
+    Simulation second = alone(scene, SideDifference(text).over(scene.document().configuration));
     second.step(std::llround(scene.snapshot().time / second.configuration().dt));
     ASSERT_TRUE(scene.snapshot().second) << text;
     EXPECT_TRUE(second_positions(scene) == positions_of(second)) << text;
     EXPECT_NEAR(scene.snapshot().second->time, scene.snapshot().time, 1e-9) << text;
-    Simulation first = alone(scene, scene.configuration());
+    Simulation first = alone(scene, scene.document().configuration);
     first.step(120);
     EXPECT_TRUE(positions_of(scene.snapshot()) == positions_of(first)) << text;
   }
@@ -71,13 +77,13 @@ TEST_P(ComparisonOn, SecondSideIsARunOfItsOwnWithThatConfiguration) {
 TEST_P(ComparisonOn, BothSidesBeginInTheSameStates) {
   test::RobotScene scene(2, options());
   test::step_and_wait(scene, 70);
-  scene.set_second(SideDifference("solver=xpbd"));
+  scene.comparison().set_second(SideDifference("solver=xpbd"));
   scene.wait_until_done();
   EXPECT_TRUE(second_positions(scene) == positions_of(scene.snapshot()));
   EXPECT_TRUE(scene.snapshot().second->velocities == scene.snapshot().velocities);
-  Simulation both = alone(scene, scene.configuration());
+  Simulation both = alone(scene, scene.document().configuration);
   both.step(70);
-  Configuration xpbd = scene.configuration();
+  Configuration xpbd = scene.document().configuration;
   xpbd.solver = Solver::xpbd;
   both.configure(xpbd);
   both.step(50);
@@ -90,10 +96,11 @@ TEST_P(ComparisonOn, GhostHasTheBitsOfTheUnchangedRobotAlone) {
   test::RobotScene scene(3, options());
   const std::vector<RobotId> robots = test::ids_of(scene);
   test::step_and_wait(scene, 40);
-  EXPECT_EQ(scene.show_ghosts({robots[1]}), 1u);
+  EXPECT_EQ(scene.comparison().show_ghosts({robots[1]}), 1u);
   stiffen(scene, robots[1]);
   test::step_and_wait(scene, 60);
-  Simulation unchanged(scene.configuration(), std::span(scene.document().find(robots[1])->body.robot.get(), 1));
+  Simulation unchanged(scene.document().configuration,
+                       std::span(scene.document().find(robots[1])->body.robot.get(), 1));
   unchanged.step(100);
   EXPECT_TRUE(ghost_positions(scene) == positions_of(unchanged));
   EXPECT_TRUE(ghost_positions(scene) !=
@@ -117,14 +124,15 @@ Robot thinking_robot() {
 TEST_P(ComparisonOn, GhostOfARobotWithAHeldNeuronHasItsWholeBrain) {
   const Robot thinker = thinking_robot();
   test::RobotScene scene(1, options());
-  scene.add({thinker});
+  scene.robots().add({thinker});
   const RobotId robot = test::ids_of(scene)[1];
   test::step_and_wait(scene, 40);
-  scene.clamp_neuron(robot, 3, 0.5f);
+  scene.parameters().clamp_neuron(robot, 3, 0.5f);
   scene.end_edit();
-  EXPECT_EQ(scene.show_ghosts({robot}), 1u);
+  EXPECT_EQ(scene.comparison().show_ghosts({robot}), 1u);
   test::step_and_wait(scene, 60);
-  Simulation held(scene.configuration(), std::span(&thinker, 1)), whole(scene.configuration(), std::span(&thinker, 1));
+  Simulation held(scene.document().configuration, std::span(&thinker, 1)),
+      whole(scene.document().configuration, std::span(&thinker, 1));
   held.step(40);
   held.clamp_neuron(0, 3, 0.5f);
   held.step(60);
@@ -141,37 +149,37 @@ TEST_P(ComparisonOn, GhostOfARobotWithAHeldNeuronHasItsWholeBrain) {
   EXPECT_TRUE(ghost_positions(scene) == positions_of(whole));
   EXPECT_TRUE(positions_of(held) != positions_of(whole));
   // The timeline shows it again, and undo releases it.
-  test::seek_and_wait(scene, scene.configuration().dt * 20);
-  test::seek_and_wait(scene, scene.configuration().dt * 100);
+  test::seek_and_wait(scene, scene.document().configuration.dt * 20);
+  test::seek_and_wait(scene, scene.document().configuration.dt * 100);
   EXPECT_TRUE(now() == positions_of(held));
-  scene.go_on();
+  scene.time().go_on();
   scene.undo();
   test::step_and_wait(scene, 60);
   held.clamp_neuron(0, 3, std::nullopt);
   held.step(60);
   EXPECT_TRUE(now() == positions_of(held));
-  scene.clamp_neuron(robot, 1000, 1.0f);  // it does not have this one
+  scene.parameters().clamp_neuron(robot, 1000, 1.0f);  // it does not have this one
   EXPECT_FALSE(scene.document().find(robot)->body.by_hand);
 }
 
 TEST_P(ComparisonOn, GhostOfAMutantIsItsParent) {
   test::RobotScene scene(1, options());
   const RobotId parent = test::ids_of(scene)[0];
-  scene.mutate({parent}, {.seed = 3});
+  scene.robots().mutate({parent}, {.seed = 3});
   scene.wait_until_done();
   const RobotId child = test::ids_of(scene)[1];
-  EXPECT_EQ(scene.show_ghosts({child}), 1u);
-  EXPECT_TRUE(scene.ghosts()[0].of_parent);
+  EXPECT_EQ(scene.comparison().show_ghosts({child}), 1u);
+  EXPECT_TRUE(scene.comparison().ghosts()[0].of_parent);
   test::step_and_wait(scene, 90);
   const auto first = scene.snapshot().positions_of(0);
   EXPECT_TRUE(ghost_positions(scene) == Positions(first.begin(), first.end()));
   // Once the mutant is changed, its ghost is the mutant as it was made, unless the parent is asked for.
   stiffen(scene, child);
-  scene.show_ghosts({child});
-  EXPECT_FALSE(scene.ghosts()[0].of_parent);
-  scene.show_ghosts({child}, GhostOf::parent);
-  EXPECT_TRUE(scene.ghosts()[0].of_parent);
-  EXPECT_EQ(scene.show_ghosts({parent}, GhostOf::parent), 0u);
+  scene.comparison().show_ghosts({child});
+  EXPECT_FALSE(scene.comparison().ghosts()[0].of_parent);
+  scene.comparison().show_ghosts({child}, GhostOf::parent);
+  EXPECT_TRUE(scene.comparison().ghosts()[0].of_parent);
+  EXPECT_EQ(scene.comparison().show_ghosts({parent}, GhostOf::parent), 0u);
 }
 
 TEST_P(ComparisonOn, TheTimelineShowsEveryMomentOfBothAgain) {
@@ -180,8 +188,8 @@ TEST_P(ComparisonOn, TheTimelineShowsEveryMomentOfBothAgain) {
   test::step_and_wait(scene, 30);
   const Positions common = positions_of(scene.snapshot());
   test::step_and_wait(scene, 10);
-  scene.set_second(SideDifference("solver=xpbd"));
-  scene.show_ghosts({robot});
+  scene.comparison().set_second(SideDifference("solver=xpbd"));
+  scene.comparison().show_ghosts({robot});
   stiffen(scene, robot);
   struct Moment {
     double time;
@@ -194,13 +202,13 @@ TEST_P(ComparisonOn, TheTimelineShowsEveryMomentOfBothAgain) {
   };
   test::step_and_wait(scene, 25);
   keep();
-  Configuration configuration = scene.configuration();
+  Configuration configuration = scene.document().configuration;
   configuration.dt = 7e-4;
-  scene.set_configuration(configuration);
+  scene.parameters().set_configuration(configuration);
   test::step_and_wait(scene, 35);
   keep();
   test::step_and_wait(scene, 5);
-  scene.duplicate({robot});
+  scene.robots().duplicate({robot});
   test::step_and_wait(scene, 20);
   keep();
   for (const std::size_t i : {0u, 1u, 0u, 2u, 1u}) {
@@ -224,31 +232,31 @@ TEST_P(ComparisonOn, AComparisonThatBeginsAtAnEarlierMomentKeepsWhatCameAfter) {
   test::step_and_wait(scene, 100);
   const Positions end = positions_of(scene.snapshot());
   test::seek_and_wait(scene, 0.04);
-  scene.set_second(SideDifference("damping=2"));
+  scene.comparison().set_second(SideDifference("damping=2"));
   scene.wait_until_done();
   EXPECT_TRUE(scene.snapshot().timeline.viewing);
   test::seek_and_wait(scene, 0.1);
   EXPECT_TRUE(positions_of(scene.snapshot()) == end);
-  Simulation second = alone(scene, scene.configuration());
+  Simulation second = alone(scene, scene.document().configuration);
   second.step(40);
-  second.configure(SideDifference("damping=2").over(scene.configuration()));
+  second.configure(SideDifference("damping=2").over(scene.document().configuration));
   second.step(60);
   EXPECT_TRUE(second_positions(scene) == positions_of(second));
 }
 
 TEST(Comparison, BothSidesAreAtTheSameStepAfterEachPause) {
   test::RobotScene scene(2);
-  scene.set_second(SideDifference("solver=xpbd"));
-  scene.set_speed(unlimited_speed);
+  scene.comparison().set_second(SideDifference("solver=xpbd"));
+  scene.time().set_speed(unlimited_speed);
   for (int i = 0; i < 4; ++i) {
     const std::int64_t before = scene.snapshot().steps;
-    scene.play();
+    scene.time().play();
     while (scene.snapshot().steps < before + 50) {
       scene.frame();
       ASSERT_TRUE(!scene.snapshot().second || scene.snapshot().second->steps == scene.snapshot().steps);
       test::nap();
     }
-    scene.pause();
+    scene.time().pause();
     scene.wait_until_done();
     EXPECT_EQ(scene.snapshot().second->steps, scene.snapshot().steps);
   }
@@ -256,14 +264,14 @@ TEST(Comparison, BothSidesAreAtTheSameStepAfterEachPause) {
 
 TEST(Comparison, EditsActOnBothSides) {
   test::RobotScene scene(2);
-  scene.set_second(SideDifference("damping=1"));
+  scene.comparison().set_second(SideDifference("damping=1"));
   const std::vector<RobotId> robots = test::ids_of(scene);
   test::step_and_wait(scene, 20);
   stiffen(scene, robots[0]);
-  scene.remove({robots[1]});
-  Configuration configuration = scene.configuration();
+  scene.robots().remove({robots[1]});
+  Configuration configuration = scene.document().configuration;
   configuration.solver = Solver::xpbd;
-  scene.set_configuration(configuration);
+  scene.parameters().set_configuration(configuration);
   scene.wait_until_done();
   const Snapshot& second = *scene.snapshot().second;
   ASSERT_EQ(second.robots->size(), 1u);
@@ -280,17 +288,17 @@ TEST(Comparison, GhostsCountNowhere) {
   const std::vector<RobotId> robots = test::ids_of(scene);
   test::step_and_wait(scene, 30);
   const std::vector<render::Bounds> boxes(scene.drawn().camera_boxes().begin(), scene.drawn().camera_boxes().end());
-  scene.show_ghosts({robots[0]});
+  scene.comparison().show_ghosts({robots[0]});
   test::step_and_wait(scene, 1);
   EXPECT_EQ(scene.drawn().scene().ghosts.size(), 1u);
-  EXPECT_EQ(scene.robot_count(), 2u);
-  EXPECT_EQ(scene.entries().size(), 2u);
-  EXPECT_EQ(scene.ranking().size(), 2u);
+  EXPECT_EQ(scene.robots().count(), 2u);
+  EXPECT_EQ(scene.robots().entries().size(), 2u);
+  EXPECT_EQ(scene.measurements().ranking().size(), 2u);
   EXPECT_EQ(scene.drawn().camera_boxes().size(), boxes.size());
   EXPECT_EQ(scene.snapshot().robots->size(), 2u);
-  EXPECT_EQ(scene.undo_name(), "make 2 robots");
+  EXPECT_EQ(scene.history().undo_name(), "make 2 robots");
 
-  scene.hide_ghosts();
+  scene.comparison().hide_ghosts();
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().ghosts);
   EXPECT_TRUE(scene.drawn().scene().ghosts.empty());
@@ -300,22 +308,22 @@ TEST(Comparison, GhostsCountNowhere) {
 TEST(Comparison, AGhostGoesWithARobotThatIsForgotten) {
   test::RobotScene scene(1);
   test::step_and_wait(scene, 100);
-  scene.duplicate(test::ids_of(scene));
+  scene.robots().duplicate(test::ids_of(scene));
   scene.wait_until_done();
   const RobotId robot = test::ids_of(scene)[0], copy = test::ids_of(scene)[1];
-  EXPECT_EQ(scene.show_ghosts({copy}), 1u);
+  EXPECT_EQ(scene.comparison().show_ghosts({copy}), 1u);
   test::step_and_wait(scene, 50);
   ASSERT_EQ(scene.snapshot().ghosts->robots->size(), 1u);
-  scene.seek(0.09);
+  scene.time().seek(0.09);
   test::step_and_wait(scene, 10);
   ASSERT_EQ(scene.snapshot().robots->size(), 1u);
-  scene.go_on();
+  scene.time().go_on();
   test::step_and_wait(scene, 50);
   EXPECT_EQ(scene.snapshot().steps, 150);
   EXPECT_EQ(scene.snapshot().ghosts->robots->size(), 0u);
-  ASSERT_EQ(scene.ranking().size(), 1u);
-  EXPECT_EQ(scene.ranking()[0].robot, robot);
-  EXPECT_TRUE(scene.ghost_series(copy).times.empty());
+  ASSERT_EQ(scene.measurements().ranking().size(), 1u);
+  EXPECT_EQ(scene.measurements().ranking()[0].robot, robot);
+  EXPECT_TRUE(scene.comparison().ghost_series(copy).times.empty());
 }
 
 TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
@@ -323,17 +331,17 @@ TEST(Comparison, AGhostIsAsFarAheadInThePictureAsInTheWorld) {
   options.view.layout = Layout::grid;
   test::RobotScene scene(1, options);
   const RobotId robot = test::ids_of(scene)[0];
-  scene.show_ghosts({robot});
+  scene.comparison().show_ghosts({robot});
   stiffen(scene, robot);
   test::step_and_wait(scene, 400);
   const render::Ghost& ghost = scene.drawn().scene().ghosts[0];
   EXPECT_EQ(ghost.offset, scene.drawn().offsets()[0]);
   EXPECT_EQ(ghost.positions.size(), scene.drawn().scene().positions.size());
-  const std::vector<GhostFigures> figures = scene.ghost_figures();
+  const std::vector<GhostFigures> figures = scene.comparison().ghost_figures();
   ASSERT_EQ(figures.size(), 1u);
   EXPECT_TRUE(figures[0].same_age);
   EXPECT_NEAR(figures[0].age, scene.snapshot().time, 1e-9);
-  EXPECT_NEAR(figures[0].robot_distance, scene.ranking()[0].distance, 1e-12);
+  EXPECT_NEAR(figures[0].robot_distance, scene.measurements().ranking()[0].distance, 1e-12);
   EXPECT_NE(figures[0].robot_distance, figures[0].ghost_distance);
 }
 
@@ -341,9 +349,9 @@ TEST(Comparison, SeriesAreSharedUntilTheComparisonBegins) {
   test::RobotScene scene(1);
   const RobotId robot = test::ids_of(scene)[0];
   test::step_and_wait(scene, 200);
-  scene.set_second(SideDifference("solver=xpbd"));
+  scene.comparison().set_second(SideDifference("solver=xpbd"));
   test::step_and_wait(scene, 200);
-  const Series first = scene.series(robot), second = scene.second_series(robot);
+  const Series first = scene.measurements().series(robot), second = scene.comparison().second_series(robot);
   ASSERT_EQ(first.times.size(), second.times.size());
   for (std::size_t i = 0; i < first.times.size(); ++i) {
     EXPECT_NEAR(first.times[i], second.times[i], 1e-9);
@@ -352,7 +360,7 @@ TEST(Comparison, SeriesAreSharedUntilTheComparisonBegins) {
     }
   }
   EXPECT_NE(first.samples.back().distance, second.samples.back().distance);
-  EXPECT_TRUE(scene.ghost_series(robot).times.empty());
+  EXPECT_TRUE(scene.comparison().ghost_series(robot).times.empty());
 }
 
 TEST(Comparison, TheSettingOfTheViewIsTheSecondSide) {
@@ -361,21 +369,21 @@ TEST(Comparison, TheSettingOfTheViewIsTheSecondSide) {
   test::RobotScene scene(1, options);
   ASSERT_TRUE(scene.snapshot().second);
   EXPECT_EQ(scene.snapshot().second->configuration.solver, Solver::xpbd);
-  EXPECT_THAT(scene.command().text, testing::HasSubstr("--compare=solver=xpbd,damping=0.5"));
+  EXPECT_THAT(scene.files().command().text, testing::HasSubstr("--compare=solver=xpbd,damping=0.5"));
   ViewSettings view = scene.view();
   view.compare.reset();
   scene.set_view(view);
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().second);
-  EXPECT_FALSE(scene.second());
+  EXPECT_FALSE(scene.comparison().second());
 }
 
 TEST(Comparison, ASecondSideThatWouldHoldUpTheWindowEndsWithAMessage) {
   test::RobotScene scene(1);
-  scene.set_second(SideDifference("dt=1e-9"));
+  scene.comparison().set_second(SideDifference("dt=1e-9"));
   test::step_and_wait(scene, 3);
   EXPECT_FALSE(scene.snapshot().second);
-  EXPECT_FALSE(scene.second()) << "the key that switches it on would be needed twice";
+  EXPECT_FALSE(scene.comparison().second()) << "the key that switches it on would be needed twice";
   const std::vector<Message> messages = scene.take_messages();
   ASSERT_EQ(messages.size(), 1u);
   EXPECT_THAT(messages[0].text, testing::HasSubstr("the second view ended: dt: 1e-09 s is less than 1/1000"));

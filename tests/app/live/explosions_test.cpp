@@ -6,6 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "app/live/picking.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
 
@@ -59,7 +64,7 @@ TEST(LiveExplosion, UnstableSpringAmongSeparatePairsIsShown) {
   for (int pair = 0; pair < 3; ++pair)
     for (int end = 0; end < 2; ++end)
       masses.push_back({1.02f * length * static_cast<float>(end), static_cast<float>(pair), 0});
-  scene.add({with_unstable_spring("pairs", masses, {{0, 1}, {2, 3}, {5, 4}}, 2)});
+  scene.robots().add({with_unstable_spring("pairs", masses, {{0, 1}, {2, 3}, {5, 4}}, 2)});
   explode(scene);
   const auto exploded = scene.exploded();
   ASSERT_THAT(exploded, SizeIs(1));
@@ -126,12 +131,12 @@ TEST(LiveExplosion, SpringAndPlaceInAChainAreThoseOfASimpleLoop) {
   for (const std::size_t unstable : {0u, 3u, 6u}) {
     LiveScene scene(in_space());
     const Robot robot = chain(unstable);
-    scene.add({robot});
+    scene.robots().add({robot});
     explode(scene);
     const auto exploded = scene.exploded();
     ASSERT_THAT(exploded, SizeIs(1));
     ASSERT_TRUE(exploded[0].spring);
-    const Expected loop = expected_explosion(robot, scene.configuration().dt);
+    const Expected loop = expected_explosion(robot, scene.document().configuration.dt);
     ASSERT_LT(loop.spring, robot.springs.size());
     const CulpritSpring& spring = *exploded[0].spring;
     EXPECT_EQ(spring.index, loop.spring) << unstable;
@@ -143,7 +148,7 @@ TEST(LiveExplosion, SpringAndPlaceInAChainAreThoseOfASimpleLoop) {
 TEST(LiveExplosion, SeveralExplosionsAreSortedByTime) {
   LiveScene scene(in_space());
   // The less stiff the spring, the later the explosion.
-  scene.add({chain(2, 2.2e6f), chain(4, 1), chain(5, 2e7f), chain(1, 6e6f)});
+  scene.robots().add({chain(2, 2.2e6f), chain(4, 1), chain(5, 2e7f), chain(1, 6e6f)});
   explode(scene);
   const auto exploded = scene.exploded();
   ASSERT_THAT(exploded, SizeIs(3));
@@ -156,26 +161,26 @@ TEST(LiveExplosion, SeveralExplosionsAreSortedByTime) {
     ASSERT_TRUE(one.spring);
     EXPECT_TRUE(scene.drawn().scene().placements[one.index].faulty);
   }
-  scene.set_hidden(ids[3], true);
+  scene.selection().set_hidden(ids[3], true);
   EXPECT_THAT(scene.exploded(), SizeIs(2));
 }
 
 TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   LiveScene scene(in_space());
-  scene.pause_on_explosion(false);
-  scene.add({chain(3), chain(1, 1)});
+  scene.time().pause_on_explosion(false);
+  scene.robots().add({chain(3), chain(1, 1)});
   explode(scene);
   const auto before = scene.exploded();
   ASSERT_THAT(before, SizeIs(1));
   const auto ids = ids_of(scene);
-  scene.pause_on_explosion(true);
-  scene.remove({ids[0]});
+  scene.time().pause_on_explosion(true);
+  scene.robots().remove({ids[0]});
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), IsEmpty());
   // A change of the time step in between does not change the explosion.
-  Configuration finer = scene.configuration();
+  Configuration finer = scene.document().configuration;
   finer.dt /= 8;
-  ASSERT_TRUE(scene.set_configuration(finer));
+  ASSERT_TRUE(scene.parameters().set_configuration(finer));
   scene.end_edit();
   scene.undo();
   test::undo_and_wait(scene);
@@ -188,7 +193,7 @@ TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   EXPECT_EQ(after[0].spring->index, before[0].spring->index);
   EXPECT_EQ(after[0].box.center(), before[0].box.center());
   EXPECT_TRUE(scene.drawn().scene().placements[after[0].index].faulty);
-  EXPECT_TRUE(scene.entries()[0].exploded);
+  EXPECT_TRUE(scene.robots().entries()[0].exploded);
   EXPECT_EQ(stops, 0u) << "it did not explode again";
   scene.redo();
   scene.wait_until_done();
@@ -196,7 +201,7 @@ TEST(LiveExplosion, ComesBackWithUndoAtOnceAndDoesNotPause) {
   test::undo_and_wait(scene);
   EXPECT_THAT(scene.exploded(), SizeIs(1));
   // A copy is a new robot at rest. A reset removes explosions.
-  scene.duplicate({ids[0]});
+  scene.robots().duplicate({ids[0]});
   scene.wait_until_done();
   EXPECT_THAT(scene.exploded(), SizeIs(1));
   test::reset_and_wait(scene);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/live/scene_robots.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
 #include "tests/robots/importers/documents.h"
@@ -23,7 +24,7 @@ TEST_F(LiveImports, RobotsOfOtherSimulatorsAreOpenedAndTheirReportIsSummedUp) {
   test::open_and_wait(scene, {path("crawler.vxa"), path("bad.vxa")});
   EXPECT_THAT(test::names_of(scene), ElementsAre("crawler"));
   EXPECT_EQ(*scene.document().robots[0].body.robot, import_file(path("crawler.vxa")).robots.front());
-  EXPECT_TRUE(scene.entries()[0].unsaved);
+  EXPECT_TRUE(scene.robots().entries()[0].unsaved);
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(2));
   EXPECT_THAT(messages[0].text, HasSubstr("crawler.vxa: 1 robot imported"));

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "app/live/scene_mouse.h"
 #include "tests/app/live/live_scene_setup.h"
 
 namespace mercury {
@@ -39,7 +40,7 @@ TEST_P(Cells, ARobotThatMovesStaysAndIsPickedWhereItIsDrawn) {
   const Vector3 after = shown(scene_, 1);
   EXPECT_LT((after - before).xy().norm(), 1e-3f);
   EXPECT_GT((scene_.drawn().offsets()[1] - offset).norm(), 1e-3f) << "it has moved";
-  const auto hit = scene_.pick({after + Vector3(0, 0, 50), -Vector3::unit(2)});
+  const auto hit = scene_.mouse().pick({after + Vector3(0, 0, 50), -Vector3::unit(2)});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->robot, ids_of(scene_)[1]);
   EXPECT_LT((hit->point - after).xy().norm(), 1e-4f);
@@ -49,16 +50,16 @@ TEST_P(Cells, APulledRobotFollowsTheMouseAndReturnsToItsCell) {
   make_robots(scene_, 2);
   test::step_and_wait(scene_, 300);
   const Vector3 cell = shown(scene_, 0);
-  scene_.begin_perturbation({.robot = ids_of(scene_)[0], .index = 0, .mass = 1});
+  scene_.mouse().begin_perturbation({.robot = ids_of(scene_)[0], .index = 0, .mass = 1});
   scene_.frame();
   const Vector3 offset = scene_.drawn().offsets()[0];
-  const Vector3 target = scene_.perturbation()->at + Vector3(0.4f, 0.2f, 0.1f);
-  scene_.move_perturbation(target);
+  const Vector3 target = scene_.mouse().perturbation()->at + Vector3(0.4f, 0.2f, 0.1f);
+  scene_.mouse().move_perturbation(target);
   test::step_and_wait(scene_, 300);
   EXPECT_LT((scene_.drawn().offsets()[0] - offset).norm(), 1e-5f) << "nothing is subtracted of a pull";
-  EXPECT_LT((scene_.perturbation()->target - target).norm(), 1e-4f) << "the target stays under the mouse";
+  EXPECT_LT((scene_.mouse().perturbation()->target - target).norm(), 1e-4f) << "the target stays under the mouse";
   EXPECT_GT((shown(scene_, 0) - cell).norm(), 1e-3f);
-  scene_.end_perturbation();
+  scene_.mouse().end_perturbation();
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while ((shown(scene_, 0) - cell).xy().norm() > 1e-3f && std::chrono::steady_clock::now() < deadline) scene_.frame();
   EXPECT_LT((shown(scene_, 0) - cell).xy().norm(), 1e-3f);

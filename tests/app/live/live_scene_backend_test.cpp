@@ -5,6 +5,13 @@
 
 #include <algorithm>
 
+#include "app/live/measurements.h"
+#include "app/live/picking.h"
+#include "app/live/replay_log.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "app/recording/repro.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
@@ -29,12 +36,12 @@ TEST_P(LiveOn, StepsAndEditsGiveTheStatesOfTheSimulation) {
     test::RobotScene scene(3, options(environment));
     test::step_and_wait(scene, 130);
     const auto ids = test::ids_of(scene);
-    scene.scale_materials({ids[2]}, {.stiffness = 1.25f, .frequency = 2});
-    scene.remove({ids[0]});
+    scene.parameters().scale_materials({ids[2]}, {.stiffness = 1.25f, .frequency = 2});
+    scene.robots().remove({ids[0]});
     test::step_and_wait(scene, 70);
     Simulation simulation(options(environment).configuration, random_voxel_robots({}, 5, 3));
     simulation.step(130);
-    const auto table = scene.materials(ids[2]);
+    const auto table = scene.parameters().materials(ids[2]);
     for (std::size_t id = 1; id < table.size(); ++id)
       simulation.set_material(2, static_cast<MaterialId>(id), table[id]);
     simulation.step(70);
@@ -51,10 +58,10 @@ TEST_P(LiveOn, StepsAndEditsGiveTheStatesOfTheSimulation) {
 
 TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
   test::RobotScene scene(4, options());
-  scene.set_speed(unlimited_speed);
-  scene.play();
+  scene.time().set_speed(unlimited_speed);
+  scene.time().play();
   std::uint64_t pictures = 0;
-  const auto samples = [&] { return scene.series(test::ids_of(scene)[0]).times.size(); };
+  const auto samples = [&] { return scene.measurements().series(test::ids_of(scene)[0]).times.size(); };
   for (std::int64_t seen = -1; scene.snapshot().steps < 4000 || pictures < 5 || samples() < 3; test::nap()) {
     scene.frame();
     pictures += scene.snapshot().steps != seen;
@@ -63,7 +70,7 @@ TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
       EXPECT_TRUE(scene.snapshot().velocities.empty()) << "velocities are read only on request";
     }
   }
-  scene.pause();
+  scene.time().pause();
   scene.wait_until_done();
   Simulation simulation(options().configuration, random_voxel_robots({}, 5, 4));
   simulation.step(scene.snapshot().steps);
@@ -72,7 +79,7 @@ TEST_P(LiveOn, PlayingAtUnlimitedSpeedGivesTheStatesOfTheSimulation) {
     EXPECT_FALSE(scene.snapshot().velocities_of(robot).empty()) << "a paused scene has velocities";
   }
   // Samples were dropped, but the others are evenly spaced.
-  const Series series = scene.series(test::ids_of(scene)[0]);
+  const Series series = scene.measurements().series(test::ids_of(scene)[0]);
   ASSERT_EQ(series.times.size(), series.samples.size());
   ASSERT_GE(series.times.size(), 3u);
   for (std::size_t i = 2; i < series.times.size(); ++i)
@@ -83,12 +90,12 @@ TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
   test::RobotScene scene(2, options());
   const RobotId robot = test::ids_of(scene)[1];
   test::step_and_wait(scene, 50);
-  scene.begin_perturbation({.robot = robot, .index = 1, .mass = 2}, 30);
-  scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.3f, 0, 0));
+  scene.mouse().begin_perturbation({.robot = robot, .index = 1, .mass = 2}, 30);
+  scene.mouse().move_perturbation(scene.mouse().perturbation()->at + render::Vector3(0.3f, 0, 0));
   test::step_and_wait(scene, 50);
-  Configuration coarse = scene.configuration();
+  Configuration coarse = scene.document().configuration;
   coarse.dt = 0.4;
-  scene.set_configuration(coarse);
+  scene.parameters().set_configuration(coarse);
   test::step_and_wait(scene, 300);
   const auto exploded = scene.exploded();
   const auto found = std::ranges::find(exploded, robot, &ExplodedRobot::robot);
@@ -97,7 +104,7 @@ TEST_P(LiveOn, ExplosionIsMarkedAndComesBackWithUndo) {
   const std::size_t index = found->index;
   const std::vector<Vec3> frozen(scene.snapshot().positions_of(index).begin(),
                                  scene.snapshot().positions_of(index).end());
-  scene.remove({robot});
+  scene.robots().remove({robot});
   scene.wait_until_done();
   test::undo_and_wait(scene);
   const auto back = scene.exploded();
@@ -112,9 +119,9 @@ TEST_P(LiveOn, APushAddsItsVelocityToAllRobotsOnce) {
   test::RobotScene scene(2, options());
   test::step_and_wait(scene, 50);
   const std::vector<Telemetry> before = scene.snapshot().telemetry;
-  EXPECT_FALSE(scene.push({NAN, 0, 0}));
-  ASSERT_TRUE(scene.push({3, 0, -1}));
-  EXPECT_EQ(scene.undo_name(), "change parameters");
+  EXPECT_FALSE(scene.parameters().push({NAN, 0, 0}));
+  ASSERT_TRUE(scene.parameters().push({3, 0, -1}));
+  EXPECT_EQ(scene.history().undo_name(), "change parameters");
   test::step_and_wait(scene, 3);
   const std::vector<Telemetry> after = scene.snapshot().telemetry;
   // What forces did meanwhile is little: no robot reaches 0.3 m/s in three steps.

@@ -9,6 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "app/video/position_bridge.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/random_voxel.h"
@@ -101,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(All, LiveSceneOnDevice, testing::Values(Place::pretende
 TEST_P(LiveSceneOnDevice, GivesTheSamePicturesBitForBit) {
   both([](LiveScene& scene) { test::make_robots(scene, 4); });
   for (int moment = 0; moment < 5; ++moment) {
-    both([](LiveScene& scene) { scene.step(300); });
+    both([](LiveScene& scene) { scene.time().step(300); });
     ASSERT_TRUE(on_device_->drawn().positions_on_device());
     ASSERT_FALSE(on_host_->drawn().positions_on_device());
     EXPECT_EQ(picture_of(*on_device_).bytes, picture_of(*on_host_).bytes) << moment;
@@ -112,13 +115,13 @@ TEST_P(LiveSceneOnDevice, FollowsRobotsThatComeAndGo) {
   for (int count = 1; count < 4; ++count) {
     both([&](LiveScene& scene) {
       test::make_robots(scene, static_cast<std::size_t>(count));
-      scene.step(100);
+      scene.time().step(100);
     });
     EXPECT_EQ(picture_of(*on_device_).bytes, picture_of(*on_host_).bytes) << count;
   }
   both([](LiveScene& scene) {
-    scene.remove({test::ids_of(scene)[1]});
-    scene.step(50);
+    scene.robots().remove({test::ids_of(scene)[1]});
+    scene.time().step(50);
   });
   EXPECT_EQ(picture_of(*on_device_).bytes, picture_of(*on_host_).bytes);
 }
@@ -126,12 +129,12 @@ TEST_P(LiveSceneOnDevice, FollowsRobotsThatComeAndGo) {
 TEST_P(LiveSceneOnDevice, GivesPositionsToTheHostWhenAsked) {
   both([](LiveScene& scene) {
     test::make_robots(scene, 3);
-    scene.step(500);
+    scene.time().step(500);
   });
   const std::shared_ptr<const Snapshot> early = on_device_->hold_snapshot();
   EXPECT_TRUE(std::ranges::equal(early->positions.host(), on_host_->snapshot().positions.host()));
   const auto expected = on_host_->hold_snapshot();
-  both([](LiveScene& scene) { scene.step(500); });
+  both([](LiveScene& scene) { scene.time().step(500); });
   EXPECT_TRUE(std::ranges::equal(early->positions.host(), expected->positions.host()));
   EXPECT_FALSE(std::ranges::equal(on_device_->snapshot().positions.host(), expected->positions.host()));
 }
@@ -139,12 +142,12 @@ TEST_P(LiveSceneOnDevice, GivesPositionsToTheHostWhenAsked) {
 TEST_P(LiveSceneOnDevice, PicksTheSameRobots) {
   both([](LiveScene& scene) {
     test::make_robots(scene, 4);
-    scene.step(200);
+    scene.time().step(200);
   });
   const render::Bounds& target = on_host_->drawn().bounds()[2];
   const render::Vector3 eye = target.center() + render::Vector3(0, -5, 0);
   const render::Ray ray{.origin = eye, .direction = {0, 1, 0}};
-  const auto from_device = on_device_->pick(ray), from_host = on_host_->pick(ray);
+  const auto from_device = on_device_->mouse().pick(ray), from_host = on_host_->mouse().pick(ray);
   ASSERT_EQ(from_device.has_value(), from_host.has_value());
   ASSERT_TRUE(from_host);
   EXPECT_EQ(from_device->index, from_host->index);

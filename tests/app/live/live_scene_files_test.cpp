@@ -7,6 +7,11 @@
 #include <iomanip>
 #include <sstream>
 
+#include "app/live/command_text.h"
+#include "app/live/robot_saving.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
 #include "app/live/session_settings.h"
 #include "app/options/robot_options.h"
 #include "app/options/simulation_options.h"
@@ -74,8 +79,8 @@ TEST_F(LiveFiles, OpensReadableFilesAndReportsTheOthers) {
   LiveScene scene(test::on_cpu());
   test::open_and_wait(scene, {folder_, path("missing.json"), path("run.h5")});
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-1-1", "voxel-1-0"));
-  EXPECT_FALSE(scene.entries()[0].unsaved);
-  EXPECT_EQ(scene.entries()[1].file, path("b.json"));
+  EXPECT_FALSE(scene.robots().entries()[0].unsaved);
+  EXPECT_EQ(scene.robots().entries()[1].file, path("b.json"));
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(3));
   EXPECT_THAT(messages[0].text, HasSubstr("broken.json"));
@@ -91,7 +96,7 @@ TEST_F(LiveFiles, PlaysARecordingAloneAndOpensItsRobotsAtRestBesideOthers) {
   EXPECT_TRUE(scene.snapshot().timeline.recording);
   EXPECT_THAT(test::names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1"));
   EXPECT_THAT(scene.take_messages().at(0).text, HasSubstr("2 robots, recorded on"));
-  scene.clear();
+  scene.robots().clear();
   test::reset_and_wait(scene);
   save_robot(path("other.json"), random_voxel_robot({}, 1, 0));
   test::open_and_wait(scene, {path("swim.h5"), path("other.json")});
@@ -126,7 +131,7 @@ TEST_F(LiveFiles, DroppedFilesAreOpenedOrReported) {
   EXPECT_THAT(messages[2].text, HasSubstr("scene.toml: is not a scene: format = \"mercury-scene\" is missing"));
   EXPECT_THAT(messages[3].text, HasSubstr("cut.cbor"));
   test::undo_and_wait(scene);
-  EXPECT_THAT(scene.entries(), IsEmpty()) << "one drop is one edit";
+  EXPECT_THAT(scene.robots().entries(), IsEmpty()) << "one drop is one edit";
 }
 
 TEST_F(LiveFiles, ManyUnreadableFilesMakeFewMessages) {
@@ -141,34 +146,34 @@ TEST_F(LiveFiles, ManyUnreadableFilesMakeFewMessages) {
 TEST_F(LiveFiles, SavesTheChangedRobotAndReplacesFilesOnlyOnRequest) {
   test::RobotScene scene(2);
   const auto ids = test::ids_of(scene);
-  scene.scale_materials({ids[0]}, {.stiffness = 2});
-  scene.rename(ids[0], "strong/one");
-  EXPECT_TRUE(scene.save(ids[0], path("robot.json")).ok());
-  EXPECT_FALSE(scene.entries()[0].unsaved);
+  scene.parameters().scale_materials({ids[0]}, {.stiffness = 2});
+  scene.robots().rename(ids[0], "strong/one");
+  EXPECT_TRUE(scene.files().save(ids[0], path("robot.json")).ok());
+  EXPECT_FALSE(scene.robots().entries()[0].unsaved);
   const Robot saved = load_robot(path("robot.json"));
   EXPECT_EQ(saved.name, "strong/one");
   EXPECT_EQ(saved.materials[1].stiffness, 2 * default_materials()[1].stiffness);
   EXPECT_EQ(saved.springs, random_voxel_robot({}, 5, 0).springs);
-  scene.scale_materials({ids[0]}, {});
-  EXPECT_TRUE(scene.entries()[0].unsaved);
+  scene.parameters().scale_materials({ids[0]}, {});
+  EXPECT_TRUE(scene.robots().entries()[0].unsaved);
   const std::string before = read("robot.json");
-  const SaveResult again = scene.save(ids[0], path("robot.json"));
+  const SaveResult again = scene.files().save(ids[0], path("robot.json"));
   EXPECT_EQ(again.outcome, SaveResult::Outcome::exists);
   EXPECT_EQ(read("robot.json"), before);
-  EXPECT_TRUE(scene.save(ids[0], path("robot.json"), true).ok());
+  EXPECT_TRUE(scene.files().save(ids[0], path("robot.json"), true).ok());
   EXPECT_NE(read("robot.json"), before);
   // All or nothing.
   write("voxel-5-1.cbor", "mine");
-  const SaveResult all = scene.save_all(ids, folder_, RobotFormat::cbor);
+  const SaveResult all = scene.files().save_all(ids, folder_, RobotFormat::cbor);
   EXPECT_EQ(all.outcome, SaveResult::Outcome::exists);
   EXPECT_THAT(all.files, ElementsAre(folder_ / "voxel-5-1.cbor"));
   EXPECT_THAT(listing(), ElementsAre("robot.json", "voxel-5-1.cbor"));
   EXPECT_EQ(read("voxel-5-1.cbor"), "mine");
-  EXPECT_TRUE(scene.save_all(ids, folder_, RobotFormat::cbor, true).ok());
+  EXPECT_TRUE(scene.files().save_all(ids, folder_, RobotFormat::cbor, true).ok());
   EXPECT_EQ(load_robot(path("voxel-5-1.cbor")), random_voxel_robot({}, 5, 1));
-  EXPECT_EQ(scene.save(ids[0], path("robot.txt")).outcome, SaveResult::Outcome::failed);
-  EXPECT_EQ(scene.save(ids[0], folder_).outcome, SaveResult::Outcome::failed);
-  EXPECT_EQ(scene.save(99, path("x.json")).outcome, SaveResult::Outcome::failed);
+  EXPECT_EQ(scene.files().save(ids[0], path("robot.txt")).outcome, SaveResult::Outcome::failed);
+  EXPECT_EQ(scene.files().save(ids[0], folder_).outcome, SaveResult::Outcome::failed);
+  EXPECT_EQ(scene.files().save(99, path("x.json")).outcome, SaveResult::Outcome::failed);
 }
 
 TEST_F(LiveFiles, CommandMakesTheSameScene) {
@@ -184,23 +189,23 @@ TEST_F(LiveFiles, CommandMakesTheSameScene) {
   options.view.cut = render::Cut{.axis = 1, .below = true, .percent = 25.25f};
   options.view.camera.azimuth = 1.25f;
   LiveScene scene(options);
-  scene.open({path("it's $HOME.json")});
+  scene.files().open({path("it's $HOME.json")});
   RandomRobots generation{.count = 3, .seed = 8, .first = 2};
   generation.values = {{"voxels", SizeRange{{3, 2, 2}, {3, 2, 2}}}, {"air", 0.125}, {"symmetry", "none"}};
-  scene.generate(generation);
+  scene.robots().generate(generation);
   scene.wait_until_done();
-  scene.remove({test::ids_of(scene)[2]});
+  scene.robots().remove({test::ids_of(scene)[2]});
   generation.seed = 9;
   generation.count = 1;
-  scene.generate(generation);
+  scene.robots().generate(generation);
   scene.wait_until_done();
-  const CommandText command = scene.command();
+  const CommandText command = scene.files().command();
   EXPECT_THAT(command.notes, IsEmpty());
   const Parsed same = parsed(command.text);
   ASSERT_EQ(same.robots.size(), scene.document().robots.size()) << command.text;
   for (std::size_t i = 0; i < same.robots.size(); ++i)
     EXPECT_EQ(same.robots[i], *scene.document().robots[i].body.robot) << i;
-  EXPECT_EQ(same.configuration, scene.configuration());
+  EXPECT_EQ(same.configuration, scene.document().configuration);
   EXPECT_EQ(same.view.color, options.view.color);
   EXPECT_EQ(same.view.scale, options.view.scale);
   EXPECT_EQ(same.view.theme, options.view.theme);
@@ -210,17 +215,17 @@ TEST_F(LiveFiles, CommandMakesTheSameScene) {
   EXPECT_FALSE(same.view.shown.legend);
   EXPECT_EQ(same.view.cut, options.view.cut);
   EXPECT_FLOAT_EQ(same.view.camera.azimuth.value(), 1.25f);
-  EXPECT_THAT(scene.command("render").text, HasSubstr(" -o scene.mp4"));
+  EXPECT_THAT(scene.files().command("render").text, HasSubstr(" -o scene.mp4"));
 }
 
 TEST_F(LiveFiles, CommandNotesWhatItCannotExpress) {
   test::RobotScene scene(2);
-  scene.mutate({test::ids_of(scene)[0]}, {});
+  scene.robots().mutate({test::ids_of(scene)[0]}, {});
   scene.wait_until_done();
-  scene.scale_materials({test::ids_of(scene)[1]}, {.frequency = 2});
-  EXPECT_THAT(scene.command().notes, SizeIs(2));
-  ASSERT_TRUE(scene.save_all(test::ids_of(scene), folder_, RobotFormat::json).ok());
-  const CommandText command = scene.command();
+  scene.parameters().scale_materials({test::ids_of(scene)[1]}, {.frequency = 2});
+  EXPECT_THAT(scene.files().command().notes, SizeIs(2));
+  ASSERT_TRUE(scene.files().save_all(test::ids_of(scene), folder_, RobotFormat::json).ok());
+  const CommandText command = scene.files().command();
   EXPECT_THAT(command.notes, IsEmpty());
   const Parsed same = parsed(command.text);
   ASSERT_EQ(same.robots.size(), 3u);

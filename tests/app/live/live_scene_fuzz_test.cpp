@@ -4,6 +4,15 @@
 
 #include <cmath>
 
+#include "app/live/measurement_tables.h"
+#include "app/live/measurements.h"
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "mercury/random.h"
 #include "tests/app/live/live_scene_setup.h"
 #include "tests/app/program.h"
@@ -32,7 +41,7 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
   }
 
   Configuration configuration() {
-    Configuration wanted = scene.configuration();
+    Configuration wanted = scene.document().configuration;
     switch (below(6)) {
       case 0:
         wanted.environment = Ocean{.density = number(), .flow = {number(), 0, 0}};
@@ -75,43 +84,44 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
     constexpr const char* differences[] = {"solver=xpbd", "environment=land", "dt=0.0004", "damping=3,density=10"};
     switch (below(33)) {
       case 30:
-        scene.set_second(SideDifference(differences[below(std::size(differences))]));
+        scene.comparison().set_second(SideDifference(differences[below(std::size(differences))]));
         break;
       case 31:
-        scene.show_ghosts(some());
+        scene.comparison().show_ghosts(some());
         break;
       case 32:
-        below(2) ? scene.set_second(std::nullopt) : scene.hide_ghosts();
+        below(2) ? scene.comparison().set_second(std::nullopt) : scene.comparison().hide_ghosts();
         break;
       case 0:
-        scene.play();
+        scene.time().play();
         break;
       case 1:
-        scene.pause();
+        scene.time().pause();
         break;
       case 2:
-        scene.step(static_cast<std::int64_t>(below(20)));
+        scene.time().step(static_cast<std::int64_t>(below(20)));
         break;
       case 3:
-        scene.reset();
+        scene.time().reset();
         break;
       case 4:
-        scene.set_speed(number());
+        scene.time().set_speed(number());
         break;
       case 5:
-        scene.change_speed(static_cast<int>(below(5)) - 2);
+        scene.time().change_speed(static_cast<int>(below(5)) - 2);
         break;
       case 6:
-        if (test::ids_of(scene).size() < 8) scene.generate({.count = below(3), .seed = below(9)}, below(6) == 0);
+        if (test::ids_of(scene).size() < 8)
+          scene.robots().generate({.count = below(3), .seed = below(9)}, below(6) == 0);
         break;
       case 7:
-        scene.remove(some());
+        scene.robots().remove(some());
         break;
       case 8:
-        if (test::ids_of(scene).size() < 8) scene.duplicate(some());
+        if (test::ids_of(scene).size() < 8) scene.robots().duplicate(some());
         break;
       case 9:
-        if (test::ids_of(scene).size() < 8) scene.mutate(some(), {.seed = below(99)}, below(2) == 0);
+        if (test::ids_of(scene).size() < 8) scene.robots().mutate(some(), {.seed = below(99)}, below(2) == 0);
         break;
       case 10:
         scene.undo();
@@ -120,60 +130,62 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
         scene.redo();
         break;
       case 12:
-        scene.select(robot(), below(2) == 0);
+        scene.selection().select(robot(), below(2) == 0);
         break;
       case 13:
-        scene.set_configuration(configuration());
+        scene.parameters().set_configuration(configuration());
         break;
       case 14:
         scene.set_view(view());
         break;
       case 15:
-        scene.scale_materials(some(), {number(), number(), number(), number()});
+        scene.parameters().scale_materials(some(), {number(), number(), number(), number()});
         break;
       case 16:
-        scene.set_material(some(), static_cast<MaterialId>(below(256)), {number(), number(), number(), number()});
+        scene.parameters().set_material(some(), static_cast<MaterialId>(below(256)),
+                                        {number(), number(), number(), number()});
         break;
       case 17:
-        scene.reset_materials(some());
+        scene.parameters().reset_materials(some());
         break;
       case 18:
-        if (const auto hit = scene.pick(ray())) scene.begin_perturbation(*hit, number());
+        if (const auto hit = scene.mouse().pick(ray())) scene.mouse().begin_perturbation(*hit, number());
         break;
       case 19:
-        scene.move_perturbation({number(), number(), number()});
+        scene.mouse().move_perturbation({number(), number(), number()});
         break;
       case 20:
-        scene.end_perturbation();
+        scene.mouse().end_perturbation();
         break;
       case 21:
-        scene.set_hidden(robot(), below(2) == 0);
+        scene.selection().set_hidden(robot(), below(2) == 0);
         break;
       case 22:
-        scene.save(robot(), file(), below(2) == 0);
+        scene.files().save(robot(), file(), below(2) == 0);
         break;
       case 23:
-        if (test::ids_of(scene).size() < 8) scene.open({file()});
+        if (test::ids_of(scene).size() < 8) scene.files().open({file()});
         break;
       case 24:
-        scene.pause_on_explosion(below(2) == 0);
+        scene.time().pause_on_explosion(below(2) == 0);
         break;
       case 25:
-        scene.set_configuration({});
+        scene.parameters().set_configuration({});
         break;
       case 26:
-        scene.rename(robot(), below(2) ? "eel" : "");
+        scene.robots().rename(robot(), below(2) ? "eel" : "");
         break;
       case 27:
-        scene.begin_perturbation({.robot = robot(), .mass = static_cast<std::uint16_t>(below(70000))}, number());
+        scene.mouse().begin_perturbation({.robot = robot(), .mass = static_cast<std::uint16_t>(below(70000))},
+                                         number());
         break;
       case 28:
-        scene.describe({.robot = robot(),
-                        .mass = static_cast<std::uint16_t>(below(70000)),
-                        .spring = static_cast<std::uint32_t>(below(1u << 20))});
+        scene.mouse().describe({.robot = robot(),
+                                .mass = static_cast<std::uint16_t>(below(70000)),
+                                .spring = static_cast<std::uint32_t>(below(1u << 20))});
         break;
       default:
-        scene.save_repro(robot(), folder_ / "repro", below(2) == 0);
+        scene.files().save_repro(robot(), folder_ / "repro", below(2) == 0);
     }
   }
 
@@ -187,10 +199,10 @@ class LiveFuzz : public test::FolderTest, public testing::WithParamInterface<std
     if (!snapshot.details.values.mass.empty()) {
       ASSERT_EQ(snapshot.details.values.mass.size(), snapshot.positions.size());
     }
-    scene.perturbation();
-    scene.ranking();
-    scene.csv(test::ids_of(scene));
-    scene.command();
+    scene.mouse().perturbation();
+    scene.measurements().ranking();
+    series_csv(scene.document(), scene.measurements(), test::ids_of(scene));
+    scene.files().command();
   }
 };
 INSTANTIATE_TEST_SUITE_P(Seeds, LiveFuzz, testing::Values(1, 2, 3));
@@ -201,13 +213,13 @@ TEST_P(LiveFuzz, RandomCallsLeaveAConsistentScene) {
     if (below(3) == 0) look();
     if (HasFatalFailure()) return;
   }
-  scene.pause();
+  scene.time().pause();
   scene.wait_until_done();
   // The snapshot shows the robots of the document.
   ASSERT_EQ(scene.snapshot().robots->size(), scene.document().robots.size());
   for (std::size_t i = 0; i < scene.document().robots.size(); ++i)
     EXPECT_EQ(scene.snapshot().robots->robots[i].id, scene.document().robots[i].body.id);
-  EXPECT_EQ(scene.snapshot().configuration, scene.configuration());
+  EXPECT_EQ(scene.snapshot().configuration, scene.document().configuration);
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 #pragma once
 
 #include "app/live/live_scene.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 
 namespace mercury::test {
 
@@ -12,11 +15,11 @@ inline LiveSceneOptions on_cpu(Environment environment = Ocean{}) {
 
 // Each waits until the snapshot shows what it did.
 inline void step_and_wait(LiveScene& scene, std::int64_t steps = 1) {
-  scene.step(steps);
+  scene.time().step(steps);
   scene.wait_until_done();
 }
 inline void seek_and_wait(LiveScene& scene, double time) {
-  scene.seek(time);
+  scene.time().seek(time);
   scene.wait_until_done();
 }
 inline void undo_and_wait(LiveScene& scene) {
@@ -24,17 +27,17 @@ inline void undo_and_wait(LiveScene& scene) {
   scene.wait_until_done();
 }
 inline void reset_and_wait(LiveScene& scene) {
-  scene.reset();
+  scene.time().reset();
   scene.wait_until_done();
 }
 inline void open_and_wait(LiveScene& scene, const std::vector<std::filesystem::path>& files) {
-  scene.open(files);
+  scene.files().open(files);
   scene.wait_until_done();
 }
 
 // Adds random voxel robots and waits until they are in the scene.
 inline void make_robots(LiveScene& scene, std::size_t count, std::uint64_t seed = 5) {
-  scene.generate({.count = count, .seed = seed});
+  scene.robots().generate({.count = count, .seed = seed});
   scene.wait_until_done();
 }
 
@@ -47,13 +50,13 @@ struct RobotScene : LiveScene {
 
 inline std::vector<RobotId> ids_of(const LiveScene& scene) {
   std::vector<RobotId> ids;
-  for (const RobotEntry& entry : scene.entries()) ids.push_back(entry.id);
+  for (const RobotEntry& entry : scene.robots().entries()) ids.push_back(entry.id);
   return ids;
 }
 
 inline std::vector<std::string> names_of(const LiveScene& scene) {
   std::vector<std::string> names;
-  for (const RobotEntry& entry : scene.entries()) names.push_back(entry.name);
+  for (const RobotEntry& entry : scene.robots().entries()) names.push_back(entry.name);
   return names;
 }
 

@@ -6,6 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/scene_files.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
+#include "app/live/scene_time.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
 #include "mercury/samples.h"
@@ -27,7 +33,7 @@ TEST(LiveScene, RandomRobotsAreThoseOfTheirSeed) {
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-1", "voxel-5-2"));
   EXPECT_EQ(*scene.document().robots[1].body.robot, random_voxel_robot({}, 5, 1));
   EXPECT_EQ(scene.snapshot().robots->size(), 3u);
-  EXPECT_TRUE(scene.entries()[0].unsaved);
+  EXPECT_TRUE(scene.robots().entries()[0].unsaved);
   EXPECT_THAT(scene.take_messages(), IsEmpty());
 }
 
@@ -35,10 +41,10 @@ TEST(LiveScene, UndoAndRedoRestoreTheStateBitForBit) {
   test::RobotScene scene(3);
   test::step_and_wait(scene, 50);
   const auto before = scene.hold_snapshot();
-  scene.remove({ids_of(scene)[1]});
+  scene.robots().remove({ids_of(scene)[1]});
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().robots->size(), 2u);
-  EXPECT_EQ(scene.undo_name(), "remove 1 robot");
+  EXPECT_EQ(scene.history().undo_name(), "remove 1 robot");
   test::undo_and_wait(scene);
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions.host(), before->positions.host()));
   EXPECT_EQ(scene.snapshot().velocities, before->velocities);
@@ -48,15 +54,15 @@ TEST(LiveScene, UndoAndRedoRestoreTheStateBitForBit) {
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-2"));
   scene.undo();
   test::undo_and_wait(scene);
-  EXPECT_THAT(scene.entries(), IsEmpty());
-  EXPECT_FALSE(scene.can_undo());
-  EXPECT_TRUE(scene.can_redo());
+  EXPECT_THAT(scene.robots().entries(), IsEmpty());
+  EXPECT_FALSE(scene.history().can_undo());
+  EXPECT_TRUE(scene.history().can_redo());
 }
 
 TEST(LiveScene, DuplicateStartsAtRestWithItsOwnName) {
   test::RobotScene scene(1);
   test::step_and_wait(scene, 80);
-  scene.duplicate(ids_of(scene));
+  scene.robots().duplicate(ids_of(scene));
   scene.wait_until_done();
   EXPECT_THAT(names_of(scene), ElementsAre("voxel-5-0", "voxel-5-0-2"));
   const Robot& robot = *scene.document().robots[0].body.robot;
@@ -67,9 +73,9 @@ TEST(LiveScene, DuplicateStartsAtRestWithItsOwnName) {
 TEST(LiveScene, ChildOfASymmetricRobotIsSymmetricAndDiffersFromIt) {
   test::RobotScene scene(1);
   const MutationRequest mutation{.strength = 10, .seed = 3};
-  scene.mutate(ids_of(scene), mutation);
+  scene.robots().mutate(ids_of(scene), mutation);
   scene.wait_until_done();
-  ASSERT_THAT(scene.entries(), SizeIs(2));
+  ASSERT_THAT(scene.robots().entries(), SizeIs(2));
   const VoxelGrid parent = voxel_grid_of(*scene.document().robots[0].body.robot).value();
   const VoxelGrid child = voxel_grid_of(*scene.document().robots[1].body.robot).value();
   EXPECT_NE(parent.cells, child.cells);
@@ -77,20 +83,20 @@ TEST(LiveScene, ChildOfASymmetricRobotIsSymmetricAndDiffersFromIt) {
     for (int y = 0; y < child.ny; ++y)
       for (int x = 0; x < child.nx; ++x) ASSERT_EQ(child.at(x, y, z), child.at(x, child.ny - 1 - y, z));
   // With replace, the child takes the place of its parent.
-  scene.mutate({ids_of(scene)[0]}, mutation, true);
+  scene.robots().mutate({ids_of(scene)[0]}, mutation, true);
   scene.wait_until_done();
-  ASSERT_THAT(scene.entries(), SizeIs(2));
+  ASSERT_THAT(scene.robots().entries(), SizeIs(2));
   EXPECT_EQ(names_of(scene)[1], "voxel-5-0-child");
-  EXPECT_EQ(scene.undo_name(), "mutate 1 robot");
+  EXPECT_EQ(scene.history().undo_name(), "mutate 1 robot");
 }
 
 TEST(LiveScene, RobotWithoutAGeneratorCannotBeMutated) {
   LiveScene scene(on_cpu());
-  scene.add({Robot{.name = "point", .masses = {{0, 0, 0}}}});
+  scene.robots().add({Robot{.name = "point", .masses = {{0, 0, 0}}}});
   const auto ids = ids_of(scene);
-  scene.mutate(ids, {});
+  scene.robots().mutate(ids, {});
   scene.wait_until_done();
-  EXPECT_THAT(scene.entries(), SizeIs(1));
+  EXPECT_THAT(scene.robots().entries(), SizeIs(1));
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(1));
   EXPECT_THAT(messages[0].text, HasSubstr("point: cannot be mutated"));
@@ -98,7 +104,7 @@ TEST(LiveScene, RobotWithoutAGeneratorCannotBeMutated) {
 
 TEST(LiveScene, InvalidRobotIsReportedAndLeftOut) {
   LiveScene scene(on_cpu());
-  scene.add({Robot{.name = "empty"}, Robot{.name = "point", .masses = {{0, 0, 0}}}});
+  scene.robots().add({Robot{.name = "empty"}, Robot{.name = "point", .masses = {{0, 0, 0}}}});
   scene.wait_until_done();
   EXPECT_THAT(names_of(scene), ElementsAre("point"));
   EXPECT_THAT(scene.take_messages(), SizeIs(1));
@@ -106,64 +112,64 @@ TEST(LiveScene, InvalidRobotIsReportedAndLeftOut) {
 
 TEST(LiveScene, SavedRobotBecomesUnsavedWhenItChanges) {
   LiveScene scene(on_cpu());
-  scene.add({random_voxel_robot({}, 1, 0)}, false);
-  scene.add({random_voxel_robot({}, 1, 1)});
-  EXPECT_FALSE(scene.entries()[0].unsaved);
-  EXPECT_TRUE(scene.entries()[1].unsaved);
-  EXPECT_EQ(scene.entries()[0].file, "");
-  EXPECT_THAT(scene.command().notes, SizeIs(2));
-  scene.scale_materials({ids_of(scene)[0]}, {.stiffness = 2});
-  EXPECT_TRUE(scene.entries()[0].unsaved);
+  scene.robots().add({random_voxel_robot({}, 1, 0)}, false);
+  scene.robots().add({random_voxel_robot({}, 1, 1)});
+  EXPECT_FALSE(scene.robots().entries()[0].unsaved);
+  EXPECT_TRUE(scene.robots().entries()[1].unsaved);
+  EXPECT_EQ(scene.robots().entries()[0].file, "");
+  EXPECT_THAT(scene.files().command().notes, SizeIs(2));
+  scene.parameters().scale_materials({ids_of(scene)[0]}, {.stiffness = 2});
+  EXPECT_TRUE(scene.robots().entries()[0].unsaved);
   scene.undo();
-  EXPECT_FALSE(scene.entries()[0].unsaved);
+  EXPECT_FALSE(scene.robots().entries()[0].unsaved);
 }
 
 TEST(LiveScene, ParametersActAtOnceAndADragIsOneUndo) {
   test::RobotScene scene(1);
-  Configuration configuration = scene.configuration();
+  Configuration configuration = scene.document().configuration;
   for (int i = 1; i <= 10; ++i) {
     configuration.damping = 0.1 * i;
-    EXPECT_TRUE(scene.set_configuration(configuration));
+    EXPECT_TRUE(scene.parameters().set_configuration(configuration));
   }
   scene.end_edit();
   configuration.solver = Solver::xpbd;
-  EXPECT_TRUE(scene.set_configuration(configuration));
+  EXPECT_TRUE(scene.parameters().set_configuration(configuration));
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().configuration, configuration);
   scene.undo();
-  EXPECT_EQ(scene.configuration().solver, Solver::force);
-  EXPECT_DOUBLE_EQ(scene.configuration().damping, 1.0);
+  EXPECT_EQ(scene.document().configuration.solver, Solver::force);
+  EXPECT_DOUBLE_EQ(scene.document().configuration.damping, 1.0);
   scene.undo();
-  EXPECT_EQ(scene.configuration().damping, Configuration{}.damping);
+  EXPECT_EQ(scene.document().configuration.damping, Configuration{}.damping);
   configuration.dt = -1;
-  EXPECT_FALSE(scene.set_configuration(configuration));
+  EXPECT_FALSE(scene.parameters().set_configuration(configuration));
   const auto messages = scene.take_messages();
   ASSERT_THAT(messages, SizeIs(1));
   EXPECT_EQ(messages[0].text, "dt: -1 is not accepted; give a finite number > 0 s");
-  EXPECT_EQ(scene.configuration().damping, Configuration{}.damping);
+  EXPECT_EQ(scene.document().configuration.damping, Configuration{}.damping);
 }
 
 TEST(LiveScene, TunedMaterialsActAsInTheSimulation) {
   test::RobotScene scene(2);
   const auto ids = ids_of(scene);
-  scene.scale_materials({ids[0]}, {.stiffness = 2, .amplitude = 0.5f, .frequency = 3, .phase = 0.1f});
-  Material material = scene.materials(ids[0])[1];
+  scene.parameters().scale_materials({ids[0]}, {.stiffness = 2, .amplitude = 0.5f, .frequency = 3, .phase = 0.1f});
+  Material material = scene.parameters().materials(ids[0])[1];
   EXPECT_EQ(material.stiffness, 2 * default_materials()[1].stiffness);
   material.phase = 1;
-  EXPECT_TRUE(scene.set_material({ids[0]}, 1, material));
+  EXPECT_TRUE(scene.parameters().set_material({ids[0]}, 1, material));
   test::step_and_wait(scene, 100);
   Simulation simulation(on_cpu().configuration, random_voxel_robots({}, 5, 2));
-  const auto table = scene.materials(ids[0]);
+  const auto table = scene.parameters().materials(ids[0]);
   for (std::size_t id = 1; id < table.size(); ++id) simulation.set_material(0, static_cast<MaterialId>(id), table[id]);
   simulation.step(100);
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(0), simulation.positions(0)));
   EXPECT_TRUE(std::ranges::equal(scene.snapshot().positions_of(1), simulation.positions(1)));
-  EXPECT_FALSE(scene.set_material(ids, 1, {.stiffness = -1}));
-  EXPECT_FALSE(scene.scale_materials(ids, {.stiffness = NAN}));
+  EXPECT_FALSE(scene.parameters().set_material(ids, 1, {.stiffness = -1}));
+  EXPECT_FALSE(scene.parameters().scale_materials(ids, {.stiffness = NAN}));
   EXPECT_THAT(scene.take_messages(), SizeIs(2));
-  scene.reset_materials(ids);
-  EXPECT_FALSE(scene.entries()[0].tuned);
-  EXPECT_TRUE(std::ranges::equal(scene.materials(ids[0]), default_materials()));
+  scene.parameters().reset_materials(ids);
+  EXPECT_FALSE(scene.robots().entries()[0].tuned);
+  EXPECT_TRUE(std::ranges::equal(scene.parameters().materials(ids[0]), default_materials()));
 }
 
 TEST(LiveScene, WatchedBrainIsThatOfTheSimulation) {
@@ -171,13 +177,13 @@ TEST(LiveScene, WatchedBrainIsThatOfTheSimulation) {
   LiveSceneOptions options = on_cpu();
   options.configuration.environment.target = {-2, 3, 0};
   test::RobotScene scene(1, options);
-  scene.add({hunter});
+  scene.robots().add({hunter});
   test::step_and_wait(scene, 150);
   EXPECT_FALSE(scene.snapshot().brain.has_value());
   scene.watch_brain(ids_of(scene)[1]);
   scene.wait_until_done();
   ASSERT_TRUE(scene.snapshot().brain.has_value());
-  Simulation simulation(scene.configuration(), {&hunter, 1});
+  Simulation simulation(scene.document().configuration, {&hunter, 1});
   simulation.step(150);
   const BrainState expected = simulation.brain_state(0);
   EXPECT_EQ(scene.snapshot().brain->robot, ids_of(scene)[1]);
@@ -192,35 +198,35 @@ TEST(LiveScene, WatchedBrainIsThatOfTheSimulation) {
 TEST(LiveScene, SelectionKeepsItsOrderAndForgetsRemovedRobots) {
   test::RobotScene scene(3);
   const auto ids = ids_of(scene);
-  scene.select(ids[2]);
-  scene.select(ids[0], false);
-  EXPECT_THAT(scene.selection(), ElementsAre(ids[0], ids[2]));
-  EXPECT_EQ(scene.current(), ids[0]);
-  scene.remove({ids[0]});
+  scene.selection().select(ids[2]);
+  scene.selection().select(ids[0], false);
+  EXPECT_THAT(scene.selection().robots(), ElementsAre(ids[0], ids[2]));
+  EXPECT_EQ(scene.selection().current(), ids[0]);
+  scene.robots().remove({ids[0]});
   scene.frame();
-  EXPECT_EQ(scene.current(), ids[2]);
-  scene.toggle_selected(ids[2]);
-  EXPECT_EQ(scene.current(), std::nullopt);
-  scene.select_all();
-  EXPECT_THAT(scene.selection(), ElementsAre(ids[1], ids[2]));
+  EXPECT_EQ(scene.selection().current(), ids[2]);
+  scene.selection().toggle(ids[2]);
+  EXPECT_EQ(scene.selection().current(), std::nullopt);
+  scene.selection().select_all();
+  EXPECT_THAT(scene.selection().robots(), ElementsAre(ids[1], ids[2]));
   scene.wait_until_done();
   EXPECT_TRUE(scene.drawn().scene().placements[0].selected);
 }
 
 TEST(LiveScene, SpeedStepsAreOneTwoFiveUpToUnlimited) {
   LiveScene scene(on_cpu());
-  scene.change_speed(1);
-  EXPECT_EQ(scene.speed(), 2);
-  scene.change_speed(-3);
-  EXPECT_EQ(scene.speed(), 0.2);
-  scene.change_speed(100);
-  EXPECT_EQ(scene.speed(), unlimited_speed);
-  scene.change_speed(-1);
-  EXPECT_EQ(scene.speed(), 100);
-  scene.set_speed(0);
-  EXPECT_EQ(scene.speed(), 1e-3);
-  scene.set_speed(NAN);
-  EXPECT_EQ(scene.speed(), 1e-3);
+  scene.time().change_speed(1);
+  EXPECT_EQ(scene.time().speed(), 2);
+  scene.time().change_speed(-3);
+  EXPECT_EQ(scene.time().speed(), 0.2);
+  scene.time().change_speed(100);
+  EXPECT_EQ(scene.time().speed(), unlimited_speed);
+  scene.time().change_speed(-1);
+  EXPECT_EQ(scene.time().speed(), 100);
+  scene.time().set_speed(0);
+  EXPECT_EQ(scene.time().speed(), 1e-3);
+  scene.time().set_speed(NAN);
+  EXPECT_EQ(scene.time().speed(), 1e-3);
 }
 
 TEST(LiveScene, PerturbationShowsTheForceOfItsSpring) {
@@ -229,22 +235,22 @@ TEST(LiveScene, PerturbationShowsTheForceOfItsSpring) {
   const RobotId id = ids_of(scene)[last];
   const render::Vector3 offset = scene.drawn().offsets()[last];
   EXPECT_GT(offset.norm(), 0.1f) << "the robots stand side by side";
-  scene.begin_perturbation({.robot = id, .index = last, .mass = 2}, 30);
-  ASSERT_TRUE(scene.perturbation());
-  EXPECT_EQ(scene.perturbation()->force, 0);
-  const render::Vector3 target = scene.perturbation()->at + render::Vector3(0, 0.3f, 0.4f);
-  scene.move_perturbation(target);
-  EXPECT_NEAR(scene.perturbation()->force, 30 * 0.5f, 1e-4f);
-  EXPECT_LT((scene.perturbation()->target - target).norm(), 1e-6f);
+  scene.mouse().begin_perturbation({.robot = id, .index = last, .mass = 2}, 30);
+  ASSERT_TRUE(scene.mouse().perturbation());
+  EXPECT_EQ(scene.mouse().perturbation()->force, 0);
+  const render::Vector3 target = scene.mouse().perturbation()->at + render::Vector3(0, 0.3f, 0.4f);
+  scene.mouse().move_perturbation(target);
+  EXPECT_NEAR(scene.mouse().perturbation()->force, 30 * 0.5f, 1e-4f);
+  EXPECT_LT((scene.mouse().perturbation()->target - target).norm(), 1e-6f);
   // The perturbation is the only outer force but for the drag of the water, which is small after two steps.
   test::step_and_wait(scene, 2);
   Vec3 momentum;
   for (const Vec3 v : scene.snapshot().velocities_of(last)) momentum += v;
   EXPECT_NEAR(momentum.y, 2e-3f * 30 * 0.3f, 1e-3f);
   EXPECT_NEAR(momentum.z, 2e-3f * 30 * 0.4f, 1e-3f);
-  scene.remove({id});
+  scene.robots().remove({id});
   scene.frame();
-  EXPECT_FALSE(scene.perturbation());
+  EXPECT_FALSE(scene.mouse().perturbation());
 }
 
 TEST(EditHistory, ForgetsTheOldestEditsWhenMemoryIsFull) {
@@ -271,9 +277,9 @@ TEST(EditHistory, ForgetsTheOldestEditsWhenMemoryIsFull) {
 
 TEST(LiveScene, ClosesWhilePlayingAndWorkingInTheBackground) {
   LiveScene scene(on_cpu());
-  scene.generate({.count = 200});
-  scene.set_speed(unlimited_speed);
-  scene.play();
+  scene.robots().generate({.count = 200});
+  scene.time().set_speed(unlimited_speed);
+  scene.time().play();
   scene.frame();
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <sstream>
 
+#include "app/live/measurement_tables.h"
+#include "app/live/measurements.h"
 #include "app/live/stepping.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
@@ -171,7 +173,7 @@ TEST(Measurements, ExplodedRobotsRankLast) {
 TEST(LiveMeasures, RankingAndTablesHoldTheValuesOfTheSimulation) {
   test::RobotScene scene(3);
   test::step_and_wait(scene, 500);
-  const auto rows = scene.ranking();
+  const auto rows = scene.measurements().ranking();
   ASSERT_EQ(rows.size(), 3u);
   Simulation simulation(test::on_cpu().configuration, random_voxel_robots({}, 5, 3));
   const auto start = simulation.telemetry();
@@ -185,7 +187,7 @@ TEST(LiveMeasures, RankingAndTablesHoldTheValuesOfTheSimulation) {
     EXPECT_GE(rows[i].largest_strain, end[i].largest_strain);
   }
   // The last line is that of step 500, because the first interval is 20 ms.
-  std::istringstream csv(scene.csv(test::ids_of(scene)));
+  std::istringstream csv(series_csv(scene.document(), scene.measurements(), test::ids_of(scene)));
   std::string line, header, last;
   std::getline(csv, header);
   EXPECT_TRUE(header.starts_with("time [s],voxel-5-0 speed [m/s],voxel-5-0 distance [m],")) << header;
@@ -204,7 +206,7 @@ TEST(LiveMeasures, RankingAndTablesHoldTheValuesOfTheSimulation) {
   EXPECT_NEAR(speed, length(end[0].velocity), 1e-6);
   EXPECT_NEAR(distance, rows[0].distance, 1e-6);
   // The farthest robot comes first.
-  std::istringstream ranking(scene.ranking_csv());
+  std::istringstream ranking(ranking_csv(scene.document(), scene.measurements()));
   std::getline(ranking, header);
   double before = INFINITY;
   for (std::string name; std::getline(ranking, name, ','); std::getline(ranking, line)) {

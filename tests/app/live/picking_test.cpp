@@ -6,6 +6,10 @@
 
 #include <cmath>
 
+#include "app/live/picking.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_selection.h"
 #include "mercury/random.h"
 #include "tests/app/live/live_scene_setup.h"
 
@@ -70,7 +74,7 @@ TEST(LivePicking, HitsTheFaceThatBruteForceFinds) {
         }
       }
     }
-    const auto hit = scene.pick(ray);
+    const auto hit = scene.mouse().pick(ray);
     if (std::isinf(nearest)) {
       EXPECT_FALSE(hit) << shot;
       continue;
@@ -92,7 +96,7 @@ TEST(LivePicking, HitsNoWreck) {
   Robot bomb{.name = "bomb", .masses = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}};
   bomb.materials = {{}, {.stiffness = 50}, {.stiffness = 1e8f}};
   bomb.springs = {{0, 1, 1, 0.98f}, {1, 2, 2, 0.98f}};
-  scene.add({bomb});
+  scene.robots().add({bomb});
   ViewSettings view = scene.view();
   view.shown.springs = view.shown.masses = true;
   scene.set_view(view);
@@ -101,10 +105,10 @@ TEST(LivePicking, HitsNoWreck) {
   const Vector3 mass = Vector3(scene.snapshot().positions_of(0)[0]) + scene.drawn().offsets()[0];
   ASSERT_TRUE(mass.is_finite());
   const render::Ray ray{mass + Vector3(0, 0, 5), Vector3(0, 0, -1)};
-  EXPECT_FALSE(scene.pick(ray));
-  scene.select(scene.entries().front().id);
+  EXPECT_FALSE(scene.mouse().pick(ray));
+  scene.selection().select(scene.robots().entries().front().id);
   scene.frame(1.5f);
-  EXPECT_FALSE(scene.pick(ray));
+  EXPECT_FALSE(scene.mouse().pick(ray));
 }
 
 Robot two_springs() {
@@ -115,7 +119,7 @@ Robot two_springs() {
 
 TEST(LivePicking, HitsSpringsWithinTheRadiusAndReportsTheirForce) {
   LiveScene scene(test::on_cpu(OceanSimple{.stiffness_scale = 3}));
-  scene.add({two_springs()});
+  scene.robots().add({two_springs()});
   scene.wait_until_done();
   const Vector3 offset = scene.drawn().offsets()[0];
   const auto from_above = [&](float x, float y) {
@@ -127,7 +131,7 @@ TEST(LivePicking, HitsSpringsWithinTheRadiusAndReportsTheirForce) {
   EXPECT_EQ(hit->mass, 1);
   EXPECT_NEAR(hit->distance, 2, 1e-5f);
   EXPECT_FALSE(pick(scene.snapshot(), scene.drawn().offsets(), from_above(0.7f, -0.06f), {.radius = 0.05f}));
-  const HitDetails figures = scene.describe(*hit);
+  const HitDetails figures = scene.mouse().describe(*hit);
   ASSERT_TRUE(figures.spring);
   EXPECT_EQ(figures.robot, "pair");
   EXPECT_EQ(figures.spring->material_name, "tissue");
@@ -142,18 +146,18 @@ TEST(LivePicking, IgnoresHiddenRobotsAndPartsCutAway) {
   test::RobotScene scene(1);
   const render::Bounds box = scene.drawn().bounds()[0];
   const render::Ray ray{.origin = box.center() + Vector3(0, 0, 5), .direction = {0, 0, -1}};
-  const auto hit = scene.pick(ray);
+  const auto hit = scene.mouse().pick(ray);
   ASSERT_TRUE(hit);
   ViewSettings view = scene.view();
   view.cut = render::Cut{.axis = 2, .percent = 50};
   scene.set_view(view);
-  const auto deeper = scene.pick(ray);
+  const auto deeper = scene.mouse().pick(ray);
   EXPECT_TRUE(!deeper || deeper->distance > hit->distance);
   view.cut->below = true;
   scene.set_view(view);
-  EXPECT_EQ(scene.pick(ray)->distance, hit->distance) << "what is above the middle is still there";
-  scene.set_hidden(test::ids_of(scene)[0], true);
-  EXPECT_FALSE(scene.pick(ray));
+  EXPECT_EQ(scene.mouse().pick(ray)->distance, hit->distance) << "what is above the middle is still there";
+  scene.selection().set_hidden(test::ids_of(scene)[0], true);
+  EXPECT_FALSE(scene.mouse().pick(ray));
 }
 
 }  // namespace

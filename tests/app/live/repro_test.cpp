@@ -6,7 +6,14 @@
 #include <iomanip>
 #include <sstream>
 
+#include "app/live/picking.h"
 #include "app/live/replay_log.h"
+#include "app/live/robot_saving.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "app/recording/repro.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
@@ -28,27 +35,28 @@ class LiveRepro : public test::FolderTest {
     const auto step = [&](std::int64_t count) { test::step_and_wait(scene, count); };
     step(40);
     const std::size_t index = *scene.snapshot().robots->index_of(robot);
-    scene.begin_perturbation({.robot = robot, .index = index, .mass = 3}, 40);
+    scene.mouse().begin_perturbation({.robot = robot, .index = index, .mass = 3}, 40);
     for (int i = 0; i < 5; ++i) {
-      scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.1f * static_cast<float>(i), 0.2f, 0));
+      scene.mouse().move_perturbation(scene.mouse().perturbation()->at +
+                                      render::Vector3(0.1f * static_cast<float>(i), 0.2f, 0));
       step(7);
     }
-    Material muscle = scene.materials(robot)[2];
+    Material muscle = scene.parameters().materials(robot)[2];
     muscle.frequency *= 3;
     muscle.phase = 0.7f;
     muscle.half_wave = true;
     muscle.relaxation_time = 0.001f;
-    scene.set_material({robot}, 2, muscle);
+    scene.parameters().set_material({robot}, 2, muscle);
     step(33);
-    scene.scale_materials({robot}, {.stiffness = 1.5f});
-    Configuration configuration = scene.configuration();
+    scene.parameters().scale_materials({robot}, {.stiffness = 1.5f});
+    Configuration configuration = scene.document().configuration;
     configuration.damping = 0.4;
     configuration.dt = 7e-4;
-    scene.set_configuration(configuration);
+    scene.parameters().set_configuration(configuration);
     step(50);
-    scene.set_perturbation_stiffness(90);
+    scene.mouse().set_perturbation_stiffness(90);
     configuration.dt = 0.3;
-    scene.set_configuration(configuration);
+    scene.parameters().set_configuration(configuration);
     step(300);
   }
   // Without the step at which the explosion was noticed: it depends on how the steps fall into slices.
@@ -79,9 +87,9 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
     const auto it = std::ranges::find(exploded, robot, &ExplodedRobot::robot);
     ASSERT_NE(it, exploded.end());
     const std::string folder = std::string("repro-") + std::string(name_of(environment));
-    const SaveResult saved = scene.save_repro(robot, folder_ / folder);
+    const SaveResult saved = scene.files().save_repro(robot, folder_ / folder);
     ASSERT_TRUE(saved.ok()) << saved.message;
-    EXPECT_EQ(scene.save_repro(robot, folder_ / folder).outcome, SaveResult::Outcome::exists);
+    EXPECT_EQ(scene.files().save_repro(robot, folder_ / folder).outcome, SaveResult::Outcome::exists);
 
     const std::string file = path(folder + "/voxel-9-0.repro");
     const test::Outcome run =
@@ -94,10 +102,10 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
 
     // In the window, twice: a reset returns to the start of the repro.
     test::RobotScene again(1);
-    again.step(10);
-    again.play();
+    again.time().step(10);
+    again.time().play();
     test::open_and_wait(again, {file});
-    EXPECT_FALSE(again.playing()) << "it waits before the explosion";
+    EXPECT_FALSE(again.time().playing()) << "it waits before the explosion";
     EXPECT_EQ(test::names_of(again), std::vector<std::string>{"voxel-9-0"});
     EXPECT_NEAR(again.snapshot().time, 0.025, 1e-12);
     for (int round = 0; round < 2; ++round) {
@@ -107,7 +115,7 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
       EXPECT_EQ(again.exploded()[0].spring->index, it->spring->index);
       EXPECT_EQ(hash_of(again, again.exploded()[0].robot), hash_of(scene, robot));
       // Saving it again gives the same file.
-      ASSERT_TRUE(again.save_repro(ids_of(again)[0], folder_ / "again", true).ok());
+      ASSERT_TRUE(again.files().save_repro(ids_of(again)[0], folder_ / "again", true).ok());
       EXPECT_TRUE(content("again/voxel-9-0.repro") == content(folder + "/voxel-9-0.repro"));
       test::reset_and_wait(again);
       EXPECT_NEAR(again.snapshot().time, 0.025, 1e-12);
@@ -119,20 +127,20 @@ TEST_F(LiveRepro, RepeatsTheExplosionBitForBitWithAllChanges) {
 TEST_F(LiveRepro, ChangeInTheWindowEndsTheReplay) {
   test::RobotScene scene(1);
   torment(scene, ids_of(scene)[0]);
-  ASSERT_TRUE(scene.save_repro(ids_of(scene)[0], folder_).ok());
+  ASSERT_TRUE(scene.files().save_repro(ids_of(scene)[0], folder_).ok());
   LiveScene again(test::on_cpu());
   test::open_and_wait(again, {path("voxel-5-0.repro")});
-  EXPECT_FALSE(again.entries()[0].unsaved);
-  again.scale_materials(ids_of(again), {.stiffness = 0.5f});
+  EXPECT_FALSE(again.robots().entries()[0].unsaved);
+  again.parameters().scale_materials(ids_of(again), {.stiffness = 0.5f});
   test::step_and_wait(again, 400);
   EXPECT_THAT(again.exploded(), IsEmpty()) << "the recorded change of the time step is not applied";
   EXPECT_EQ(again.snapshot().configuration.dt, 1e-3);
-  EXPECT_EQ(again.save_repro(ids_of(again)[0], folder_, true).outcome, SaveResult::Outcome::failed);
+  EXPECT_EQ(again.files().save_repro(ids_of(again)[0], folder_, true).outcome, SaveResult::Outcome::failed);
   // A repro cannot be opened together with other files; they are opened without it.
   save_robot(path("one.json"), random_voxel_robot({}, 1, 0));
   again.take_messages();
   test::open_and_wait(again, {path("voxel-5-0.repro"), path("one.json")});
-  EXPECT_THAT(again.entries(), SizeIs(2));
+  EXPECT_THAT(again.robots().entries(), SizeIs(2));
   const auto messages = again.take_messages();
   ASSERT_THAT(messages, SizeIs(1));
   EXPECT_THAT(messages[0].text, HasSubstr("open it alone"));
@@ -176,7 +184,7 @@ TEST_F(LiveRepro, StartsSomeSecondsBeforeTheExplosionAfterALongRun) {
 TEST_F(LiveRepro, InvalidReproIsReportedInOneLine) {
   test::RobotScene scene(1);
   torment(scene, ids_of(scene)[0]);
-  ASSERT_TRUE(scene.save_repro(ids_of(scene)[0], folder_).ok());
+  ASSERT_TRUE(scene.files().save_repro(ids_of(scene)[0], folder_).ok());
   const std::string whole = read("voxel-5-0.repro");
   const auto refused = [](const std::string& document) {
     const std::string message = refusal([&] { parse_repro(document); });

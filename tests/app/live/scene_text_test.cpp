@@ -5,6 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/live/command_text.h"
+#include "app/live/robot_saving.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
 #include "app/options/scene_file.h"
 #include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
@@ -28,7 +33,7 @@ class SceneText : public test::FolderTest {
   }
   // Writes a scene of one robot and reads it.
   SceneFile again(const Configuration& configuration, const ViewSettings& view) {
-    const SceneFiles files = scene_files(path("a.toml"), {{&document_, path("eel.json")}}, configuration, view);
+    const SceneOutput files = scene_files(path("a.toml"), {{&document_, path("eel.json")}}, configuration, view);
     EXPECT_EQ(files.files.size(), 1u);
     write("a.toml", files.files.back().content);
     return SceneFile(path("a.toml"));
@@ -137,41 +142,41 @@ TEST_F(SceneText, EveryLookAndCameraComesBack) {
 TEST_F(SceneText, RobotsComeBackInTheirOrder) {
   LiveScene scene(test::on_cpu(Land{.friction = 0.4f}));
   test::open_and_wait(scene, {path("eel.json")});
-  scene.generate({.count = 2, .seed = 4});  // a changed robot follows, so a seed cannot name them
+  scene.robots().generate({.count = 2, .seed = 4});  // a changed robot follows, so a seed cannot name them
   scene.wait_until_done();
   Robot mine = random_voxel_robot({}, 9);
   mine.name = "mine / 1";
-  scene.add({mine});
-  scene.generate({.count = 3, .seed = 7, .first = 2});
-  scene.generate({.count = 2, .seed = 7, .first = 5});
+  scene.robots().add({mine});
+  scene.robots().generate({.count = 3, .seed = 7, .first = 2});
+  scene.robots().generate({.count = 2, .seed = 7, .first = 5});
   scene.wait_until_done();
-  Material stiff = scene.materials(ids_of(scene)[1])[1];
+  Material stiff = scene.parameters().materials(ids_of(scene)[1])[1];
   stiff.stiffness = 77;
   stiff.half_wave = true;
-  ASSERT_TRUE(scene.set_material({ids_of(scene)[1]}, 1, stiff));
+  ASSERT_TRUE(scene.parameters().set_material({ids_of(scene)[1]}, 1, stiff));
   ViewSettings view = scene.view();
   view.color = &color_quantity("strain");
   view.camera = {.mode = CameraMode::still, .azimuth = 0.5f, .target = render::Vector3(1, 2, 3), .distance = 4};
   scene.set_view(view);
   std::filesystem::create_directory(folder_ / "scenes");
   const std::string file = path("scenes/both.toml");
-  const SaveResult saved = scene.save_scene(file);
+  const SaveResult saved = scene.files().save_scene(file);
   ASSERT_TRUE(saved.ok()) << saved.message;
   EXPECT_THAT(listing("scenes"), ElementsAre("both-robots", "both.toml"));
   EXPECT_EQ(listing("scenes/both-robots").size(), 3u);
   EXPECT_THAT(read("scenes/both.toml"), HasSubstr("\"../eel.json\""));
   EXPECT_THAT(read("scenes/both.toml"), HasSubstr("\"voxel:5:7:2\""));
-  for (const RobotEntry& robot : scene.entries())
+  for (const RobotEntry& robot : scene.robots().entries())
     EXPECT_TRUE(!robot.unsaved || robot.name.starts_with("voxel-7")) << robot.name;
 
   LiveScene other(test::on_cpu());
   test::make_robots(other, 1, 20);
   test::open_and_wait(other, {file});
   EXPECT_EQ(names_of(other), names_of(scene));
-  EXPECT_EQ(other.configuration(), scene.configuration());
+  EXPECT_EQ(other.document().configuration, scene.document().configuration);
   EXPECT_EQ(other.view().color->key, "strain");
-  expect_same_camera(other.take_camera().value_or(CameraPlan{}), view.camera);
-  EXPECT_FALSE(other.take_camera());
+  expect_same_camera(other.files().take_camera().value_or(CameraPlan{}), view.camera);
+  EXPECT_FALSE(other.files().take_camera());
   for (std::size_t i = 0; i < names_of(scene).size(); ++i) {
     const Robot a = whole_robot(scene.document().robots[i]), b = whole_robot(other.document().robots[i]);
     EXPECT_EQ(a.masses, b.masses) << i;
@@ -180,10 +185,10 @@ TEST_F(SceneText, RobotsComeBackInTheirOrder) {
   }
 
   // Saved again, it names the files that are there now; the scene itself is not replaced without a question.
-  EXPECT_EQ(scene.save_scene(file).outcome, SaveResult::Outcome::exists);
-  ASSERT_TRUE(scene.save_scene(file, true).ok());
+  EXPECT_EQ(scene.files().save_scene(file).outcome, SaveResult::Outcome::exists);
+  ASSERT_TRUE(scene.files().save_scene(file, true).ok());
   EXPECT_EQ(listing("scenes/both-robots").size(), 3u);
-  EXPECT_EQ(scene.save_scene(path("scenes")).outcome, SaveResult::Outcome::failed) << "a folder";
+  EXPECT_EQ(scene.files().save_scene(path("scenes")).outcome, SaveResult::Outcome::failed) << "a folder";
 }
 
 TEST_F(SceneText, OneThatCannotBeUsedIsReportedInOneLineAndChangesNothing) {
@@ -198,8 +203,8 @@ TEST_F(SceneText, OneThatCannotBeUsedIsReportedInOneLineAndChangesNothing) {
     EXPECT_EQ(messages[0].text.find('\n'), std::string::npos);
     EXPECT_EQ(names_of(scene).size(), 1u);
   }
-  scene.clear();
-  EXPECT_EQ(scene.save_scene(path("none.toml")).outcome, SaveResult::Outcome::failed);
+  scene.robots().clear();
+  EXPECT_EQ(scene.files().save_scene(path("none.toml")).outcome, SaveResult::Outcome::failed);
 }
 
 }  // namespace

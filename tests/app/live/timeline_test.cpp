@@ -7,6 +7,10 @@
 #include <functional>
 #include <map>
 
+#include "app/live/scene_mouse.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "app/live/timeline.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
@@ -62,31 +66,31 @@ class TimelineOn : public BackendTest {
     const std::vector<RobotId> robots = test::ids_of(scene);
     test::step_and_wait(scene, 40);
     keep();
-    scene.begin_perturbation({.robot = robots[0], .index = 0, .mass = 2}, 30);
-    scene.move_perturbation(scene.perturbation()->at + render::Vector3(0.3f, 0, 0));
+    scene.mouse().begin_perturbation({.robot = robots[0], .index = 0, .mass = 2}, 30);
+    scene.mouse().move_perturbation(scene.mouse().perturbation()->at + render::Vector3(0.3f, 0, 0));
     test::step_and_wait(scene, 25);
     keep();
-    scene.move_perturbation(scene.perturbation()->at + render::Vector3(0, 0.4f, 0));
+    scene.mouse().move_perturbation(scene.mouse().perturbation()->at + render::Vector3(0, 0.4f, 0));
     test::step_and_wait(scene, 10);
-    scene.end_perturbation();
-    Configuration configuration = scene.configuration();
+    scene.mouse().end_perturbation();
+    Configuration configuration = scene.document().configuration;
     configuration.dt = 7e-4;
     configuration.damping = 0.4;
-    scene.set_configuration(configuration);
+    scene.parameters().set_configuration(configuration);
     test::step_and_wait(scene, 30);
     keep();
-    Material stiff = scene.materials(robots[1])[3];
+    Material stiff = scene.parameters().materials(robots[1])[3];
     stiff.stiffness *= 2;
-    scene.set_material({robots[1]}, 3, stiff);
+    scene.parameters().set_material({robots[1]}, 3, stiff);
     test::step_and_wait(scene, 20);
     keep();
     test::step_and_wait(scene, 5);
-    scene.remove({robots[2]});
+    scene.robots().remove({robots[2]});
     test::step_and_wait(scene, 20);
     keep();
     test::step_and_wait(scene, 5);
     scene.undo();
-    scene.duplicate({robots[0]});
+    scene.robots().duplicate({robots[0]});
     test::step_and_wait(scene, 35);
     keep();
   }
@@ -131,12 +135,12 @@ TEST_P(TimelineOn, RobotsThatWereAllRemovedDoNotComeBackToThePresent) {
   const Moment earlier = moment_of(scene);
   test::step_and_wait(scene, 20);
   const std::vector<RobotId> robots = test::ids_of(scene);
-  scene.remove(robots);
+  scene.robots().remove(robots);
   scene.wait_until_done();
   const Moment present = moment_of(scene);
   ASSERT_TRUE(present.robots.empty());
-  const std::vector<std::function<void()>> ways{[&] { scene.seek(present.time); }, [&] { scene.step(20); },
-                                                [&] { scene.step(100); }};
+  const std::vector<std::function<void()>> ways{[&] { scene.time().seek(present.time); },
+                                                [&] { scene.time().step(20); }, [&] { scene.time().step(100); }};
   for (std::size_t i = 0; i < ways.size(); ++i) {
     SCOPED_TRACE(i);
     test::seek_and_wait(scene, earlier.time);
@@ -151,7 +155,7 @@ TEST_P(TimelineOn, RobotsThatWereAllRemovedDoNotComeBackToThePresent) {
   test::undo_and_wait(scene);
   EXPECT_EQ(moment_of(scene).robots, robots);
   EXPECT_EQ(scene.snapshot().steps, 40);
-  scene.seek(earlier.time);
+  scene.time().seek(earlier.time);
   test::seek_and_wait(scene, present.time);
   EXPECT_EQ(moment_of(scene).robots, robots);
 }
@@ -164,15 +168,15 @@ TEST_P(TimelineOn, StepsBackAreThoseForward) {
     moments[scene.snapshot().steps] = moment_of(scene);
   }
   for (std::int64_t step = 19; step > 10; --step) {
-    scene.step_back();
+    scene.time().step_back();
     scene.wait_until_done();
     expect_shown(scene, moments.at(step));
   }
-  scene.step_back(5);
-  scene.step_back(2);
+  scene.time().step_back(5);
+  scene.time().step_back(2);
   scene.wait_until_done();
   expect_shown(scene, moments.at(4));
-  scene.step_back(100);
+  scene.time().step_back(100);
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().steps, 0);
 }
@@ -181,18 +185,19 @@ TEST_P(TimelineOn, GoingOnForgetsWhatCameLater) {
   LiveScene scene(options());
   make_history(scene);
   test::seek_and_wait(scene, moments_[1].time);
-  scene.go_on();
+  scene.time().go_on();
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
   EXPECT_EQ(scene.snapshot().timeline.head, moments_[1].time);
   expect_shown(scene, moments_[1]);
-  EXPECT_EQ(scene.configuration(), moments_[1].configuration) << "the document has the parameters of that moment";
+  EXPECT_EQ(scene.document().configuration, moments_[1].configuration)
+      << "the document has the parameters of that moment";
   EXPECT_EQ(test::ids_of(scene), moments_[1].robots);
   test::seek_and_wait(scene, moments_[5].time);
   expect_shown(scene, moments_[1]);
-  EXPECT_EQ(scene.undo_name(), "go back to 0.065 s");
+  EXPECT_EQ(scene.history().undo_name(), "go back to 0.065 s");
   test::undo_and_wait(scene);
-  EXPECT_EQ(scene.configuration(), moments_[5].configuration);
+  EXPECT_EQ(scene.document().configuration, moments_[5].configuration);
   EXPECT_EQ(test::ids_of(scene), moments_[5].robots);
 }
 
@@ -200,16 +205,16 @@ TEST_P(TimelineOn, AnEditInThePastGoesOnFromThere) {
   LiveScene scene(options());
   make_history(scene);
   test::seek_and_wait(scene, moments_[2].time);
-  Configuration configuration = scene.configuration();
+  Configuration configuration = scene.document().configuration;
   configuration.damping = 2;
-  scene.set_configuration(configuration);
+  scene.parameters().set_configuration(configuration);
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
   expect_shown(scene, moments_[2]);
-  EXPECT_EQ(scene.configuration().damping, 2);
+  EXPECT_EQ(scene.document().configuration.damping, 2);
   EXPECT_EQ(test::ids_of(scene), moments_[2].robots);
   test::undo_and_wait(scene);
-  EXPECT_EQ(scene.configuration(), moments_[2].configuration);
+  EXPECT_EQ(scene.document().configuration, moments_[2].configuration);
 }
 
 TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
@@ -226,13 +231,13 @@ TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
   };
   const std::string name = actuators_of(*scene.document().robots[0].body.robot).front().name;
   moments.push_back(moment_of(scene));
-  scene.drive_actuator(robots, name, 0.8f);
+  scene.parameters().drive_actuator(robots, name, 0.8f);
   scene.end_edit();
   test::step_and_wait(scene, 30);
   test::step_and_wait(free, 30);
   moments.push_back(moment_of(scene));
   EXPECT_FALSE(same_bits(scene.snapshot().positions.host(), free.snapshot().positions.host()));
-  scene.drive_actuator(robots, name, {});
+  scene.parameters().drive_actuator(robots, name, {});
   scene.end_edit();
   EXPECT_FALSE(drives()) << "released";
   test::step_and_wait(scene, 30);
@@ -251,7 +256,7 @@ TEST_P(TimelineOn, DrivesByHandBelongToTheTimelineAndToUndo) {
   ASSERT_TRUE(drives());
   // At an earlier moment, the document takes the drives of that moment before the next edit.
   test::seek_and_wait(scene, moments[0].time);
-  scene.go_on();
+  scene.time().go_on();
   EXPECT_FALSE(drives());
 }
 
@@ -260,7 +265,7 @@ TEST_P(TimelineOn, AForkMovesAsItsOriginalUntilItIsChanged) {
   make_history(scene);
   test::seek_and_wait(scene, moments_[1].time);
   const RobotId original = test::ids_of(scene)[1];
-  const std::vector<RobotId> copies = scene.fork({original});
+  const std::vector<RobotId> copies = scene.robots().fork({original});
   ASSERT_EQ(copies.size(), 1u);
   test::step_and_wait(scene, 60);
   const Snapshot& snapshot = scene.snapshot();
@@ -268,7 +273,7 @@ TEST_P(TimelineOn, AForkMovesAsItsOriginalUntilItIsChanged) {
   ASSERT_TRUE(a && b);
   EXPECT_TRUE(std::ranges::equal(snapshot.positions_of(*a), snapshot.positions_of(*b)));
   EXPECT_EQ(snapshot.steps, moments_[1].steps + 60);
-  scene.scale_materials(copies, {.stiffness = 0.5f});
+  scene.parameters().scale_materials(copies, {.stiffness = 0.5f});
   test::step_and_wait(scene, 60);
   EXPECT_FALSE(std::ranges::equal(scene.snapshot().positions_of(*a), scene.snapshot().positions_of(*b)));
 }
@@ -276,9 +281,9 @@ TEST_P(TimelineOn, AForkMovesAsItsOriginalUntilItIsChanged) {
 TEST_P(TimelineOn, ALoopPlaysBetweenItsEnds) {
   LiveScene scene(options());
   make_history(scene);
-  scene.set_loop(std::pair{moments_[0].time, moments_[1].time});
-  scene.set_speed(unlimited_speed);
-  scene.play();
+  scene.time().set_loop(std::pair{moments_[0].time, moments_[1].time});
+  scene.time().set_speed(unlimited_speed);
+  scene.time().play();
   const std::uint64_t before = scene.snapshot().resets;
   while (scene.snapshot().resets < before + 3) {
     scene.frame();
@@ -287,19 +292,19 @@ TEST_P(TimelineOn, ALoopPlaysBetweenItsEnds) {
     }
     test::nap();
   }
-  scene.pause();
-  scene.set_loop({});
+  scene.time().pause();
+  scene.time().set_loop({});
   test::seek_and_wait(scene, moments_[5].time);
   expect_shown(scene, moments_[5]);
 }
 
 TEST_P(TimelineOn, WithoutMemoryThereIsOnlyThePresent) {
   LiveScene scene(options());
-  scene.set_timeline_budget(1);
+  scene.time().set_timeline_budget(1);
   make_history(scene);
   EXPECT_EQ(scene.snapshot().timeline.bytes, 0u);
-  scene.seek(0);
-  scene.step_back();
+  scene.time().seek(0);
+  scene.time().step_back();
   scene.wait_until_done();
   expect_shown(scene, moments_[5]);
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
@@ -308,7 +313,7 @@ TEST_P(TimelineOn, WithoutMemoryThereIsOnlyThePresent) {
 TEST_P(TimelineOn, ResetBeginsTheTimelineAgain) {
   LiveScene scene(options());
   make_history(scene);
-  scene.seek(moments_[2].time);
+  scene.time().seek(moments_[2].time);
   test::reset_and_wait(scene);
   EXPECT_EQ(scene.snapshot().steps, 0);
   EXPECT_FALSE(scene.snapshot().timeline.viewing);
@@ -340,7 +345,7 @@ TEST_P(TimelineOn, PathsEndWhereTheRobotsWereAtTheMomentShown) {
   EXPECT_TRUE(std::ranges::equal(points(), whole));
   // What came later is forgotten when the robot goes on from an earlier moment.
   test::seek_and_wait(scene, moment);
-  scene.go_on();
+  scene.time().go_on();
   test::step_and_wait(scene, 1);
   EXPECT_TRUE(std::ranges::equal(points().first(earlier.size()), earlier));
   EXPECT_LE(points().size(), earlier.size() + 3);
@@ -367,7 +372,7 @@ TEST_P(PlayedRecording, ShowsItsFramesAndStraightLinesBetween) {
   open(scene);
   EXPECT_TRUE(scene.snapshot().timeline.recording);
   EXPECT_NEAR(scene.snapshot().timeline.head, 0.1, 1e-12);
-  EXPECT_TRUE(has_ground(scene.configuration().environment));
+  EXPECT_TRUE(has_ground(scene.document().configuration.environment));
   TrajectoryReader reader(path("walk.h5"));
   for (const std::size_t frame : {3u, 10u, 0u, 7u}) {
     test::seek_and_wait(scene, reader.time(frame));
@@ -384,8 +389,8 @@ TEST_P(PlayedRecording, ShowsItsFramesAndStraightLinesBetween) {
 TEST_P(PlayedRecording, GoesOnFromAFrameAsTheRobotsDid) {
   LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
   open(scene);
-  scene.seek(0.045);  // between frames 4 and 5
-  scene.go_on();
+  scene.time().seek(0.045);  // between frames 4 and 5
+  scene.time().go_on();
   scene.wait_until_done();
   EXPECT_FALSE(scene.snapshot().timeline.recording);
   EXPECT_EQ(scene.snapshot().steps, 40);
@@ -414,7 +419,7 @@ TEST_P(PlayedRecording, ShowsTheSensesAndNeuronsOfTheWatchedRobotAndGoesOnWithTh
 
   TrajectoryReader reader(path("think.h5"));
   for (const std::size_t frame : {3u, 10u, 0u, 7u}) {
-    scene.seek(reader.time(frame) + (frame == 3 ? 0.004 : 0));  // until the next frame
+    scene.time().seek(reader.time(frame) + (frame == 3 ? 0.004 : 0));  // until the next frame
     scene.wait_until_done();
     ASSERT_TRUE(scene.snapshot().brain);
     EXPECT_EQ(scene.snapshot().brain->robot, ids[1]);
@@ -430,8 +435,8 @@ TEST_P(PlayedRecording, ShowsTheSensesAndNeuronsOfTheWatchedRobotAndGoesOnWithTh
     EXPECT_TRUE(std::ranges::equal(history->activity[frame].neurons, reader.neurons_of(1, frame)));
   }
 
-  scene.seek(0.05);
-  scene.go_on();
+  scene.time().seek(0.05);
+  scene.time().go_on();
   test::step_and_wait(scene, 100);
   EXPECT_FALSE(scene.snapshot().brain_history);
   simulation.step(50);
@@ -461,9 +466,9 @@ TEST_P(PlayedRecording, UndoBringsBackTheSceneAndItsClock) {
 TEST_P(PlayedRecording, PlaysToItsEndAndPausesThere) {
   LiveScene scene({.configuration = {.device = {.kind = GetParam()}}});
   open(scene);
-  scene.set_speed(100);
-  scene.play();
-  while (scene.playing()) {
+  scene.time().set_speed(100);
+  scene.time().play();
+  while (scene.time().playing()) {
     scene.frame();
     test::nap();
   }
@@ -474,7 +479,7 @@ TEST_P(PlayedRecording, PlaysToItsEndAndPausesThere) {
   EXPECT_EQ(scene.snapshot().steps, 0);
   test::step_and_wait(scene);
   EXPECT_EQ(scene.snapshot().steps, 10) << "a step is a frame";
-  scene.step_back();
+  scene.time().step_back();
   scene.wait_until_done();
   EXPECT_EQ(scene.snapshot().steps, 0);
 }

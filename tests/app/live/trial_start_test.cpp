@@ -7,6 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "app/live/scene_comparison.h"
+#include "app/live/scene_files.h"
+#include "app/live/scene_parameters.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "app/options/scene_file.h"
 #include "app/recording/trajectory_reader.h"
 #include "tests/app/live/live_scene_setup.h"
@@ -87,7 +92,7 @@ TEST_P(StartOn, TheTimelineShowsTheStartAndAllAfterIt) {
     EXPECT_EQ(scene.snapshot().steps, 100 * static_cast<std::int64_t>(k));
     EXPECT_TRUE(same_bits(positions_of(scene), played[k])) << k;
   }
-  scene.reset();
+  scene.time().reset();
   test::step_and_wait(scene, 200);
   EXPECT_TRUE(same_bits(positions_of(scene), played[2]));
 }
@@ -95,24 +100,24 @@ TEST_P(StartOn, TheTimelineShowsTheStartAndAllAfterIt) {
 TEST_P(StartOn, AChangeActsAtOnceAtTimeZeroAndElseAfterAReset) {
   test::RobotScene scene(1, options({}));
   const std::vector<Vec3> rest = positions_of(scene);
-  ASSERT_TRUE(scene.set_start(around(0.6)));
+  ASSERT_TRUE(scene.parameters().set_start(around(0.6)));
   scene.wait_until_done();
   EXPECT_THAT(distances_in(scene), ElementsAre(FloatNear(0.6f, 1e-5f)));
-  EXPECT_EQ(scene.undo_name(), "change the start");
+  EXPECT_EQ(scene.history().undo_name(), "change the start");
   test::undo_and_wait(scene);
   EXPECT_TRUE(same_bits(positions_of(scene), rest));
   scene.redo();
   test::step_and_wait(scene, 100);
   const std::vector<Vec3> later = positions_of(scene);
-  ASSERT_TRUE(scene.set_start(around(0.9)));
+  ASSERT_TRUE(scene.parameters().set_start(around(0.9)));
   scene.wait_until_done();
   EXPECT_TRUE(same_bits(positions_of(scene), later));
   test::reset_and_wait(scene);
   EXPECT_THAT(distances_in(scene), ElementsAre(FloatNear(0.9f, 1e-5f)));
   TrialStart bad = around(0.6);
   bad.trials.target_spread = 2;
-  EXPECT_FALSE(scene.set_start(bad));
-  EXPECT_EQ(scene.start(), around(0.9));
+  EXPECT_FALSE(scene.parameters().set_start(bad));
+  EXPECT_EQ(scene.document().start, around(0.9));
 }
 
 // The target goes where the user drags it; the robots go on where they are, and begin around its new place.
@@ -120,19 +125,19 @@ TEST_P(StartOn, ATargetThatIsMovedByHandStaysThere) {
   LiveScene scene(options(around(0.6)));
   test::make_robots(scene, 1);
   const std::vector<Vec3> start = positions_of(scene);
-  Configuration moved = scene.configuration();
+  Configuration moved = scene.document().configuration;
   moved.environment.target = {-2, 1, 0};
-  ASSERT_TRUE(scene.set_configuration(moved));
+  ASSERT_TRUE(scene.parameters().set_configuration(moved));
   scene.wait_until_done();
   EXPECT_TRUE(same_bits(positions_of(scene), start));
-  scene.set_second(SideDifference("environment=land"));
+  scene.comparison().set_second(SideDifference("environment=land"));
   scene.wait_until_done();
   const Vec3 apart = scene.snapshot().second->positions.host()[0] - start[0];
   EXPECT_EQ(apart.x, 0);
   EXPECT_EQ(apart.y, 0);
   test::step_and_wait(scene, 100);
   test::reset_and_wait(scene);
-  EXPECT_EQ(scene.configuration().environment.target, (Vec3{-2, 1, 0}));
+  EXPECT_EQ(scene.document().configuration.environment.target, (Vec3{-2, 1, 0}));
   EXPECT_THAT(distances_in(scene, {-2, 1, 0}), ElementsAre(FloatNear(0.6f, 1e-5f)));
 }
 
@@ -140,12 +145,12 @@ TEST_P(StartOn, RobotsThatComeLaterAndTheSecondSideBeginThereToo) {
   LiveScene scene(options(around(0.6)));
   test::make_robots(scene, 1);
   const std::vector<Vec3> start = positions_of(scene);
-  scene.set_second(SideDifference("damping=1"));
+  scene.comparison().set_second(SideDifference("damping=1"));
   scene.wait_until_done();
   ASSERT_TRUE(scene.snapshot().second);
   EXPECT_TRUE(same_bits(scene.snapshot().second->positions.host(), start));
   test::step_and_wait(scene, 100);
-  scene.add({*scene.document().robots.front().body.robot});
+  scene.robots().add({*scene.document().robots.front().body.robot});
   scene.wait_until_done();
   EXPECT_TRUE(same_bits(std::span<const Vec3>(positions_of(scene)).subspan(start.size()), start));
   test::reset_and_wait(scene);
@@ -175,17 +180,17 @@ TEST_F(Start, AScenesRobotsBeginWhereTheWindowsDidInEveryCommand) {
     LiveScene scene(options(around(0.6), environment));
     test::make_robots(scene, 2, 3);
     const std::vector<Vec3> start = positions_of(scene);
-    ASSERT_TRUE(scene.save_scene(path("around.toml"), true).ok());
+    ASSERT_TRUE(scene.files().save_scene(path("around.toml"), true).ok());
     LiveScene again(test::on_cpu());
     test::open_and_wait(again, {path("around.toml")});
-    EXPECT_EQ(again.start(), scene.start());
+    EXPECT_EQ(again.document().start, scene.document().start);
     EXPECT_TRUE(same_bits(positions_of(again), start));
     EXPECT_TRUE(same_bits(recorded({"run", path("around.toml")}), start));
     // As videos and exports, and `mercury run` with the options.
     std::vector<LiveRobot> robots;
     for (const DocumentRobot& robot : scene.document().robots) robots.push_back(robot.body);
     std::vector<Vec3> in_videos(start.size());
-    simulation_of(robots, scene.configuration(), scene.start()).read_positions(in_videos);
+    simulation_of(robots, scene.document().configuration, scene.document().start).read_positions(in_videos);
     EXPECT_TRUE(same_bits(in_videos, start));
     EXPECT_TRUE(same_bits(
         recorded({"run", "--random", "voxel:2", "--seed", "3", "--environment", std::string(name_of(environment)),
@@ -197,10 +202,10 @@ TEST_F(Start, AScenesRobotsBeginWhereTheWindowsDidInEveryCommand) {
 TEST_F(Start, TheCommandBeginsThere) {
   LiveScene scene(options(around(0.6)));
   test::make_robots(scene, 1);
-  EXPECT_THAT(scene.command("view").text, HasSubstr(" --target-radius=0.6 --turned --seed=3 "));
-  EXPECT_THAT(scene.command("render").text, HasSubstr(" --target-radius=0.6 --turned --seed=3 "));
-  scene.set_start({});
-  EXPECT_THAT(scene.command("view").text, testing::Not(HasSubstr("--seed")));
+  EXPECT_THAT(scene.files().command("view").text, HasSubstr(" --target-radius=0.6 --turned --seed=3 "));
+  EXPECT_THAT(scene.files().command("render").text, HasSubstr(" --target-radius=0.6 --turned --seed=3 "));
+  scene.parameters().set_start({});
+  EXPECT_THAT(scene.files().command("view").text, testing::Not(HasSubstr("--seed")));
 }
 
 TEST_F(Start, BadValuesInASceneAreRefusedWithTheirLine) {
@@ -218,7 +223,7 @@ TEST_F(Start, BadValuesInASceneAreRefusedWithTheirLine) {
 // A pin of a scene holds its mass where it begins.
 TEST_F(Start, PinsHoldMassesWhereTheyBegin) {
   LiveScene scene(options(around(0.6)));
-  scene.hold_opened({.attached = {{.robot = 0, .mass = 2, .spring = {}}}});
+  scene.files().hold_opened({.attached = {{.robot = 0, .mass = 2, .spring = {}}}});
   test::make_robots(scene, 1);
   const Vec3 start = positions_of(scene)[2];
   test::step_and_wait(scene, 500);

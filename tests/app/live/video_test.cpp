@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "app/live/group_video.h"
+#include "app/live/scene_exports.h"
+#include "app/live/scene_robots.h"
+#include "app/live/scene_time.h"
 #include "mercury/robot_file.h"
 #include "mercury/voxel.h"
 #include "render/png.h"
@@ -79,13 +82,13 @@ TEST_F(LiveVideo, FailedRecordingReportsWhyAndCanceledOneLeavesNoFile) {
 
 TEST_F(LiveVideo, GroupVideoIsMadeWhileTheSceneContinues) {
   test::RobotScene scene(2);
-  scene.step(10);
-  const auto video = scene.export_video({.output = path("group.mp4"),
-                                         .size = {160, 90},
-                                         .frames_per_second = 10,
-                                         .seconds = 0.5,
-                                         .quality = render::Quality::low});
-  scene.play();
+  scene.time().step(10);
+  const auto video = scene.exports().video({.output = path("group.mp4"),
+                                            .size = {160, 90},
+                                            .frames_per_second = 10,
+                                            .seconds = 0.5,
+                                            .quality = render::Quality::low});
+  scene.time().play();
   while (!video->status().over()) scene.frame();
   const VideoStatus status = video->status();
   ASSERT_EQ(status.state, VideoStatus::State::done) << status.error;
@@ -111,14 +114,14 @@ TEST_F(LiveVideo, APictureHasThePixelsOfTheCommands) {
     view.layout = Layout::grid;
     scene.set_view(view);
     test::open_and_wait(scene, {robot});
-    ASSERT_EQ(scene.entries().size(), 1u);
+    ASSERT_EQ(scene.robots().entries().size(), 1u);
     const auto as_window = [&](const std::string& name, bool hero, float aperture) {
-      const auto picture = scene.export_video({.output = path(name),
-                                               .size = {160, 90},
-                                               .still = 0.2,
-                                               .hero = hero,
-                                               .aperture = aperture,
-                                               .quality = render::Quality::low});
+      const auto picture = scene.exports().video({.output = path(name),
+                                                  .size = {160, 90},
+                                                  .still = 0.2,
+                                                  .hero = hero,
+                                                  .aperture = aperture,
+                                                  .quality = render::Quality::low});
       const VideoStatus status = over(*picture);
       EXPECT_EQ(status.state, VideoStatus::State::done) << status.error;
       EXPECT_EQ(status.frames, 1);
@@ -135,9 +138,9 @@ TEST_F(LiveVideo, APictureHasThePixelsOfTheCommands) {
 
 TEST_F(LiveVideo, CanceledGroupVideoLeavesNoFileAndEmptyOneReportsWhy) {
   LiveScene scene(test::on_cpu());
-  EXPECT_EQ(over(*scene.export_video({.output = path("none.mp4")})).state, VideoStatus::State::failed);
+  EXPECT_EQ(over(*scene.exports().video({.output = path("none.mp4")})).state, VideoStatus::State::failed);
   test::make_robots(scene, 1);
-  const auto video = scene.export_video(
+  const auto video = scene.exports().video(
       {.output = path("long.mp4"), .size = {160, 90}, .seconds = 1000, .quality = render::Quality::low});
   video->cancel();
   video->wait();

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "app/live/population.h"
+#include "app/live/scene_robots.h"
 #include "mercury/error.h"
 #include "mercury/random_voxel.h"
 #include "tests/app/live/live_scene_setup.h"
@@ -136,10 +137,10 @@ TEST(LiveScene, AnEditedBodyGoesOnWhereItIsAndUndoBringsTheOldOneBack) {
   test::step_and_wait(scene, 300);
   const auto before = scene.hold_snapshot();
   const Robot robot = *scene.document().robots[0].body.robot;
-  ASSERT_TRUE(scene.has_voxels(id));
-  const VoxelSide side = scene.voxel_side({.robot = id, .face = 0}).value();
-  EXPECT_TRUE(scene.edit_voxel(id, side, {.tool = VoxelTool::add, .material = 1}));
-  EXPECT_EQ(scene.undo_name(), "add a voxel");
+  ASSERT_TRUE(scene.robots().has_voxels(id));
+  const VoxelSide side = scene.robots().voxel_side({.robot = id, .face = 0}).value();
+  EXPECT_TRUE(scene.robots().edit_voxel(id, side, {.tool = VoxelTool::add, .material = 1}));
+  EXPECT_EQ(scene.history().undo_name(), "add a voxel");
   scene.wait_until_done();
   const Robot edited = *scene.document().robots[0].body.robot;
   ASSERT_GT(edited.masses.size(), robot.masses.size());
