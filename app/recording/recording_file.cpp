@@ -150,10 +150,11 @@ herr_t truncate_file(H5FD_t* base, hid_t, hbool_t) {
   return 0;
 }
 
-// Some network drives lack locks.
-herr_t lock_file(H5FD_t* file, hbool_t writes) {
-  const int result = flock(file_of(file).descriptor, (writes ? LOCK_EX : LOCK_SH) | LOCK_NB);
-  return result == 0 || errno == ENOSYS ? 0 : -1;
+// Some network drives lack locks. A program that watches for recordings may have locked the file as soon as it was
+// there: it finds nothing in it yet, and only this program writes it.
+herr_t lock_file(H5FD_t* file, hbool_t) {
+  const int result = flock(file_of(file).descriptor, LOCK_EX | LOCK_NB);
+  return result == 0 || errno == EWOULDBLOCK || errno == ENOSYS ? 0 : -1;
 }
 herr_t unlock_file(H5FD_t* file) {
   const int result = flock(file_of(file).descriptor, LOCK_UN);
