@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/live/live_scene.h"
+#include "app/live/picking.h"
 #include "app/window/toolkit/event_log.h"
 #include "app/window/toolkit/toasts.h"
 #include "app/window/viewport/orbit_controller.h"
