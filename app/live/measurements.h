@@ -14,6 +14,8 @@
 
 namespace mercury {
 
+struct SceneDocument;
+
 // What the measure panel plots.
 enum class Measure { speed, distance, kinetic_energy, elastic_energy, strain, inverted, overlap };
 
@@ -128,5 +130,11 @@ class Measurements {
   std::int64_t interval_ = 1, first_interval_ = 1;  // in steps
   std::int64_t next_ = 0;
 };
+
+// As CSV, with names and units in the first line: time series, one column per robot and quantity.
+std::string series_csv(const SceneDocument& document, const Measurements& measurements,
+                       const std::vector<RobotId>& robots);
+// The same of the ranking: one line per robot, those that went farthest first.
+std::string ranking_csv(const SceneDocument& document, const Measurements& measurements);
 
 }  // namespace mercury

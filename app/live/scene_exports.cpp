@@ -31,8 +31,7 @@ struct Exported {
   Robot robot;
   std::vector<Material> materials;
   Exported(const LiveRobot& given)
-      : live(given), robot(*given.robot),
-        materials(mercury::materials_of(given).begin(), mercury::materials_of(given).end()) {
+      : live(given), robot(*given.robot), materials(materials_of(given).begin(), materials_of(given).end()) {
     robot.name = live.name;
   }
   ExportedRobot in(const Environment& environment) const {

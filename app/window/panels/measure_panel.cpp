@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/live/measurement_tables.h"
 #include "app/live/measurements.h"
 #include "app/live/scene_comparison.h"
 #include "app/scene/side_difference.h"

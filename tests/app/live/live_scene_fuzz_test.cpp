@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "app/live/measurement_tables.h"
 #include "app/live/measurements.h"
 #include "app/live/scene_comparison.h"
 #include "app/live/scene_files.h"

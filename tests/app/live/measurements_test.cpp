@@ -7,7 +7,6 @@
 #include <limits>
 #include <sstream>
 
-#include "app/live/measurement_tables.h"
 #include "app/live/measurements.h"
 #include "app/live/stepping.h"
 #include "mercury/random_voxel.h"
