@@ -9,13 +9,15 @@
 //
 //   shared memory, from its first byte to `total`:
 //   +-----------------+----------+--------------+-----------+-----------+-----------+-----------+
-//   | material tables | failures | rest lengths | contacts  | brains    | tiles     | tiles     |
-//   | one, or one per | one per  | one table    | one list  | one per   | of the    | of the    |
+//   | material tables | records  | rest lengths | contacts  | brains    | tiles     | tiles     |
+//   | one, or one per | one per  | one table    | one grid  | one per   | of the    | of the    |
 //   | robot; copies   | robot    | per robot    | per robot | robot     | first     | second    |
 //   +-----------------+----------+--------------+-----------+-----------+-----------+-----------+
-//                                  if records    if any      if any      working memory (tile.h)
-//                                  have one word
+//                                  if springs'   if any      if any      working memory (tile.h)
+//                                  records have
+//                                  one word
 //
+//   Before the material tables come their barriers, two per table.
 //   After the rest lengths come the relaxation times of the materials if springs have any, one table, or one per robot.
 //
 // 1. A launch carries its robots through many steps. Masses stay in shared memory all the while; only spring records
@@ -27,8 +29,8 @@
 // 3. What does not fit stays in device memory: the valences; or else the contacts; or both; or all working memory.
 //    In the last case the blocks of a cluster step the robot in parts, if they can (parts.h); a block then has one
 //    part.
-// 4. Robots of a block that share a table wait for each other at each barrier, since one warp writes it for all. With
-//    tables of their own, and without contacts, they are apart: each waits for its own warps alone, by a named barrier.
+// 4. Without contacts, robots of a block are apart: each waits for its own warps alone, by a named barrier. If they
+//    share a table, no one is ahead by a whole step (material_table.cuh). With contacts, all wait for each other.
 // 5. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
 //    result.
 #pragma once
@@ -66,15 +68,20 @@ static_assert(sizeof(SpringParameters<Solver::xpbd>) == parameter_bytes);
 
 inline constexpr std::uint32_t max_chunks = max_materials / lanes;
 
+// Of a material table's two barriers.
+inline constexpr std::uint32_t table_barrier_bytes = 16;
+// Of a RobotRecord (thread_context.cuh).
+inline constexpr std::uint32_t robot_record_bytes = 32;
+
 // Ends of the parts of shared memory [bytes].
 struct BlockLayout {
-  std::uint32_t tables, failures, lengths, relaxation_times, contacts, brains, total;
+  std::uint32_t barriers, tables, records, lengths, relaxation_times, contacts, brains, total;
 };
 
-// Pairs within this distance are listed [m]: half as far again as they touch, but short of the diagonals of a lattice's
-// faces, which springs join.
+// Pairs within this distance are listed [m]: short of the diagonals of a lattice's faces, so that springs join few of
+// them, but farther than they touch.
 inline float list_radius(float contact_distance, float shortest_rest_length) {
-  return std::max(1.25f * contact_distance, std::min(1.54f * contact_distance, 1.386f * shortest_rest_length));
+  return std::max(1.25f * contact_distance, 1.386f * shortest_rest_length);
 }
 
 // Buckets of the cell grid that finds the contacts of a robot of this many tiles; 0 without contacts.
@@ -82,32 +89,24 @@ inline std::uint32_t contact_buckets(const Environment& environment, std::uint32
   return has_contacts(environment) ? std::bit_ceil(tiles * lanes) : 0;
 }
 
-// Bytes of ContactMemory (contacts.cuh): the list, and the grid of a robot of this many tiles. Before the list of a
-// robot in parts come two votes.
-inline constexpr std::uint32_t contact_vote_bytes = 8;
-MERCURY_HOST_DEVICE std::uint32_t contact_list_bytes(const LaunchConfiguration& launch) {
-  return (1 + launch.listed_pairs) * 4;
-}
+// Bytes of the cell grid of a robot of this many tiles (contacts.cuh): ends of buckets, sums of warps, sorted slots.
 MERCURY_HOST_DEVICE std::uint32_t contact_grid_bytes(std::uint32_t buckets, std::uint32_t tiles) {
-  return buckets * 4 + tiles * lanes * 2;
-}
-MERCURY_HOST_DEVICE std::uint32_t contact_bytes(const LaunchConfiguration& launch, std::uint32_t tiles) {
-  if (launch.contact_buckets == 0) return 0;
-  return contact_list_bytes(launch) + contact_grid_bytes(launch.contact_buckets, tiles);
+  return buckets > 0 ? (buckets + lanes) * 4 + tiles * lanes * 2 : 0;
 }
 
-// Pairs that the grid finds, joined or not, are written down until there are this many per slot.
+// Pairs that the grid finds are written down, joined or not, and then listed, until there are this many per slot.
 inline constexpr std::uint32_t near_pairs_per_slot = 9;
 
-// Bytes in device memory that ContactPass needs beside them.
-inline std::uint32_t contact_workspace_bytes(std::uint32_t tiles) {
-  return tiles * lanes * (3 * sizeof(float) + near_pairs_per_slot * sizeof(std::uint32_t));
+// Bytes in device memory that ContactPass needs: where masses were listed, and both kinds of pairs. Of a robot in parts
+// of `part_tiles` each, with the grid, which all parts share.
+inline std::size_t contact_workspace_bytes(std::uint32_t tiles) {
+  return std::size_t{tiles} * lanes * (3 * sizeof(float) + 2 * near_pairs_per_slot * sizeof(std::uint32_t));
 }
-// The same for a robot in parts of `part_tiles` each, with the grid, which all parts share.
 inline std::size_t contact_workspace_bytes_in_parts(std::uint32_t buckets, std::uint32_t tiles, std::uint32_t parts,
                                                     std::uint32_t part_tiles) {
   return contact_grid_bytes(buckets, tiles) +
-         lanes * (tiles * 3 * sizeof(float) + parts * part_tiles * near_pairs_per_slot * sizeof(std::uint32_t));
+         std::size_t{lanes} *
+             (tiles * 3 * sizeof(float) + parts * part_tiles * 2 * near_pairs_per_slot * sizeof(std::uint32_t));
 }
 
 // `tiles` = of the largest robot, `fields` = of a tile in working memory.
@@ -115,16 +114,17 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
                                              std::uint32_t fields) {
   BlockLayout layout{};
   const std::uint32_t tables = launch.shared_table ? 1 : launch.robots_per_block;
-  layout.tables = (tables * launch.table_chunks * lanes * parameter_bytes) << launch.table_copy_bits;
+  layout.barriers = tables * table_barrier_bytes;
+  layout.tables =
+      layout.barriers + ((tables * launch.table_chunks * lanes * parameter_bytes) << launch.table_copy_bits);
   // And the steps of the next thoughts, and which materials move.
-  layout.failures = layout.tables + (launch.robots_per_block * 12 + tables * max_chunks * 4 + 15) / 16 * 16;
-  layout.lengths = layout.failures + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
+  layout.records =
+      layout.tables + (launch.robots_per_block * (robot_record_bytes + 4) + tables * max_chunks * 4 + 15) / 16 * 16;
+  layout.lengths = layout.records + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
   layout.relaxation_times = layout.lengths + (launch.viscous ? tables * launch.table_chunks * lanes * 4 : 0);
   layout.contacts = layout.relaxation_times;
-  if (launch.parts > 1 && launch.contact_buckets > 0)
-    layout.contacts += contact_vote_bytes + contact_list_bytes(launch);
-  else if (launch.contacts_on_chip)
-    layout.contacts += launch.robots_per_block * contact_bytes(launch, tiles);
+  if (launch.parts == 1 && launch.contacts_on_chip)
+    layout.contacts += launch.robots_per_block * contact_grid_bytes(launch.contact_buckets, tiles);
   layout.brains = layout.contacts + launch.robots_per_block * launch.brain.total();
   layout.total = layout.brains;
   if (launch.on_chip) layout.total += launch.robots_per_block * tiles * fields * field_bytes;

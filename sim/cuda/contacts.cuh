@@ -12,12 +12,12 @@
 // 1. Searching the grid costs far more than reading the list, which is short or empty unless the robot folds up. Most
 //    pairs that it finds may be joined by springs, as in water, where masses touch at nearly the distance of neighbors
 //    in a lattice. So it writes down all of them, and then each thread looks up the springs of one pair.
-// 2. The list can miss a pair only after one of its masses has moved half the margin. Each thread adds up the
-//    farthest that one of its masses moved per step, which costs nothing but is often too much: what swings comes back,
-//    and the whole robot travels. So when a sum reaches the limit, the true ways are computed, relative to the mean way
-//    of some masses, from the positions at which the masses were listed. They replace the sums if all are below half
-//    the limit.
-// 3. If there are more pairs than the list holds, every step searches the grid.
+// 2. The list can miss a pair only after one of its masses has moved half the margin, its reach. Each thread subtracts
+//    from that the farthest that one of its masses moved in each step, which costs nothing but is often too much: what
+//    swings comes back, and the whole robot travels. So when nothing is left, the true ways are computed, relative to
+//    the mean way of some masses, from the positions at which the masses were listed. They replace the sums if all are
+//    below half the reach.
+// 3. If there are more pairs than the list holds, every step searches the grid and adds the forces at once.
 // 4. Both ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
 //    not change a bit.
 #pragma once
@@ -28,33 +28,53 @@
 
 namespace mercury::cuda {
 
-struct ContactMemory {
-  std::uint32_t* count;  // pairs found, of which launch.listed_pairs fit
-  std::uint32_t* pairs;  // ContactPass::packed()
-  std::uint32_t* heads;  // [bucket], its first slot
-  std::uint16_t* links;  // [slot], the next one in its bucket
+// Slots sorted by their cells. A row of cells along x has consecutive buckets, so that the masses of three neighbors
+// follow one another:
+//
+//   bucket of a cell = x + row y + row^2 z, modulo the number of buckets
+//
+// Other cells may share a bucket; the distance test rejects their masses. The 27 buckets around a cell differ, so that
+// each pair is found once.
+struct ContactGrid {
+  std::uint32_t* ends;     // [bucket], in `sorted`
+  std::uint32_t* of_warp;  // [warp], while buckets are summed
+  std::uint16_t* sorted;   // [mass], slots by bucket
+  std::uint32_t mask, row;
 
-  __device__ ContactMemory(char* list, char* grid, std::uint32_t buckets)
-      : count(reinterpret_cast<std::uint32_t*>(list)), pairs(count + 1), heads(reinterpret_cast<std::uint32_t*>(grid)),
-        links(reinterpret_cast<std::uint16_t*>(heads + buckets)) {}
-  __device__ bool overflows(const LaunchConfiguration& launch) const {
-    return *static_cast<volatile std::uint32_t*>(count) > launch.listed_pairs;
+  __device__ ContactGrid(char* at, std::uint32_t buckets)
+      : ends(reinterpret_cast<std::uint32_t*>(at)), of_warp(ends + buckets),
+        sorted(reinterpret_cast<std::uint16_t*>(of_warp + lanes)), mask(buckets - 1), row(3) {
+    while ((row + 1) * (row + 1) * (row + 1) <= buckets) ++row;
   }
+  __device__ std::uint32_t bucket_at(Vec3 x, float inverse_size) const {
+    const Cell cell = cell_of(x, inverse_size);
+    return (static_cast<std::uint32_t>(cell.x) + static_cast<std::uint32_t>(cell.y) * row +
+            static_cast<std::uint32_t>(cell.z) * row * row) &
+           mask;
+  }
+  __device__ std::uint32_t start_of(std::uint32_t bucket) const { return bucket == 0 ? 0 : ends[bucket - 1]; }
 };
 
-// Calls visit(j) for every slot j within `radius` of slot i at x that comes after i, so each pair is visited once.
+// Cells are wider than the radius, so that no pair within it is in cells further apart by rounding.
+__device__ inline float inverse_cell_size(float radius) { return 1 / (1.01f * radius); }
+
+// Calls visit(j) for every slot j within `radius` of slot i at x that comes after i, so each pair is visited once. The
+// grid has `masses` slots.
 template <class Position, class Visit>
-__device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets, float radius, std::uint32_t i, Vec3 x,
+__device__ void for_each_near(const ContactGrid& grid, std::uint32_t masses, float radius, std::uint32_t i, Vec3 x,
                               const Position& position, const Visit& visit) {
-  const float inverse_size = 1 / radius;
-  const Cell cell = cell_of(x, inverse_size);
-  for (int n = 0; n < half_neighborhood; ++n) {
-    const Cell other = cell + neighbor(n);
-    for (std::uint32_t j = memory.heads[bucket_of(hash_of(other), buckets - 1)]; j != end_of_list;
-         j = memory.links[j]) {
-      if (n == 0 && j <= i) continue;
-      const Vec3 xj = position(j);
-      if (squared_length(xj - x) < radius * radius && cell_of(xj, inverse_size) == other) visit(j);
+  const std::uint32_t own = grid.bucket_at(x, inverse_cell_size(radius));
+  // The cell itself and the next one, then the rows at (y + 1, z), (y - 1, z + 1), (y, z + 1), (y + 1, z + 1).
+  for (std::uint32_t n = 0; n < 5; ++n) {
+    const std::uint32_t middle = own + (n == 0 ? 0 : n == 1 ? grid.row : (grid.row + n - 3) * grid.row);
+    const std::uint32_t first = (n == 0 ? middle : middle - 1) & grid.mask, last = (middle + 1) & grid.mask;
+    const std::uint32_t start = grid.start_of(first);
+    const std::uint32_t count = grid.ends[last] + (first <= last ? 0 : masses) - start;
+    const std::uint32_t of_own = n == 0 ? grid.ends[own] - start : 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::uint32_t at = start + k, j = grid.sorted[at < masses ? at : at - masses];
+      if (k < of_own && j <= i) continue;
+      if (squared_length(position(j) - x) < radius * radius) visit(j);
     }
   }
 }
@@ -63,93 +83,82 @@ __device__ void for_each_near(const ContactMemory& memory, std::uint32_t buckets
 // the positions at which masses were listed. Each part lists the pairs whose first mass is its own. If the second one
 // is another part's, the part reads and adds to that part's memory.
 
-// Pairs within this many contact distances are listed, if lists are not verified.
-inline constexpr float plain_list_radius = 1.5f;
-
-// `verifies`: whether the true ways are computed. What is rarely needed is then not inline, so that it takes no
-// registers from the steps. Bodies of the paper have registers to spare.
-template <class Robot, bool verifies>
+// What is rarely needed is not inline, so that it takes no registers from the steps.
+template <class Robot>
 class ContactPass {
  public:
-  __device__ explicit ContactPass(const Robot& robot) : memory_(address(robot)) {}
-
-  // Makes the list of near pairs, or makes sure that it is still complete. All threads of the block must call it, since
-  // it has barriers.
-  __device__ void update_list(const Robot& robot, std::uint32_t step) {
-    if constexpr (verifies) {
-      const float farthest =
-          has_list_ && collides(robot) ? farthest_since_listed(robot.arguments(), robot.context()) : 0;
-      const bool complete =
-          has_list_ && (!collides(robot) ||
-                        (farthest < reach(robot) / 2 && !contact_memory(robot).overflows(robot.arguments().launch)));
-      if (!any(robot, !complete, 1, step)) {
-        traveled_ = farthest;
-        return;
-      }
-      has_list_ = true;
-    }
-    traveled_ = 0;
-    if constexpr (verifies)
-      make_list_apart(robot.arguments(), robot.context());
-    else
-      make_list(robot, contact_memory(robot));
+  // Before everything else, by all threads; a barrier follows.
+  __device__ static void begin(const Robot& robot, RobotRecord& record) {
+    if (robot.thread() != 0) return;
+    record.pairs = buckets(robot) > 0 ? listed_pairs(robot) : nullptr;
+    record.pair_count = buckets(robot) > 0 ? not_listed : 0;
+    record.votes[0] = record.votes[1] = 0;
   }
 
+  // Before a step: makes the list of near pairs, or makes sure that it is still complete. Returns how far the masses of
+  // this thread may go from now on [m]: below 0 if the list is too short for all pairs, whose forces have been added
+  // then. All threads of the block must call it, since it has barriers.
+  __device__ static float update_list(const Robot& robot, RobotRecord& record, std::uint32_t step) {
+    return update_list_apart(robot.arguments(), robot.context(), record, step);
+  }
+  __device__ void use_list(float reach) { left_ = reach; }
   // No mass of this thread moved farther than this in a step [m].
-  __device__ void moved(float farthest) { traveled_ += farthest; }
+  __device__ void moved(float farthest) { left_ -= farthest; }
   // Whether the list of some thread may miss a pair in the next step.
-  __device__ bool stale(const Robot& robot, std::uint32_t step) const {
-    return any(
-        robot,
-        collides(robot) && (traveled_ > reach(robot) || contact_memory(robot).overflows(robot.arguments().launch)), 0,
-        step);
+  __device__ bool stale(const Robot& robot, RobotRecord& record, std::uint32_t step) const {
+    return any(robot, left_ < 0, record.votes[0], step);
   }
 
-  // Adds the forces of all pairs that touch.
-  __device__ void add(const Robot& robot) const {
-    if (!collides(robot)) return;
-    const ContactMemory memory = contact_memory(robot);
-    if (memory.overflows(robot.arguments().launch)) {
-      if constexpr (verifies)
-        add_by_search_apart(robot.arguments(), robot.context());
-      else
-        add_by_search(robot, memory);
-      return;
-    }
-    const std::uint32_t count = *memory.count;
-    for (std::uint32_t p = robot.thread(); p < count; p += robot.threads()) add_pair(robot, memory.pairs[p]);
-  }
-  // Before everything else; a barrier follows.
-  __device__ static void begin(const Robot& robot) {
-    if constexpr (in_parts)
-      if (robot.thread() < 2) votes(robot)[robot.thread()] = 0;
+  // Adds the forces of all listed pairs that touch.
+  __device__ static void add(const Robot& robot, const RobotRecord& record) {
+    const std::uint32_t count = record.pair_count;
+    if (count > most_pairs(robot)) return;  // update_list() has added them
+    for (std::uint32_t p = robot.thread(); p < count; p += robot.threads()) add_pair(robot, record.pairs[p]);
   }
 
  private:
   static constexpr bool in_parts = Robot::Memory::in_parts;
-  static_assert(verifies || !in_parts || !Robot::Memory::finds_contacts,
-                "robots in parts need the positions at which masses were listed");
+  static constexpr std::uint32_t not_listed = 0xffffffff;
   using Context = ThreadContext<typename Robot::Memory>;
 
-  __device__ static float list_radius(const Robot& robot) {
-    if constexpr (verifies)
-      return robot.stored_header().list_radius;
-    else
-      return plain_list_radius * robot.header().contact_distance;
-  }
+  __device__ static float list_radius(const Robot& robot) { return robot.stored_header().list_radius; }
   // How far a mass may go before the list must be made again [m]: half the margin, less 1 % for rounding.
   __device__ static float reach(const Robot& robot) {
-    if constexpr (verifies)
-      return 0.99f * (list_radius(robot) - robot.header().contact_distance) / 2;
-    else
-      return 0.99f * (plain_list_radius - 1) / 2 * robot.header().contact_distance;
+    return 0.99f * (list_radius(robot) - robot.header().contact_distance) / 2;
+  }
+
+  // As many as can be written down, or listed.
+  __device__ static std::uint32_t most_pairs(const Robot& robot) {
+    return near_pairs_per_slot * robot.arguments().batch.tile_stride * lanes;
+  }
+
+  __device__ __noinline__ static float update_list_apart(const StepArguments& arguments, Context context,
+                                                         RobotRecord& record, std::uint32_t step) {
+    const Robot robot(arguments, context);
+    const bool collides = robot.header().contact_distance > 0 && !record.failure.happened();
+    float farthest = 0;
+    bool complete = count_of(record) != not_listed;
+    if (complete && collides) {
+      farthest = farthest_since_listed(robot);
+      complete = farthest < reach(robot) / 2 && count_of(record) <= most_pairs(robot);
+    }
+    if (any(robot, !complete, record.votes[1], step)) {
+      make_list(robot, record, collides);
+      farthest = 0;
+    }
+    if (!collides) return __builtin_huge_valf();
+    if (count_of(record) <= most_pairs(robot)) return reach(robot) - farthest;
+    add_by_search(robot);
+    return -1;
+  }
+  __device__ static std::uint32_t count_of(const RobotRecord& record) {
+    return *static_cast<const volatile std::uint32_t*>(&record.pair_count);
   }
 
   // Of this thread's masses, relative to the mean way of 32 masses from all over the robot [m].
-  __device__ __noinline__ static float farthest_since_listed(const StepArguments& arguments, Context context) {
-    const Robot robot(arguments, context);
+  __device__ static float farthest_since_listed(const Robot& robot) {
     const auto way_of = [&](std::uint32_t slot, Vec3 x) { return x - listed_position(robot, slot); };
-    const std::uint32_t sample = context.lane * robot.stored_header().masses / lanes;
+    const std::uint32_t sample = robot.context().lane * robot.stored_header().masses / lanes;
     Vec3 mean = (1.0f / lanes) * way_of(sample, position_of(robot, other_of(robot, sample)));
     for (std::uint32_t half = lanes / 2; half > 0; half /= 2)
       mean = mean + Vec3{__shfl_xor_sync(0xffffffffu, mean.x, half), __shfl_xor_sync(0xffffffffu, mean.y, half),
@@ -163,106 +172,126 @@ class ContactPass {
     return sqrtf(squared);
   }
 
-  __device__ __noinline__ static void add_by_search_apart(const StepArguments& arguments, Context context) {
-    const Robot robot(arguments, context);
-    add_by_search(robot, memory_of(robot, address(robot)));
-  }
-  __device__ static void add_by_search(const Robot& robot, const ContactMemory& memory) {
-    for_each_near_pair(robot, memory, [&](std::uint32_t i, Vec3 x, std::uint32_t j) {
+  __device__ static void add_by_search(const Robot& robot) {
+    for_each_near_pair(robot, [&](std::uint32_t i, Vec3 x, std::uint32_t j) {
       if (touches(robot, position_in_grid(robot, j) - x) && !joined(robot, i, j)) add_pair(robot, packed(robot, i, j));
     });
   }
 
-  __device__ __noinline__ static void make_list_apart(const StepArguments& arguments, Context context) {
-    const Robot robot(arguments, context);
-    make_list(robot, memory_of(robot, address(robot)));
-  }
-  __device__ static void make_list(const Robot& robot, const ContactMemory& memory) {
-    fill_grid(robot, memory);
+  // Robots of a block meet at the same barriers, whatever they have found.
+  __device__ static void make_list(const Robot& robot, RobotRecord& record, bool collides) {
+    fill_grid(robot, record, collides);
+    if (collides) write_near_pairs(robot, record);
+    __syncthreads();
+    const std::uint32_t found = count_of(record), most = most_pairs(robot);
+    __syncthreads();
+    if (robot.thread() == 0) record.pair_count = 0;
+    __syncthreads();
     const auto list = [&](std::uint32_t i, std::uint32_t j) {
       if (joined(robot, i, j)) return;
-      const std::uint32_t index = atomicAdd(memory.count, 1u);
-      if (index < robot.arguments().launch.listed_pairs) memory.pairs[index] = packed(robot, i, j);
+      const std::uint32_t index = atomicAdd(&record.pair_count, 1u);
+      if (index < most) record.pairs[index] = packed(robot, i, j);
     };
-    const auto list_near = [&] {
-      if (collides(robot))
-        for_each_near_pair(robot, memory, [&](std::uint32_t i, Vec3, std::uint32_t j) { list(i, j); });
-    };
-    if constexpr (verifies) {
-      const std::uint32_t most = near_pairs_per_slot * robot.header().tiles * lanes;
-      const std::uint32_t found = write_near_pairs(robot, memory, most);
-      const std::uint32_t* const near = near_pairs(robot);
-      if (found > most)
-        list_near();
-      else
-        for (std::uint32_t p = robot.thread(); p < found; p += robot.threads()) list(near[p] >> 16, near[p] & 0xffff);
-    } else {
-      list_near();
-    }
+    const std::uint32_t* const near = near_pairs(robot);
+    if (found <= most)
+      for (std::uint32_t p = robot.thread(); p < found; p += robot.threads()) list(near[p] >> 16, near[p] & 0xffff);
+    else
+      for_each_near_pair(robot, [&](std::uint32_t i, Vec3, std::uint32_t j) { list(i, j); });
     robot_barrier<typename Robot::Memory>();
+  }
+
+  // Writes down all pairs within the list radius, as many as there is room for.
+  __device__ static void write_near_pairs(const Robot& robot, RobotRecord& record) {
+    std::uint32_t* const near = near_pairs(robot);
+    const std::uint32_t most = most_pairs(robot);
+    const auto write = [&](std::uint32_t i, std::uint32_t j) {
+      const std::uint32_t index = atomicAdd(&record.pair_count, 1u);
+      if (index < most) near[index] = i << 16 | j;
+    };
+    if constexpr (in_parts) {
+      for_each_near_pair(robot, [&](std::uint32_t i, Vec3, std::uint32_t j) { write(i, j); });
+    } else {
+      // Lanes take masses in the order of cells, so that most of them visit the same ones.
+      const ContactGrid grid = grid_of(robot);
+      const std::uint32_t masses = robot.stored_header().masses;
+      for (std::uint32_t k = robot.thread(); k < masses; k += robot.threads()) {
+        const std::uint32_t i = grid.sorted[k];
+        for_each_near(grid, masses, list_radius(robot), i, position_in_grid(robot, i), position_in(robot),
+                      [&](std::uint32_t j) { write(i, j); });
+      }
+    }
   }
 
   // Between barriers.
-  __device__ static void fill_grid(const Robot& robot, const ContactMemory& memory) {
+  __device__ static void fill_grid(const Robot& robot, RobotRecord& record, bool collides) {
+    const ContactGrid grid = grid_of(robot);
     const std::uint32_t parts = in_parts ? robot.arguments().launch.parts : 1;
     for (std::uint32_t b = robot.part() * robot.threads() + robot.thread(); b < buckets(robot);
          b += parts * robot.threads())
-      memory.heads[b] = end_of_list;
-    if (robot.thread() == 0) *memory.count = 0;
+      grid.ends[b] = 0;
+    if (robot.thread() == 0) record.pair_count = 0;
     robot_barrier<typename Robot::Memory>();
-    const float inverse_size = 1 / list_radius(robot);
-    for (std::uint32_t tile = robot.first_tile(); collides(robot) && tile < robot.last_tile(); ++tile) {
-      if (!robot.has_mass(tile)) continue;
-      const std::uint32_t slot = robot.slot_in_robot(robot.own_slot(tile));
-      const Vec3 x = robot.own_mass(tile).vector(field_x);
-      if constexpr (verifies) {
-        float* const listed = listed_positions(robot) + 3 * slot;
-        listed[0] = x.x;
-        listed[1] = x.y;
-        listed[2] = x.z;
-      }
-      const std::uint32_t bucket = bucket_of(hash_of(cell_of(x, inverse_size)), buckets(robot) - 1);
-      memory.links[slot] = static_cast<std::uint16_t>(atomicExch(memory.heads + bucket, slot));
-    }
+    const float inverse_size = inverse_cell_size(list_radius(robot));
+    const auto for_each_own = [&](const auto& visit) {
+      for (std::uint32_t tile = robot.first_tile(); collides && tile < robot.last_tile(); ++tile)
+        if (robot.has_mass(tile))
+          visit(robot.slot_in_robot(robot.own_slot(tile)), robot.own_mass(tile).vector(field_x));
+    };
+    for_each_own([&](std::uint32_t slot, Vec3 x) {
+      float* const listed = listed_positions(robot) + 3 * slot;
+      listed[0] = x.x;
+      listed[1] = x.y;
+      listed[2] = x.z;
+      atomicAdd(grid.ends + grid.bucket_at(x, inverse_size), 1u);
+    });
+    robot_barrier<typename Robot::Memory>();
+    sum_buckets(robot, grid);
+    robot_barrier<typename Robot::Memory>();
+    for_each_own([&](std::uint32_t slot, Vec3 x) {
+      const std::uint32_t at = atomicAdd(grid.ends + grid.bucket_at(x, inverse_size), 1u);
+      grid.sorted[at] = static_cast<std::uint16_t>(slot);
+    });
     robot_barrier<typename Robot::Memory>();
   }
 
-  // Writes down all pairs within the list radius, or `most` of them. Returns their number.
-  __device__ static std::uint32_t write_near_pairs(const Robot& robot, const ContactMemory& memory,
-                                                   std::uint32_t most) {
-    std::uint32_t* const near = near_pairs(robot);
-    if (collides(robot))
-      for_each_near_pair(robot, memory, [&](std::uint32_t i, Vec3, std::uint32_t j) {
-        const std::uint32_t index = atomicAdd(memory.count, 1u);
-        if (index < most) near[index] = i << 16 | j;
-      });
+  // Replaces the number of masses in each bucket by that in all buckets before it. Of a robot in parts, the first does.
+  __device__ static void sum_buckets(const Robot& robot, const ContactGrid& grid) {
+    const std::uint32_t lane = robot.context().lane, warp = robot.context().warp;
+    const std::uint32_t each = divide_up(buckets(robot) / lanes, robot.warps()) * lanes;
+    const std::uint32_t first = warp * each, last = robot.part() == 0 ? min(first + each, buckets(robot)) : 0;
+    std::uint32_t sum = 0;
+    for (std::uint32_t b = first; b < last; b += lanes) sum += grid.ends[b + lane];
+    sum = sum_of_warp(sum);
+    if (robot.part() == 0 && lane == 0) grid.of_warp[warp] = sum;
     __syncthreads();
-    const std::uint32_t found = *static_cast<volatile std::uint32_t*>(memory.count);
-    __syncthreads();
-    if (robot.thread() == 0) *memory.count = 0;
-    __syncthreads();
-    return found;
+    std::uint32_t before = robot.part() == 0 && lane < warp ? grid.of_warp[lane] : 0;
+    before = sum_of_warp(before);
+    for (std::uint32_t b = first; b < last; b += lanes) {
+      const std::uint32_t count = grid.ends[b + lane];
+      std::uint32_t up_to = count;
+      for (std::uint32_t distance = 1; distance < lanes; distance *= 2) {
+        const std::uint32_t below = __shfl_up_sync(0xffffffffu, up_to, distance);
+        if (lane >= distance) up_to += below;
+      }
+      grid.ends[b + lane] = before + up_to - count;
+      before += __shfl_sync(0xffffffffu, up_to, lanes - 1);
+    }
   }
 
   // Whether the predicate of any thread of the block is true, or of all parts of the robot. These vote by the number of
-  // the step; between two votes of a kind, there is another barrier.
-  __device__ static bool any(const Robot& robot, bool predicate, std::uint32_t kind, std::uint32_t step) {
+  // the step, plus 1; between two votes of a kind, there is another barrier.
+  __device__ static bool any(const Robot& robot, bool predicate, std::uint32_t& votes, std::uint32_t step) {
     const bool in_block = __syncthreads_or(predicate);
     if constexpr (in_parts) {
       using Memory = typename Robot::Memory;
-      const std::uint32_t vote = shared_address(votes(robot) + kind);
+      const std::uint32_t vote = shared_address(&votes);
       if (in_block && robot.thread() < robot.arguments().launch.parts)
         Memory::raise_there(Memory::of_part(vote, robot.thread()), step + 1);
       robot_barrier<Memory>();
-      return *static_cast<volatile std::uint32_t*>(votes(robot) + kind) == step + 1;
+      return *static_cast<volatile std::uint32_t*>(&votes) == step + 1;
     }
     return in_block;
   }
-  // [kind], the step before which a part last voted, plus 1.
-  __device__ static std::uint32_t* votes(const Robot& robot) {
-    return reinterpret_cast<std::uint32_t*>(address(robot) - contact_vote_bytes);
-  }
-
   // A pair of this thread's slot and a slot of the grid, as the list has it: 16 bits each; in parts 13 bits each after
   // the part of the second one, in whose memory that one's slot is.
   __device__ static std::uint32_t packed(const Robot& robot, std::uint32_t i, std::uint32_t j) {
@@ -298,34 +327,21 @@ class ContactPass {
   }
 
   __device__ static std::uint32_t buckets(const Robot& robot) { return robot.arguments().launch.contact_buckets; }
-  __device__ static bool collides(const Robot& robot) {
-    return buckets(robot) > 0 && robot.header().contact_distance > 0;
-  }
-
-  // In device memory: contacts that do not fit on the chip, or the grid of a robot in parts; then
+  // In device memory: a grid that does not fit on the chip, or that of a robot in parts; then
   // contact_workspace_bytes().
   __device__ static char* workspace(const Robot& robot) {
     const BatchView& batch = robot.arguments().batch;
     char* const begin = batch.workspace + std::size_t{robot.context().robot} * batch.workspace_stride;
     return begin + (Robot::Memory::on_chip ? 0 : batch.tile_stride * Robot::tile_bytes);
   }
-  __device__ static char* address(const Robot& robot) {
+  __device__ static ContactGrid grid_of(const Robot& robot) {
     const LaunchConfiguration& launch = robot.arguments().launch;
-    if constexpr (in_parts)
-      return shared_memory + block_layout(launch, robot.arguments().batch.tile_stride, Robot::fields).contacts -
-             contact_list_bytes(launch);
-    if (!launch.contacts_on_chip) return workspace(robot);
+    if (in_parts || !launch.contacts_on_chip) return {workspace(robot), buckets(robot)};
     const std::uint32_t tiles = robot.arguments().batch.tile_stride;
     const std::uint32_t number = threadIdx.x / lanes / launch.warps_per_robot;
-    return shared_memory + block_layout(launch, tiles, Robot::fields).relaxation_times +
-           number * contact_bytes(launch, tiles);
-  }
-  // Found again where registers are scarce.
-  __device__ ContactMemory contact_memory(const Robot& robot) const {
-    return memory_of(robot, verifies ? address(robot) : memory_);
-  }
-  __device__ static ContactMemory memory_of(const Robot& robot, char* list) {
-    return {list, in_parts ? workspace(robot) : list + contact_list_bytes(robot.arguments().launch), buckets(robot)};
+    return {shared_memory + block_layout(launch, tiles, Robot::fields).relaxation_times +
+                number * contact_grid_bytes(launch.contact_buckets, tiles),
+            buckets(robot)};
   }
   // [slot of the grid][3], when the list was made [m].
   __device__ static float* listed_positions(const Robot& robot) {
@@ -334,28 +350,34 @@ class ContactPass {
     if constexpr (in_parts)
       before = contact_grid_bytes(buckets(robot), batch.parts.robot_tile_stride);
     else if (!robot.arguments().launch.contacts_on_chip)
-      before = contact_bytes(robot.arguments().launch, batch.tile_stride);
+      before = contact_grid_bytes(buckets(robot), batch.tile_stride);
     return reinterpret_cast<float*>(workspace(robot) + before);
   }
+  // [most_pairs()] of this robot or part: i << 16 | j, with i one of its slots and j of the grid.
   __device__ static std::uint32_t* near_pairs(const Robot& robot) {
     const BatchView& batch = robot.arguments().batch;
     const std::uint32_t tiles = in_parts ? batch.parts.robot_tile_stride : batch.tile_stride;
     return reinterpret_cast<std::uint32_t*>(listed_positions(robot) + 3 * tiles * lanes) +
-           robot.part() * near_pairs_per_slot * batch.tile_stride * lanes;
+           2 * robot.part() * most_pairs(robot);
   }
+  // [most_pairs()], those that springs do not join, packed().
+  __device__ static std::uint32_t* listed_pairs(const Robot& robot) { return near_pairs(robot) + most_pairs(robot); }
 
   // Calls visit(i, x_i, j) for every pair within the list radius whose slot i is one of this thread's; j is a slot of
   // the grid.
   template <class Visit>
-  __device__ static void for_each_near_pair(const Robot& robot, const ContactMemory& memory, const Visit& visit) {
-    const auto position = [&](std::uint32_t j) { return position_in_grid(robot, j); };
+  __device__ static void for_each_near_pair(const Robot& robot, const Visit& visit) {
+    const ContactGrid grid = grid_of(robot);
     for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile) {
       if (!robot.has_mass(tile)) continue;
       const std::uint32_t i = robot.own_slot(tile);
       const Vec3 x = robot.own_mass(tile).vector(field_x);
-      for_each_near(memory, buckets(robot), list_radius(robot), robot.slot_in_robot(i), x, position,
-                    [&](std::uint32_t j) { visit(i, x, j); });
+      for_each_near(grid, robot.stored_header().masses, list_radius(robot), robot.slot_in_robot(i), x,
+                    position_in(robot), [&](std::uint32_t j) { visit(i, x, j); });
     }
+  }
+  __device__ static auto position_in(const Robot& robot) {
+    return [&](std::uint32_t j) { return position_in_grid(robot, j); };
   }
 
   __device__ static bool touches(const Robot& robot, Vec3 d) {
@@ -404,28 +426,18 @@ class ContactPass {
   __device__ static bool owns(const Robot& robot, std::uint32_t i, std::uint32_t j) {
     const std::uint32_t wanted = Robot::Memory::on_chip ? Robot::byte_offset(j) / 4 : j, tile = i / lanes;
     const auto* spring = robot.springs() + i % lanes;
-    if constexpr (verifies) {
-      const std::uint32_t last = robot.row_start()[tile + 1];
-      bool found = false;
-      // Without a way out of the loop, so that loads need not wait for each other.
+    const std::uint32_t last = robot.row_start()[tile + 1];
+    bool found = false;
+    // Without a way out of the loop, so that loads need not wait for each other.
 #pragma unroll 8
-      for (std::uint32_t row = robot.row_start()[tile]; row < last; ++row) {
-        const std::uint32_t key = spring[std::size_t{row} * lanes].x;
-        found |= key >> 16 == wanted && (key & 0xff) != air;
-      }
-      return found;
-    } else {
-      for (std::uint32_t row = robot.row_start()[tile]; row < robot.row_start()[tile + 1]; ++row) {
-        const std::uint32_t key = spring[std::size_t{row} * lanes].x;
-        if (key >> 16 == wanted && (key & 0xff) != air) return true;
-      }
-      return false;
+    for (std::uint32_t row = robot.row_start()[tile]; row < last; ++row) {
+      const std::uint32_t key = spring[std::size_t{row} * lanes].x;
+      found |= key >> 16 == wanted && (key & 0xff) != air;
     }
+    return found;
   }
 
-  char* const memory_;
-  bool has_list_ = false;
-  float traveled_ = 0;  // upper bound for this thread's masses since then [m]
+  float left_ = 0;  // of the reach, at least, for this thread's masses [m]
 };
 
 }  // namespace mercury::cuda

@@ -21,11 +21,9 @@ bool writes_more_than_it_reads(const LaunchConfiguration& launch, std::uint32_t 
 
 void share_tiles(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t warps) {
   launch.warps_per_robot = warps;
+  launch.inverse_warps = 65536 / warps + 1;
   launch.even_tiles = tiles % warps == 0;
 }
-
-// Of near masses that large robots list where there is room: if there are more, each step searches for them.
-constexpr std::uint32_t pairs_per_mass = 2;
 
 // Takes as many copies of the material table as leave room for `blocks` blocks on a multiprocessor. Returns false if
 // not even one copy does.
@@ -76,16 +74,16 @@ bool kernel_has_contacts(const Environment& environment, bool viscous) {
                     solver_model_of(environment, viscous));
 }
 
-// Small robots: several per block. Two blocks fill the multiprocessor's warps, so that one computes while the other
-// waits at a barrier. Robots that are apart fill them in one where two would leave room for another robot; beside other
-// size classes, such a block would wait until a multiprocessor is empty.
+// Small robots: several per block. Robots that are apart fill a multiprocessor's warps in one block, so that all share
+// one table. Others do in two, so that one computes while the other waits at a barrier; so do robots beside other size
+// classes, since a large block would wait until a multiprocessor is empty.
 bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
                  std::size_t batch_size, const BrainBytes& brain) {
   share_tiles(launch, robots.tile_stride, even_warps(robots.tile_stride, resident_warps / 2));
   const std::uint32_t warps = launch.warps_per_robot, most = resident_warps / warps;
   const bool can_be_apart = launch.apart;
   const bool whole_batch = robots.robot_count == batch_size;
-  const std::uint32_t blocks = can_be_apart && whole_batch && most % 2 != 0 ? 1u : 2u;
+  const std::uint32_t blocks = can_be_apart && whole_batch ? 1u : 2u;
   // All multiprocessors have as many robots in each round, and enough to fill a common table together.
   const std::size_t at_once = std::size_t{most / blocks * blocks} * limits.multiprocessors;
   const std::size_t rounds = (batch_size + at_once - 1) / at_once, places = rounds * blocks * limits.multiprocessors;
@@ -124,7 +122,7 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   launch.record_words = robots.record_words;
   launch.fits_cache = robots.robot_count == batch_size;
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
-  launch.apart = !same_materials && !kernel_has_contacts(configuration.environment, viscous);
+  launch.apart = !kernel_has_contacts(configuration.environment, viscous);
   const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip); };
   // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
   if (batch_size > limits.multiprocessors && fit_several(launch, robots, fields(), limits, batch_size, brain))
@@ -132,7 +130,6 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   for (const bool contacts_on_chip : {true, false})
     for (const bool valence_on_chip : {true, false}) {
       launch.contacts_on_chip = contacts_on_chip;
-      if (!contacts_on_chip) launch.listed_pairs = std::max(launch.listed_pairs, pairs_per_mass * tiles * lanes);
       launch.valence_on_chip = valence_on_chip;
       if (fit_one(launch, robots, fields(), limits, brain)) return launch;
     }
@@ -162,11 +159,7 @@ std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& c
   share_tiles(launch, parts.tile_stride,
               divide_up(parts.tile_stride, divide_up(parts.tile_stride, resident_warps / blocks)));
   const std::uint32_t fields = working_fields(configuration.solver, true);
-  const std::uint32_t least = launch.listed_pairs, slots = parts.tile_stride * lanes;
-  for (const std::uint32_t pairs : {pairs_per_mass * slots, slots, least}) {
-    launch.listed_pairs = std::max(least, pairs);
-    if (fit(launch, parts, fields, device_limits(), blocks, {})) return launch;
-  }
+  if (fit(launch, parts, fields, device_limits(), blocks, {})) return launch;
   return std::nullopt;
 }
 

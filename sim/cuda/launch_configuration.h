@@ -27,8 +27,9 @@ struct BrainBytes {
 struct LaunchConfiguration {
   std::uint32_t robots_per_block = 1;
   std::uint32_t warps_per_robot = 1;                   // or per part of one
+  std::uint32_t inverse_warps = 65537;                 // warp * inverse_warps / 65536 = number of the warp's robot
   bool even_tiles = true;                              // all warps have as many tiles, see first_tile_of()
-  bool apart = false;                                  // robots of a block may go on apart (block_layout.h)
+  bool apart = false;                                  // robots of a block go on apart (block_layout.h)
   std::uint32_t parts = 1;                             // of a robot, each in a block of its own (parts.h)
   std::uint32_t table_copy_bits = 0;                   // 2^this many copies of the material table, at most 16
   std::uint32_t table_chunks = max_materials / lanes;  // of 32 materials in a table
@@ -38,8 +39,7 @@ struct LaunchConfiguration {
   std::uint32_t contact_buckets = 0;                   // a power of two, or 0 = no self-collision
   std::uint32_t record_words = 2;                      // of the batch
   bool viscous = false;                                // springs have relaxation times
-  bool contacts_on_chip = true;                        // else after the working memory in the workspace
-  std::uint32_t listed_pairs = 1023;                   // of near masses, of a robot or a part of one
+  bool contacts_on_chip = true;                        // their grid, else after the working memory in the workspace
   BrainBytes brain;                                    // of each robot on the chip; 0 = in device memory
   std::size_t shared_bytes = 0;
   // Of a multiprocessor's memory, what its blocks need; the rest caches what they read in every step. But kernels that

@@ -3,10 +3,19 @@
 //
 // Copies are interleaved: the parameters of material m in copy c are at index m * copies + c. With 16 copies, lane i of
 // a half-warp reads copy i and no bank twice, whatever its material is (block_layout.h).
+//
+// It is written while masses move and faces push, when nobody needs it:
+//
+//   a robot of the block    springs | end of step | faces | springs | end of step | faces
+//   another one                springs | end of step | faces | springs | end of step
+//   a warp that writes               ^ | end, write |  ... ^
+//                                    |                     all wait until the table is written
+//                                    it waits until the springs of all robots are done
 #pragma once
 
 #include "sim/cuda/block_layout.h"
 #include "sim/cuda/step.h"
+#include "sim/cuda/thread_context.cuh"
 
 namespace mercury::cuda {
 
@@ -17,17 +26,22 @@ class MaterialTable {
   using Parameters = SpringParameters<solver>;
 
   // `warps` = those that share this table; `warp` = the number of this one among them. `moving` = [chunk], in shared
-  // memory: a bit for each material whose length changes by itself.
+  // memory: a bit for each material whose length changes by itself. `barriers` = the address of two SplitBarriers.
   __device__ MaterialTable(const StepArguments& arguments, std::uint32_t robot, std::uint32_t warp, std::uint32_t warps,
-                           std::uint32_t lane, Parameters* table, std::uint32_t* moving)
+                           std::uint32_t lane, Parameters* table, std::uint32_t* moving, std::uint32_t barriers = 0)
       : warp_(warp), warps_(warps), lane_(lane), chunks_(arguments.launch.table_chunks),
         copies_(1u << arguments.launch.table_copy_bits), copy_bits_(arguments.launch.table_copy_bits), table_(table),
-        moving_(moving), materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
+        moving_(moving), barriers_(barriers),
+        materials_(arguments.batch.materials + std::size_t{robot} * max_materials),
         phases_(arguments.batch.phases + std::size_t{robot} * max_materials),
         swings_(arguments.batch.swings + std::size_t{robot} * max_materials) {}
 
   // Writes the parameters of the launch's first step.
   __device__ void fill(const StepArguments& arguments) {
+    if (warp_ == 0 && lane_ == 0) {
+      springs_done().begin(arguments.launch.robots_per_block);
+      written().begin(min(chunks_, warps_));
+    }
     for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
       const std::uint32_t id = chunk * lanes + lane_;
       const Material material = materials_[id];
@@ -51,20 +65,64 @@ class MaterialTable {
       table[chunk * lanes + lane_] = materials_[chunk * lanes + lane_].relaxation_time;
   }
 
-  // Of this warp, as bits: those with a material whose length changes by itself.
-  __device__ std::uint32_t moving_chunks() const {
-    std::uint32_t moving = 0;
-    for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_)
-      moving |= (moving_[chunk] != 0 ? 1u : 0u) << chunk;
-    return moving;
-  }
-  // Writes the length factors of this many steps after the launch's first, of these chunks.
-  __device__ void update(const StepArguments& arguments, std::uint32_t step, std::uint32_t which) {
-    for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
-      if (!(which >> chunk & 1)) continue;
-      const std::uint32_t id = chunk * lanes + lane_;
-      spread(chunk, &Parameters::length_factor, factor_at(arguments, swings_[id], phases_[id], step));
+  // What this warp has to do for the table in each step, as long as no thought changes that.
+  class Duty {
+   public:
+    __device__ bool writes(std::uint32_t chunk) const { return bits_ >> chunk & 1; }
+    __device__ bool is_writer() const { return bits_ & writer; }
+    // Several warps share a table that is written in each step.
+    __device__ bool is_waited_for() const { return bits_ & waited_for; }
+    // So do several robots.
+    __device__ bool is_common() const { return bits_ & common; }
+
+   private:
+    friend MaterialTable;
+    static constexpr std::uint32_t writer = 1u << max_chunks, waited_for = 2 * writer, common = 4 * writer;
+    std::uint32_t bits_ = 0;
+  };
+  __device__ Duty duty(const LaunchConfiguration& launch) const {
+    Duty duty;
+    bool moves = false;
+    for (std::uint32_t chunk = 0; chunk < chunks_; ++chunk) {
+      if (moving_[chunk] == 0) continue;
+      moves = true;
+      if (chunk % warps_ == warp_) duty.bits_ |= 1u << chunk;
     }
+    if (warp_ < chunks_) duty.bits_ |= Duty::writer;
+    if (moves && warps_ > 1) duty.bits_ |= Duty::waited_for;
+    if (moves && launch.shared_table && launch.apart) duty.bits_ |= Duty::common;
+    return duty;
+  }
+
+  // In each step of the launch all warps call wait_until_written(), after which come springs; springs_end(), after the
+  // robot's barrier; and update() for the next step, after masses have moved.
+  __device__ void wait_until_written(const LaunchConfiguration& launch, std::uint32_t step, Duty duty) const {
+    if (!duty.is_waited_for()) return;
+    if constexpr (SplitBarrier::exists)
+      written().wait_for(step - 1);
+    else if (!launch.shared_table)
+      wait_for_robot(number_in_block(launch), launch.warps_per_robot);
+    else
+      __syncthreads();
+  }
+  __device__ void springs_end(bool first_of_robot, Duty duty) const {
+    if (duty.is_common() && first_of_robot) springs_done().arrive();
+  }
+  __device__ void update(const StepArguments& arguments, std::uint32_t step, Duty duty) {
+    if (duty.is_common()) {
+      if constexpr (!SplitBarrier::exists)
+        __syncthreads();
+      else if (duty.is_writer())
+        springs_done().wait_for(step);
+    }
+    if (!duty.is_writer()) return;
+    for (std::uint32_t chunk = warp_; chunk < chunks_; chunk += warps_) {
+      if (!duty.writes(chunk)) continue;
+      const std::uint32_t id = chunk * lanes + lane_;
+      spread(chunk, &Parameters::length_factor, factor_at(arguments, swings_[id], phases_[id], step + 1));
+    }
+    __syncwarp();
+    if (duty.is_waited_for() && lane_ == 0) written().arrive();
   }
 
   // Calls change(id, factor) for the materials below `count`, each by one lane, and writes those length factors for
@@ -93,6 +151,9 @@ class MaterialTable {
   }
 
  private:
+  __device__ SplitBarrier springs_done() const { return SplitBarrier(barriers_); }
+  __device__ SplitBarrier written() const { return SplitBarrier(barriers_ + SplitBarrier::bytes); }
+
   using Parameter = float Parameters::*;
   static constexpr Parameter coefficient = [] {
     if constexpr (solver == Solver::force)
@@ -133,6 +194,7 @@ class MaterialTable {
   const std::uint32_t warp_, warps_, lane_, chunks_, copies_, copy_bits_;
   Parameters* const table_;
   std::uint32_t* const moving_;
+  const std::uint32_t barriers_;
   const Material* const materials_;
   const MusclePhase* const phases_;
   const MuscleSwing* const swings_;

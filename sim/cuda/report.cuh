@@ -26,25 +26,6 @@
 
 namespace mercury::cuda {
 
-// Over the lanes of a warp. Turing has no instruction for it.
-__device__ inline std::uint32_t maximum_of_warp(std::uint32_t value) {
-#if __CUDA_ARCH__ >= 800
-  return __reduce_max_sync(0xffffffffu, value);
-#else
-  for (int distance = lanes / 2; distance > 0; distance /= 2)
-    value = max(value, __shfl_xor_sync(0xffffffffu, value, distance));
-  return value;
-#endif
-}
-__device__ inline std::uint32_t sum_of_warp(std::uint32_t value) {
-#if __CUDA_ARCH__ >= 800
-  return __reduce_add_sync(0xffffffffu, value);
-#else
-  for (int distance = lanes / 2; distance > 0; distance /= 2) value += __shfl_xor_sync(0xffffffffu, value, distance);
-  return value;
-#endif
-}
-
 template <class Robot>
 class RobotReporter {
  public:

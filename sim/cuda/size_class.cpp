@@ -247,7 +247,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   address_masses(0, old_fields, address_fields_);
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
-  if (!launch_.contacts_on_chip) workspace += contact_bytes(launch_, sizes_.tiles);
+  if (!launch_.contacts_on_chip) workspace += contact_grid_bytes(launch_.contact_buckets, sizes_.tiles);
   if (launch_.contact_buckets > 0) workspace += contact_workspace_bytes(sizes_.tiles);
   choose_launch_in_parts(configuration, batch_size, brain);
   if (launch_in_parts_ && launch_.contact_buckets > 0)

@@ -55,12 +55,14 @@ struct BlockPart {
                                                    const BlockContext<solver, Memory>& context) {
     const LaunchConfiguration& launch = arguments.launch;
     const ThreadContext<Memory>& thread = context.thread;
-    if (launch.shared_table)
-      return {arguments,          context.first_robot, thread.warp + context.number * launch.warps_per_robot,
-              blockDim.x / lanes, thread.lane,         context.material_table,
-              context.moving};
-    return {arguments,   thread.robot,           thread.warp,   launch.warps_per_robot,
-            thread.lane, context.material_table, context.moving};
+    // From the last warps on, since faces begin at the first.
+    std::uint32_t warp = launch.warps_per_robot - 1 - thread.warp, warps = launch.warps_per_robot, robot = thread.robot;
+    if (launch.shared_table) {
+      warp = warp * launch.robots_per_block + context.number;
+      warps *= launch.robots_per_block;
+      robot = context.first_robot;
+    }
+    return {arguments, robot, warp, warps, thread.lane, context.material_table, context.moving, context.table_barriers};
   }
 };
 
@@ -70,6 +72,8 @@ template <class Part, class Given>
 __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Given& model, std::uint32_t step) {
   Part part(arguments, model);
   const auto& thread = part.context.thread;
+  // Tables are written, and all robots have read when the next one thinks.
+  __syncthreads();
   std::uint32_t& own = part.context.next_thought[part.context.number];
   if (own == step) {
     const std::uint32_t next = think<Part::Robot::solver, typename Part::Memory>(
@@ -80,8 +84,6 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   __syncthreads();
   std::uint32_t end = arguments.steps;
   for (std::uint32_t i = 0; i < arguments.launch.robots_per_block; ++i) end = min(end, part.context.next_thought[i]);
-  // Before a robot that is apart goes on to its next thought, all have read when that will be.
-  if (arguments.launch.apart) __syncthreads();
   return end;
 }
 
@@ -103,7 +105,7 @@ __global__ void __maxnreg__(72)
       if (launch.viscous) part.materials.fill_relaxation_times(part.context.relaxation_times);
     const ThreadContext<Memory>& thread = part.context.thread;
     if (thread.warp == 0 && thread.lane == 0) {
-      *part.context.failure = {part.active() ? Failure::never : 0, Failure::never};
+      part.context.record->failure = {part.active() ? Failure::never : 0, Failure::never};
       if (!Memory::in_parts && arguments.thoughts.thinkers)
         part.context.next_thought[part.context.number] =
             part.context.has_robot ? first_thought(arguments, thread.robot) : Thoughts::none;
@@ -121,16 +123,17 @@ __global__ void __maxnreg__(72)
     std::uint32_t end = arguments.steps;
     if constexpr (!Memory::in_parts)
       if (arguments.thoughts.thinkers) end = think_if_due<Part>(arguments, model, step);
-    // What the inner loop needs is worked out behind the call that a thought is: kept across it, it would cost the loop
-    // an eighth of its speed.
+    float reach = __builtin_huge_valf();
+    if constexpr (has_contacts)
+      if (launch.contact_buckets > 0) reach = Part(arguments, model).stepper.update_contacts(step);
+    // What the inner loop needs is worked out after the calls that a thought and a list of contacts are: kept across
+    // them, it would cost the loop an eighth of its speed.
     Part part(arguments, model);
     auto& [context, materials, stepper] = part;
+    if constexpr (has_contacts) stepper.use_contacts(reach);
     stepper.prefetch_environment();
-    int list_contacts = 1;
-    const std::uint32_t moving = materials.moving_chunks();
-    for (; step < end; ++step) {
-      if constexpr (has_contacts)
-        if (launch.contact_buckets > 0 && list_contacts) stepper.list_contacts(step);
+    const auto duty = materials.duty(launch);
+    for (bool stale = false; step < end && !stale; ++step) {
       stepper.add_environment(step);
       if constexpr (solver == Solver::xpbd) {
         if (EnvironmentModel::has_faces || has_contacts || arguments.batch.perturbation_count > 0)
@@ -144,17 +147,19 @@ __global__ void __maxnreg__(72)
         stepper.export_state();
         robot_barrier<Memory, has_contacts>(launch);
       }
+      materials.wait_until_written(launch, step, duty);
       stepper.add_springs(step);
       stepper.prefetch_end();
       barrier_after_springs<Memory, has_contacts>(launch);
+      materials.springs_end(context.thread.warp == 0 && context.thread.lane == 0, duty);
       stepper.end(step);
       stepper.export_state();
       stepper.prefetch_environment();
-      materials.update(arguments, step + 1, moving);
       if constexpr (has_contacts)
-        list_contacts = stepper.contacts_stale(step);
+        stale = stepper.contacts_stale(step);
       else
         robot_barrier<Memory, has_contacts>(launch);
+      materials.update(arguments, step, duty);
     }
   }
   Part part(arguments, model);
@@ -163,6 +168,7 @@ __global__ void __maxnreg__(72)
   if (active) part.stepper.store_status();
   if constexpr (!Memory::in_parts)
     if (arguments.report) {
+      if (launch.apart) __syncthreads();  // all robots' springs are done
       part.materials.write_rates(arguments, arguments.steps);
       const std::uint32_t table = launch.shared_table ? 0 : thread.robot;
       report<typename Part::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,

@@ -16,7 +16,7 @@ class RobotStepper {
   static constexpr bool has_contacts = EnvironmentModel::has_contacts && Memory::finds_contacts;
   __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model,
                           const BlockContext<solver, Memory>& context)
-      : robot_(arguments, context.thread), model_(model), contacts_(robot_), failure_(context.failure) {}
+      : robot_(arguments, context.thread), model_(model), record_(context.record) {}
 
   __device__ bool alive() const { return batch().statuses[robot_.context().robot].exploded_step < 0; }
 
@@ -47,15 +47,18 @@ class RobotStepper {
 
   // The robot's first thread stores when it exploded, if it did.
   __device__ void store_status() const {
-    if (robot_.thread() != 0 || !failure_->happened()) return;
+    if (robot_.thread() != 0 || !record_->failure.happened()) return;
     if (robot_.part() != 0) return;  // all parts have the same failure
-    batch().statuses[robot_.context().robot] = {robot_.arguments().clock.step + failure_->step(), failure_->bad_mass};
+    batch().statuses[robot_.context().robot] = {robot_.arguments().clock.step + record_->failure.step(),
+                                                record_->failure.bad_mass};
   }
 
   // All threads of the block must call these, since they have barriers or are followed by one.
-  __device__ void begin_contacts() { contacts_.begin(robot_); }
-  __device__ void list_contacts(std::uint32_t step) { contacts_.update_list(robot_, step); }
-  __device__ bool contacts_stale(std::uint32_t step) const { return contacts_.stale(robot_, step); }
+  __device__ void begin_contacts() { contacts_.begin(robot_, *record_); }
+  __device__ float update_contacts(std::uint32_t step) const { return contacts_.update_list(robot_, *record_, step); }
+  // After update_contacts(), with what it returned.
+  __device__ void use_contacts(float reach) { contacts_.use_list(reach); }
+  __device__ bool contacts_stale(std::uint32_t step) const { return contacts_.stale(robot_, *record_, step); }
 
   // Loads early what add_environment() needs first.
   __device__ void prefetch_environment() {
@@ -64,13 +67,13 @@ class RobotStepper {
 
   // Adds the forces that depend on more than one mass: perturbations, faces, contacts.
   __device__ void add_environment(std::uint32_t step) {
-    if (failure_->before(step, phase_environment)) return;
+    if (record_->failure.before(step, phase_environment)) return;
     if (batch().perturbation_count > 0 && robot_.thread() == 0) add_perturbations();
     if constexpr (EnvironmentModel::has_faces)
       if (faces_act())
         faces_.add(robot_, model_, environment_scale(), step, dither_of_step(robot_.arguments().clock.step + step),
-                   *failure_);
-    if constexpr (has_contacts) contacts_.add(robot_);
+                   record_->failure);
+    if constexpr (has_contacts) contacts_.add(robot_, *record_);
   }
 
   // Whether the forces of the environment are to be summed apart from those of springs, by accelerate().
@@ -84,7 +87,7 @@ class RobotStepper {
   // Force solver: adds the forces of the environment to the velocity.
   __device__ void accelerate(std::uint32_t step) {
     if constexpr (EnvironmentModel::real_bodies) {
-      if (failure_->before(step, phase_prediction)) return;
+      if (record_->failure.before(step, phase_prediction)) return;
       const float inverse_scale = 1 / environment_scale();
       for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
         if (!robot_.has_mass(tile)) continue;
@@ -101,7 +104,7 @@ class RobotStepper {
 
   // XPBD: replaces the position by the prediction, and the velocity by v + dt F.
   __device__ void predict(std::uint32_t step) {
-    if (failure_->before(step, phase_prediction)) return;
+    if (record_->failure.before(step, phase_prediction)) return;
     const float inverse_scale = 1 / environment_scale();
     for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
       if (!robot_.has_mass(tile)) continue;
@@ -116,7 +119,7 @@ class RobotStepper {
 
   // Adds Algorithm 1's forces or Algorithm 2's corrections.
   __device__ void add_springs(std::uint32_t step) {
-    if (failure_->before(step, phase_springs)) return;
+    if (record_->failure.before(step, phase_springs)) return;
     const float limit = robot_.header().squared_stretch_limit;
     const float longest = add_all_springs();
     // Padding counts in add_all() and may be long, so a failure is checked again without it.
@@ -148,7 +151,7 @@ class RobotStepper {
 
   // After prefetch_end().
   __device__ void end(std::uint32_t step) {
-    if (failure_->before(step, phase_end)) return;
+    if (record_->failure.before(step, phase_end)) return;
     Distance farthest;
     // XPBD in water has the registers for two tiles at a time. Left alone, the choice of the compiler changes with
     // unrelated code.
@@ -304,7 +307,7 @@ class RobotStepper {
   }
 
   __device__ void report_failure(std::uint32_t step, Phase phase, std::uint32_t mass) {
-    failure_->report<Memory>(robot_.arguments().launch, step, phase, mass);
+    record_->failure.report<Memory>(robot_.arguments().launch, step, phase, mass);
   }
 
   // Stores a mass's new state if it is finite. If not, the mass stays where it is, and the robot has exploded.
@@ -334,8 +337,8 @@ class RobotStepper {
   InDeviceMemory next_;
   // Kernels of real bodies have no register left for a pair, and would wait to store it elsewhere.
   FacePass<!EnvironmentModel::real_bodies> faces_;
-  ContactPass<Robot, EnvironmentModel::real_bodies> contacts_;
-  Failure* const failure_;
+  ContactPass<Robot> contacts_;
+  RobotRecord* const record_;
 };
 
 }  // namespace mercury::cuda

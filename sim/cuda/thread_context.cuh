@@ -15,6 +15,25 @@ __device__ inline std::uint32_t shared_address(const void* pointer) {
   return static_cast<std::uint32_t>(__cvta_generic_to_shared(pointer));
 }
 
+// Over the lanes of a warp. Turing has no instruction for it.
+__device__ inline std::uint32_t maximum_of_warp(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(0xffffffffu, value);
+#else
+  for (int distance = lanes / 2; distance > 0; distance /= 2)
+    value = max(value, __shfl_xor_sync(0xffffffffu, value, distance));
+  return value;
+#endif
+}
+__device__ inline std::uint32_t sum_of_warp(std::uint32_t value) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_add_sync(0xffffffffu, value);
+#else
+  for (int distance = lanes / 2; distance > 0; distance /= 2) value += __shfl_xor_sync(0xffffffffu, value, distance);
+  return value;
+#endif
+}
+
 // Waits for the warps of one robot of the block, by its number there. Barrier 0 is __syncthreads().
 __device__ inline void wait_for_robot(std::uint32_t number, std::uint32_t warps) {
   if (warps == 1) return __syncwarp();
@@ -25,8 +44,54 @@ __device__ inline void wait_for_robot(std::uint32_t number, std::uint32_t warps)
 __device__ inline std::uint32_t number_in_block(const LaunchConfiguration& launch) {
   std::uint32_t thread = threadIdx.x;
   asm volatile("" : "+r"(thread));
-  return thread / (launch.warps_per_robot * lanes);
+  return (thread / lanes * launch.inverse_warps) >> 16;
 }
+
+// A barrier in shared memory at which warps arrive, and which others, or the same ones later, wait for. Its phases are
+// numbered from 0. Nobody may arrive in a phase before all have waited for the last but one.
+class SplitBarrier {
+ public:
+  static constexpr std::uint32_t bytes = 8;
+  static constexpr bool exists =
+#if __CUDA_ARCH__ >= 800
+      true;
+#else
+      false;
+#endif
+  __device__ explicit SplitBarrier(std::uint32_t address) : address_(address) {}
+
+  // By one thread, before a barrier of all. `count` = calls of arrive() that end a phase.
+  __device__ void begin(std::uint32_t count) const {
+#if __CUDA_ARCH__ >= 800
+    asm volatile("mbarrier.init.shared.b64 [%0], %1;" ::"r"(address_), "r"(count) : "memory");
+#endif
+  }
+  // By one thread, for what came before in those that it has waited for.
+  __device__ void arrive() const {
+#if __CUDA_ARCH__ >= 800
+    asm volatile("{\n.reg .b64 state;\nmbarrier.arrive.shared.b64 state, [%0];\n}" ::"r"(address_) : "memory");
+#endif
+  }
+  // Phase -1 has ended from the start.
+  __device__ void wait_for(std::uint32_t phase) const {
+#if __CUDA_ARCH__ >= 900
+    asm volatile(
+        "{\n.reg .pred ended;\nagain:\nmbarrier.try_wait.parity.shared.b64 ended, [%0], %1;\n@!ended bra again;\n}" ::
+            "r"(address_),
+        "r"(phase & 1)
+        : "memory");
+#elif __CUDA_ARCH__ >= 800
+    asm volatile(
+        "{\n.reg .pred ended;\nagain:\nmbarrier.test_wait.parity.shared.b64 ended, [%0], %1;\n@!ended bra again;\n}" ::
+            "r"(address_),
+        "r"(phase & 1)
+        : "memory");
+#endif
+  }
+
+ private:
+  std::uint32_t address_;
+};
 
 // Of all threads of the block, or of those of all parts of a robot.
 template <class Memory>
@@ -43,7 +108,7 @@ __device__ void robot_barrier() {
 // it would take registers from their steps.
 template <class Memory, bool has_contacts>
 __device__ void robot_barrier(const LaunchConfiguration& launch) {
-  if (!has_contacts && !Memory::in_parts && __builtin_expect(launch.apart, 0))
+  if (!has_contacts && !Memory::in_parts && launch.apart)
     wait_for_robot(number_in_block(launch), launch.warps_per_robot);
   else
     robot_barrier<Memory>();
@@ -94,6 +159,15 @@ struct Failure {
   __device__ std::uint32_t step() const { return (when - 1) / 4; }
 };
 
+// What the threads of a robot share in their block besides its masses.
+struct RobotRecord {
+  Failure failure;
+  std::uint32_t* pairs;      // that may touch (contacts.cuh), in device memory
+  std::uint32_t pair_count;  // of which ContactPass::most_pairs() fit
+  std::uint32_t votes[2];    // the steps before which a part of the robot last voted, plus 1
+};
+static_assert(sizeof(RobotRecord) == robot_record_bytes);
+
 // A thread's part in its robot. The tables are addresses in shared memory.
 template <class Memory>
 struct ThreadContext {
@@ -110,9 +184,10 @@ struct BlockContext {
   std::uint32_t first_robot;
   bool has_robot;  // the last block may have more room than robots
   SpringParameters<solver>* material_table;
+  std::uint32_t table_barriers;  // see MaterialTable
   float* lengths;
   float* relaxation_times;  // [table_chunks][32], if launch.viscous
-  Failure* failure;
+  RobotRecord* record;
   std::uint32_t number;         // of the robot in its block
   std::uint32_t* next_thought;  // [robot of the block], the step of the launch before which it thinks
   std::uint32_t* moving;        // [chunk] of the table, see MaterialTable
@@ -139,14 +214,16 @@ struct BlockContext {
     else
       thread.masses = batch.workspace + std::size_t{thread.robot} * batch.workspace_stride;
     const std::uint32_t number_of_table = launch.shared_table ? 0 : number;
-    material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory) +
+    table_barriers = shared_address(shared_memory) + number_of_table * table_barrier_bytes;
+    material_table = reinterpret_cast<SpringParameters<solver>*>(shared_memory + layout.barriers) +
                      number_of_table * table_copies * launch.table_chunks * lanes;
     thread.material_table = shared_address(material_table + thread.lane % table_copies);
-    failure = reinterpret_cast<Failure*>(shared_memory + layout.tables) + number;
-    next_thought = reinterpret_cast<std::uint32_t*>(shared_memory + layout.tables) + 2 * launch.robots_per_block;
+    record = reinterpret_cast<RobotRecord*>(shared_memory + layout.tables) + number;
+    next_thought =
+        reinterpret_cast<std::uint32_t*>(shared_memory + layout.tables + launch.robots_per_block * robot_record_bytes);
     moving = next_thought + launch.robots_per_block + number_of_table * max_chunks;
     brain = layout.contacts + number * launch.brain.total();
-    lengths = reinterpret_cast<float*>(shared_memory + layout.failures) + number * max_lengths;
+    lengths = reinterpret_cast<float*>(shared_memory + layout.records) + number * max_lengths;
     thread.lengths = shared_address(lengths);
     relaxation_times =
         reinterpret_cast<float*>(shared_memory + layout.lengths) + number_of_table * launch.table_chunks * lanes;

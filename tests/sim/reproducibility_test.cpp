@@ -116,6 +116,28 @@ TEST_P(Reproducibility, OneOfManySmallRobotsMovesAsAlone) {
   }
 }
 
+// Neighbors in a block then differ in what they search and list of contacts on land: nothing, what springs join, or
+// more than there is room for.
+TEST_P(Reproducibility, OneOfManyRobotsThatArePressedTogetherMovesAsAlone) {
+  const std::vector<Robot> robots(300, bodies::random_voxels({.x = 4, .y = 4, .z = 4}, 4));
+  const auto states_of = [&](std::size_t first, std::size_t count) {
+    Simulation simulation(configuration(), std::span(robots).subspan(first, count));
+    for (std::size_t i = 0; i < count; ++i) {
+      State start = bodies::shaken(robots[first + i], 0.005f, 0.1f, first + i);
+      const float pressed = std::array{1.0f, 0.6f, 0.25f}[(first + i) % 3];
+      for (Vec3& x : start.positions) x = pressed * x + Vec3{0, 0, 0.1f};
+      simulation.set_state(i, start.positions, start.velocities);
+    }
+    for (int call = 0; call < 2; ++call) simulation.step(10);
+    std::vector<std::pair<std::uint64_t, bool>> states;
+    for (std::size_t i = 0; i < count; ++i) states.emplace_back(simulation.hash(i), simulation.telemetry(i).exploded);
+    return states;
+  };
+  const auto together = states_of(0, robots.size());
+  for (const std::size_t i : {0, 1, 2, 149, 150, 151, 297, 298, 299})
+    EXPECT_EQ(states_of(i, 1).front(), together[i]) << i;
+}
+
 TEST_P(Reproducibility, TheOrderOfTheBatchDoesNotMatter) {
   auto robots = crowd();
   auto hashes = run(configuration(), robots);
