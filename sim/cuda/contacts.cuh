@@ -34,7 +34,7 @@ namespace mercury::cuda {
 //   bucket of a cell = x + row y + row^2 z, modulo the number of buckets
 //
 // Other cells may share a bucket; the distance test rejects their masses. The 27 buckets around a cell differ, so that
-// each pair is found once.
+// each pair is found once. The order in a bucket depends on timing, which does not matter, as sums are integers.
 struct ContactGrid {
   std::uint32_t* ends;     // [bucket], in `sorted`
   std::uint32_t* of_warp;  // [warp], while buckets are summed

@@ -10,7 +10,7 @@
 //   | . | . | . |
 //   +---+---+---+
 //
-// The order in a list depends on timing. It does not matter, because sums are integers (fixed_point.h).
+// CUDA sorts masses by the same cells, in buckets of its own (sim/cuda/contacts.cuh).
 #pragma once
 
 #include <cstdint>

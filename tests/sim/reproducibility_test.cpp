@@ -116,8 +116,7 @@ TEST_P(Reproducibility, OneOfManySmallRobotsMovesAsAlone) {
   }
 }
 
-// Neighbors in a block then differ in what they search and list of contacts on land: nothing, what springs join, or
-// more than there is room for.
+// Neighbors in a block then differ in how many contacts they list on land: none, some, or more than there is room for.
 TEST_P(Reproducibility, OneOfManyRobotsThatArePressedTogetherMovesAsAlone) {
   const std::vector<Robot> robots(300, bodies::random_voxels({.x = 4, .y = 4, .z = 4}, 4));
   const auto states_of = [&](std::size_t first, std::size_t count) {

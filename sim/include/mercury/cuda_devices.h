@@ -34,7 +34,7 @@ struct ChipFit {
   std::size_t most_bytes = 0;      // shared memory that a block of this device may have [bytes]
   bool on_chip = false;            // the masses stay in shared memory; otherwise in device memory, which is slower
   std::uint32_t blocks = 1;        // that step a robot together, each a part of it in its shared memory
-  bool contacts_on_chip = false;   // the contact lists stay in shared memory, too
+  bool contacts_on_chip = false;   // the grid that finds contacts stays in shared memory, too
   std::size_t robots_at_once = 0;  // robots of this kind that the device steps at the same time
 };
 
