@@ -148,7 +148,7 @@ void CudaBackend::begin_launches(const Clock& clock) const {
 void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream,
                          bool early) const {
   for (const std::uint32_t c : launch_order_) {
-    const SizeClass& robots = owned_->classes[c];
+    SizeClass& robots = owned_->classes[c];
     StepArguments arguments{.batch = robots.view(),
                             .clock = clock,
                             .constants = constants_,
@@ -161,6 +161,7 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
     do {
       arguments.clock.step = clock.step + done;
       arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, max_steps_per_launch));
+      arguments.lists_kept = arguments.steps > 0 && robots.keeps_lists();
       done += arguments.steps;
       arguments.report = done == steps && report ? report + first_report_[c] : nullptr;
       if (robots.launch_in_parts() && arguments.steps > 0) {

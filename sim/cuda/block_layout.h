@@ -13,9 +13,9 @@
 //   | one, or one per | one per  | one table    | one grid  | one per   | of the    | of the    |
 //   | robot; copies   | robot    | per robot    | per robot | robot     | first     | second    |
 //   +-----------------+----------+--------------+-----------+-----------+-----------+-----------+
-//                                  if springs'   if any      if any      working memory (tile.h)
-//                                  records have
-//                                  one word
+//                                  if springs'   if any, of  if any      working memory (tile.h)
+//                                  records have  large
+//                                  one word      robots
 //
 //   Before the material tables come their barriers, two per table.
 //   After the rest lengths come the relaxation times of the materials if springs have any, one table, or one per robot.
@@ -94,19 +94,25 @@ MERCURY_HOST_DEVICE std::uint32_t contact_grid_bytes(std::uint32_t buckets, std:
   return buckets > 0 ? (buckets + lanes) * 4 + tiles * lanes * 2 : 0;
 }
 
+// Robots of at most this many tiles have no grid: all of their masses are compared with each other.
+inline constexpr std::uint32_t most_compared_tiles = 16;
+
 // Pairs that the grid finds are written down, joined or not, and then listed, until there are this many per slot.
 inline constexpr std::uint32_t near_pairs_per_slot = 9;
 
-// Bytes in device memory that ContactPass needs: where masses were listed, and both kinds of pairs. Of a robot in parts
-// of `part_tiles` each, with the grid, which all parts share.
+// Bytes in device memory that ContactPass needs: where masses were listed, both kinds of pairs, and how many are
+// listed. Robots without a grid have a bit per pair of slots in place of the first kind. Of a robot in parts of
+// `part_tiles` each, with the grid, which all parts share.
 inline std::size_t contact_workspace_bytes(std::uint32_t tiles) {
-  return std::size_t{tiles} * lanes * (3 * sizeof(float) + 2 * near_pairs_per_slot * sizeof(std::uint32_t));
+  const std::uint32_t words_per_slot =
+      tiles > most_compared_tiles ? 2 * near_pairs_per_slot : tiles + near_pairs_per_slot;
+  return std::size_t{tiles} * lanes * (3 * sizeof(float) + words_per_slot * sizeof(std::uint32_t)) +
+         sizeof(std::uint32_t);
 }
 inline std::size_t contact_workspace_bytes_in_parts(std::uint32_t buckets, std::uint32_t tiles, std::uint32_t parts,
                                                     std::uint32_t part_tiles) {
-  return contact_grid_bytes(buckets, tiles) +
-         std::size_t{lanes} *
-             (tiles * 3 * sizeof(float) + parts * part_tiles * 2 * near_pairs_per_slot * sizeof(std::uint32_t));
+  return contact_grid_bytes(buckets, tiles) + std::size_t{lanes} * tiles * 3 * sizeof(float) +
+         parts * (std::size_t{lanes} * part_tiles * 2 * near_pairs_per_slot + 1) * sizeof(std::uint32_t);
 }
 
 // `tiles` = of the largest robot, `fields` = of a tile in working memory.
@@ -123,7 +129,7 @@ MERCURY_HOST_DEVICE BlockLayout block_layout(const LaunchConfiguration& launch, 
   layout.lengths = layout.records + (launch.record_words == 1 ? launch.robots_per_block * max_lengths * 4 : 0);
   layout.relaxation_times = layout.lengths + (launch.viscous ? tables * launch.table_chunks * lanes * 4 : 0);
   layout.contacts = layout.relaxation_times;
-  if (launch.parts == 1 && launch.contacts_on_chip)
+  if (launch.parts == 1 && launch.contacts_on_chip && tiles > most_compared_tiles)
     layout.contacts += launch.robots_per_block * contact_grid_bytes(launch.contact_buckets, tiles);
   layout.brains = layout.contacts + launch.robots_per_block * launch.brain.total();
   layout.total = layout.brains;

@@ -3,23 +3,26 @@
 //
 //   every step        |  list of near pairs  -> which of them touch -> forces
 //   now and then      |  how far has each mass moved since it was listed?
-//   if too far        |  cell grid -> list of near pairs, without those that a spring joins
+//   if too far        |  comparisons, or a cell grid -> list of near pairs, without those that a spring joins
 //
 //   0          contact distance          list radius (block_layout.h)
 //   |--------------- touch -----------------|------- listed --------|
 //                                           |<------ margin ------->|
 //
-// 1. Searching the grid costs far more than reading the list, which is short or empty unless the robot folds up. Most
-//    pairs that it finds may be joined by springs, as in water, where masses touch at nearly the distance of neighbors
-//    in a lattice. So it writes down all of them, and then each thread looks up the springs of one pair.
+// 1. Making a list costs far more than reading it, which is short or empty unless the robot folds up. Most pairs that
+//    are near may be joined by springs, as in water, where masses touch at nearly the distance of neighbors in a
+//    lattice. Small robots compare all of their masses with each other, and have a bit for each pair that is joined.
+//    Large ones search a grid and write down all near pairs; then each thread looks up the springs of one pair.
 // 2. The list can miss a pair only after one of its masses has moved half the margin, its reach. Each thread subtracts
 //    from that the farthest that one of its masses moved in each step, which costs nothing but is often too much: what
 //    swings comes back, and the whole robot travels. So when nothing is left, the true ways are computed, relative to
 //    the mean way of some masses, from the positions at which the masses were listed. They replace the sums if all are
 //    below half the reach.
-// 3. If there are more pairs than the list holds, every step searches the grid and adds the forces at once.
-// 4. Both ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
+// 3. If there are more pairs than the list holds, every step finds them and adds their forces at once.
+// 4. All ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
 //    not change a bit.
+// 5. The list is in device memory, as is what it is verified by. So it outlives a launch, and the state may be changed
+//    between two of them. A new one is made if robots or what they collide by have changed (SizeClass::keeps_lists()).
 #pragma once
 
 #include "sim/cuda/block_robot.cuh"
@@ -90,9 +93,14 @@ class ContactPass {
   // Before everything else, by all threads; a barrier follows.
   __device__ static void begin(const Robot& robot, RobotRecord& record) {
     if (robot.thread() != 0) return;
-    record.pairs = buckets(robot) > 0 ? listed_pairs(robot) : nullptr;
-    record.pair_count = buckets(robot) > 0 ? not_listed : 0;
+    const bool finds = buckets(robot) > 0;
+    record.pairs = finds ? listed_pairs(robot) : nullptr;
+    record.pair_count = !finds ? 0 : robot.arguments().lists_kept ? *kept_count(robot) : not_listed;
     record.votes[0] = record.votes[1] = 0;
+  }
+  // After everything else: leaves the list to the next launch.
+  __device__ static void keep_list(const Robot& robot, const RobotRecord& record) {
+    if (robot.thread() == 0) *kept_count(robot) = collides(robot, record) ? record.pair_count : not_listed;
   }
 
   // Before a step: makes the list of near pairs, or makes sure that it is still complete. Returns how far the masses of
@@ -121,6 +129,17 @@ class ContactPass {
   static constexpr std::uint32_t not_listed = 0xffffffff;
   using Context = ThreadContext<typename Robot::Memory>;
 
+  // Whether masses are compared with each other, not found by the grid.
+  __device__ static bool compares(const Robot& robot) {
+    if constexpr (Robot::Memory::on_chip && !in_parts)
+      return robot.arguments().batch.tile_stride <= most_compared_tiles;
+    else
+      return false;
+  }
+  __device__ static bool collides(const Robot& robot, const RobotRecord& record) {
+    return robot.stored_header().contact_distance > 0 && !record.failure.happened();
+  }
+
   __device__ static float list_radius(const Robot& robot) { return robot.stored_header().list_radius; }
   // How far a mass may go before the list must be made again [m]: half the margin, less 1 % for rounding.
   __device__ static float reach(const Robot& robot) {
@@ -135,20 +154,27 @@ class ContactPass {
   __device__ __noinline__ static float update_list_apart(const StepArguments& arguments, Context context,
                                                          RobotRecord& record, std::uint32_t step) {
     const Robot robot(arguments, context);
-    const bool collides = robot.header().contact_distance > 0 && !record.failure.happened();
+    const bool collides = ContactPass::collides(robot, record);
     float farthest = 0;
-    bool complete = count_of(record) != not_listed;
+    bool complete = !collides || count_of(record) != not_listed;
     if (complete && collides) {
       farthest = farthest_since_listed(robot);
       complete = farthest < reach(robot) / 2 && count_of(record) <= most_pairs(robot);
     }
     if (any(robot, !complete, record.votes[1], step)) {
-      make_list(robot, record, collides);
+      if (compares(robot))
+        list_by_comparing(robot, record, collides);
+      else
+        make_list(robot, record, collides);
       farthest = 0;
     }
     if (!collides) return __builtin_huge_valf();
     if (count_of(record) <= most_pairs(robot)) return reach(robot) - farthest;
-    add_by_search(robot);
+    if (compares(robot))
+      for_each_unjoined(robot, robot.header().contact_distance,
+                        [&](std::uint32_t i, std::uint32_t j) { add_pair(robot, packed(robot, i, j)); });
+    else
+      add_by_search(robot);
     return -1;
   }
   __device__ static std::uint32_t count_of(const RobotRecord& record) {
@@ -178,7 +204,81 @@ class ContactPass {
     });
   }
 
-  // Robots of a block meet at the same barriers, whatever they have found.
+  // Robots of a block meet at the same barriers, here and in make_list(), whatever they have found.
+  __device__ static void list_by_comparing(const Robot& robot, RobotRecord& record, bool collides) {
+    const bool marks = collides && count_of(record) == not_listed;
+    if (marks)
+      for (std::uint32_t k = robot.thread(); k < words_of_pairs(robot); k += robot.threads())
+        joined_pairs(robot)[k] = 0;
+    __syncthreads();
+    if (marks) mark_joined(robot);
+    if (robot.thread() == 0) record.pair_count = 0;
+    if (collides) store_positions(robot);
+    __syncthreads();
+    const std::uint32_t most = most_pairs(robot);
+    if (collides)
+      for_each_unjoined(robot, list_radius(robot), [&](std::uint32_t i, std::uint32_t j) {
+        const std::uint32_t index = atomicAdd(&record.pair_count, 1u);
+        if (index < most) record.pairs[index] = packed(robot, i, j);
+      });
+    __syncthreads();
+  }
+
+  // Sets the bits of the pairs that springs join, in both orders: bit j mod 32 of [j / 32][i].
+  __device__ static void mark_joined(const Robot& robot) {
+    const std::uint32_t slots = robot.arguments().batch.tile_stride * lanes;
+    const auto mark = [&](std::uint32_t i, std::uint32_t j) {
+      atomicOr(joined_pairs(robot) + j / lanes * slots + i, 1u << j % lanes);
+    };
+    for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile)
+      for (std::uint32_t row = robot.row_start()[tile]; row < robot.row_start()[tile + 1]; ++row) {
+        const std::uint32_t key = robot.springs()[std::size_t{row} * lanes + robot.context().lane].x;
+        if ((key & 0xff) == air) continue;
+        const std::uint32_t i = robot.own_slot(tile), j = slot_at_offset(key >> 16, Robot::fields);
+        mark(i, j);
+        mark(j, i);
+      }
+  }
+
+  // Calls visit(i, j) for every pair of slots i < j within `radius` that no spring joins. A warp compares the masses of
+  // two tiles: each lane one mass of the first with all of the second, which all lanes read together.
+  template <class Visit>
+  __device__ static void for_each_unjoined(const Robot& robot, float radius, const Visit& visit) {
+    if constexpr (Robot::Memory::on_chip && !in_parts) {
+      const std::uint32_t masses = robot.stored_header().masses, tiles = robot.stored_header().tiles,
+                          slots = robot.arguments().batch.tile_stride * lanes, lane = robot.context().lane;
+      const auto masses_of = [&](std::uint32_t tile) {  // a bit for each
+        const std::uint32_t count = masses - tile * lanes;
+        return count >= lanes ? ~0u : (1u << count) - 1;
+      };
+      for (std::uint32_t first = 0, second = robot.context().warp;; second += robot.warps()) {
+        while (first < tiles && second >= tiles) second += ++first - tiles;  // pairs (first, second >= first) in turn
+        if (first >= tiles) return;
+        const std::uint32_t i = first * lanes + lane;
+        std::uint32_t open = masses_of(second) & ~__ldcg(joined_pairs(robot) + second * slots + i);
+        if (first == second) open &= lane == lanes - 1 ? 0 : ~0u << (lane + 1);
+        if (!(masses_of(first) >> lane & 1)) open = 0;
+        const Vec3 x = robot.mass_at(i).vector(field_x);
+        const std::uint32_t others = robot.mass_at(second * lanes).at;
+        std::uint32_t near = 0;
+#pragma unroll 4
+        for (std::uint32_t k = 0; k < lanes; k += 4) {
+          const float4 xs = load_four(others + 4 * k), ys = load_four(others + 4 * k + field_bytes),
+                       zs = load_four(others + 4 * k + 2 * field_bytes);
+          const auto test = [&](std::uint32_t bit, float x2, float y2, float z2) {
+            if (squared_length(Vec3{x2, y2, z2} - x) < radius * radius) near |= 1u << (k + bit);
+          };
+          test(0, xs.x, ys.x, zs.x);
+          test(1, xs.y, ys.y, zs.y);
+          test(2, xs.z, ys.z, zs.z);
+          test(3, xs.w, ys.w, zs.w);
+        }
+        for (near &= open; near != 0; near &= near - 1)
+          visit(i, second * lanes + static_cast<std::uint32_t>(__ffs(static_cast<int>(near)) - 1));
+      }
+    }
+  }
+
   __device__ static void make_list(const Robot& robot, RobotRecord& record, bool collides) {
     fill_grid(robot, record, collides);
     if (collides) write_near_pairs(robot, record);
@@ -222,6 +322,18 @@ class ContactPass {
     }
   }
 
+  // Of this thread's masses, as they are when the list is made.
+  __device__ static void store_positions(const Robot& robot) {
+    for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile) {
+      if (!robot.has_mass(tile)) continue;
+      float* const listed = listed_positions(robot) + 3 * robot.slot_in_robot(robot.own_slot(tile));
+      const Vec3 x = robot.own_mass(tile).vector(field_x);
+      listed[0] = x.x;
+      listed[1] = x.y;
+      listed[2] = x.z;
+    }
+  }
+
   // Between barriers.
   __device__ static void fill_grid(const Robot& robot, RobotRecord& record, bool collides) {
     const ContactGrid grid = grid_of(robot);
@@ -237,13 +349,8 @@ class ContactPass {
         if (robot.has_mass(tile))
           visit(robot.slot_in_robot(robot.own_slot(tile)), robot.own_mass(tile).vector(field_x));
     };
-    for_each_own([&](std::uint32_t slot, Vec3 x) {
-      float* const listed = listed_positions(robot) + 3 * slot;
-      listed[0] = x.x;
-      listed[1] = x.y;
-      listed[2] = x.z;
-      atomicAdd(grid.ends + grid.bucket_at(x, inverse_size), 1u);
-    });
+    if (collides) store_positions(robot);
+    for_each_own([&](std::uint32_t, Vec3 x) { atomicAdd(grid.ends + grid.bucket_at(x, inverse_size), 1u); });
     robot_barrier<typename Robot::Memory>();
     sum_buckets(robot, grid);
     robot_barrier<typename Robot::Memory>();
@@ -353,15 +460,31 @@ class ContactPass {
       before = contact_grid_bytes(buckets(robot), batch.tile_stride);
     return reinterpret_cast<float*>(workspace(robot) + before);
   }
-  // [most_pairs()] of this robot or part: i << 16 | j, with i one of its slots and j of the grid.
-  __device__ static std::uint32_t* near_pairs(const Robot& robot) {
+  // What comes after listed_positions(): the three kinds of pairs, and kept_count().
+  __device__ static std::uint32_t* words(const Robot& robot) {
     const BatchView& batch = robot.arguments().batch;
     const std::uint32_t tiles = in_parts ? batch.parts.robot_tile_stride : batch.tile_stride;
-    return reinterpret_cast<std::uint32_t*>(listed_positions(robot) + 3 * tiles * lanes) +
-           2 * robot.part() * most_pairs(robot);
+    return reinterpret_cast<std::uint32_t*>(listed_positions(robot) + 3 * tiles * lanes);
+  }
+  // [tile][slot] if masses are compared: a bit for each slot of the tile, whether a spring joins the two.
+  __device__ static std::uint32_t* joined_pairs(const Robot& robot) { return words(robot); }
+  __device__ static std::uint32_t words_of_pairs(const Robot& robot) {
+    const std::uint32_t tiles = robot.arguments().batch.tile_stride;
+    return tiles * tiles * lanes;
+  }
+  // [most_pairs()] of this robot or part if there is a grid: i << 16 | j, with i one of its slots and j of the grid.
+  __device__ static std::uint32_t* near_pairs(const Robot& robot) {
+    return words(robot) + 2 * robot.part() * most_pairs(robot);
   }
   // [most_pairs()], those that springs do not join, packed().
-  __device__ static std::uint32_t* listed_pairs(const Robot& robot) { return near_pairs(robot) + most_pairs(robot); }
+  __device__ static std::uint32_t* listed_pairs(const Robot& robot) {
+    return compares(robot) ? words(robot) + words_of_pairs(robot) : near_pairs(robot) + most_pairs(robot);
+  }
+  // RobotRecord::pair_count between launches.
+  __device__ static std::uint32_t* kept_count(const Robot& robot) {
+    if (compares(robot)) return listed_pairs(robot) + most_pairs(robot);
+    return words(robot) + 2 * (in_parts ? robot.arguments().launch.parts : 1) * most_pairs(robot) + robot.part();
+  }
 
   // Calls visit(i, x_i, j) for every pair within the list radius whose slot i is one of this thread's; j is a slot of
   // the grid.

@@ -25,6 +25,26 @@ void share_tiles(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t
   launch.even_tiles = tiles % warps == 0;
 }
 
+// Those warps of a robot should write the material table that have less to do: of tiles and face tiles, of which the
+// first ones have more or less than the last (first_tile_of(), faces.cuh). With many robots per block the last ones are
+// faster all the same (docs/experiments.md).
+bool first_warps_have_less(const LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t face_tiles) {
+  constexpr std::uint32_t most_robots = 4, work_of_tile = 3;  // that of a face tile is 1
+  const std::uint32_t warps = launch.warps_per_robot;
+  if (launch.robots_per_block > most_robots) return false;
+  const auto work_of = [&](std::uint32_t warp) {
+    const std::uint32_t turn = launch.even_tiles ? warps - 1 - warp : warp;
+    const std::uint32_t own_tiles = first_tile_of(warp + 1, tiles, warps) - first_tile_of(warp, tiles, warps);
+    return work_of_tile * own_tiles + (face_tiles + warps - 1 - turn) / warps;
+  };
+  std::uint32_t first = 0, last = 0;
+  for (std::uint32_t i = 0; i < std::min(warps, divide_up(launch.table_chunks, launch.robots_per_block)); ++i) {
+    first += work_of(i);
+    last += work_of(warps - 1 - i);
+  }
+  return first < last;
+}
+
 // Takes as many copies of the material table as leave room for `blocks` blocks on a multiprocessor. Returns false if
 // not even one copy does.
 bool fit_tables(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
@@ -78,7 +98,7 @@ bool kernel_has_contacts(const Environment& environment, bool viscous) {
 // one table. Others do in two, so that one computes while the other waits at a barrier; so do robots beside other size
 // classes, since a large block would wait until a multiprocessor is empty.
 bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
-                 std::size_t batch_size, const BrainBytes& brain) {
+                 std::size_t batch_size, const BrainBytes& brain, std::uint32_t face_tiles) {
   share_tiles(launch, robots.tile_stride, even_warps(robots.tile_stride, resident_warps / 2));
   const std::uint32_t warps = launch.warps_per_robot, most = resident_warps / warps;
   const bool can_be_apart = launch.apart;
@@ -93,6 +113,7 @@ bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint
   for (n = std::min({n, most / blocks, robots.robot_count}); n > 0; --n) {
     launch.robots_per_block = n;
     launch.apart = can_be_apart && n > 1;
+    launch.first_warps_write = first_warps_have_less(launch, robots.tile_stride, face_tiles);
     if (fit(launch, robots, fields, limits, most / n, brain)) return true;
   }
   return false;
@@ -103,7 +124,7 @@ bool fit_one(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t
              const BrainBytes& brain) {
   const std::uint32_t tiles = robots.tile_stride;
   launch.robots_per_block = 1;
-  launch.apart = false;
+  launch.apart = launch.first_warps_write = false;
   share_tiles(launch, tiles, divide_up(tiles, divide_up(tiles, resident_warps)));
   return fit(launch, robots, fields, limits, 1, brain);
 }
@@ -124,8 +145,11 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
   launch.apart = !kernel_has_contacts(configuration.environment, viscous);
   const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip); };
+  const std::uint32_t face_tiles =
+      has_face_forces(configuration.environment) ? divide_up(robots.face_stride, lanes) : 0;
   // With fewer robots than multiprocessors, each robot gets a multiprocessor to itself.
-  if (batch_size > limits.multiprocessors && fit_several(launch, robots, fields(), limits, batch_size, brain))
+  if (batch_size > limits.multiprocessors &&
+      fit_several(launch, robots, fields(), limits, batch_size, brain, face_tiles))
     return launch;
   for (const bool contacts_on_chip : {true, false})
     for (const bool valence_on_chip : {true, false}) {

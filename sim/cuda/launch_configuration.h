@@ -30,6 +30,7 @@ struct LaunchConfiguration {
   std::uint32_t inverse_warps = 65537;                 // warp * inverse_warps / 65536 = number of the warp's robot
   bool even_tiles = true;                              // all warps have as many tiles, see first_tile_of()
   bool apart = false;                                  // robots of a block go on apart (block_layout.h)
+  bool first_warps_write = false;                      // the material table, else the last ones
   std::uint32_t parts = 1;                             // of a robot, each in a block of its own (parts.h)
   std::uint32_t table_copy_bits = 0;                   // 2^this many copies of the material table, at most 16
   std::uint32_t table_chunks = max_materials / lanes;  // of 32 materials in a table

@@ -137,6 +137,15 @@ __device__ inline float2 load_pair(std::uint32_t at) {
   return value;
 }
 
+// Four, which lie in 16 aligned bytes.
+__device__ inline float4 load_four(std::uint32_t at) {
+  float4 value;
+  asm volatile("ld.shared.v4.f32 {%0, %1, %2, %3}, [%4];"
+               : "=f"(value.x), "=f"(value.y), "=f"(value.z), "=f"(value.w)
+               : "r"(at));
+  return value;
+}
+
 // A mass in working memory.
 template <class Memory>
 struct Mass {

@@ -48,6 +48,7 @@ void SizeClass::for_each_array(const Visit& visit) {
 }
 
 std::uint32_t SizeClass::append(std::size_t count) {
+  lists_kept_ = false;
   parts_stale_ = true;
   const std::uint32_t first = size();
   headers_.resize(first + count);
@@ -134,6 +135,7 @@ void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks) {
 void SizeClass::publish(std::uint32_t first_place, const Configuration& configuration) {
   const std::size_t count = size() - first_place;
   if (count == 0) return;
+  lists_kept_ = false;
   find_same_materials(first_place);
   parallel_for(first_place, size(),
                [&](std::size_t place) { describe(static_cast<std::uint32_t>(place), configuration); });
@@ -146,6 +148,7 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
 }
 
 void SizeClass::truncate(std::uint32_t first_place) {
+  lists_kept_ = false;
   parts_stale_ = true;
   headers_.resize(first_place);
   robots_.resize(first_place);
@@ -184,6 +187,7 @@ std::vector<std::uint32_t> SizeClass::compact(const std::vector<bool>& keep) {
 }
 
 void SizeClass::configure(const Configuration& configuration) {
+  lists_kept_ = false;
   parallel_for(0, size(), [&](std::size_t place) { describe(static_cast<std::uint32_t>(place), configuration); });
   points_stale_ = true;
   publish_headers();
@@ -193,6 +197,7 @@ void SizeClass::publish_headers() { device_headers_.write(0, headers_, urgent_->
 
 bool SizeClass::set_environments(std::span<const std::uint32_t> places, std::span<const Environment> environments,
                                  const Configuration& configuration) {
+  lists_kept_ = false;
   const bool kernel_changes = launch_in_parts_ && !environments_differ();
   parallel_for(0, places.size(), [&](std::size_t i) {
     environments_[places[i]] = environments[i];
@@ -230,6 +235,7 @@ void SizeClass::publish_own_models(const Configuration& configuration) {
 }
 
 void SizeClass::choose_launch(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain) {
+  lists_kept_ = false;
   if (points_stale_) publish_backs(configuration);
   publish_points();
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;

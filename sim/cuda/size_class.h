@@ -107,6 +107,9 @@ class SizeClass {
   bool uses(std::uint32_t place, MaterialId id) const { return measures_[place].used[id]; }
   DrivenMaterial driven_material(std::uint32_t place, MaterialId id, std::uint32_t setting) const;
   void set_perturbations(std::span<const DevicePerturbation> perturbations);
+  // Before each launch of steps: whether the lists of contacts that the last one left are still of these robots. States
+  // may have changed.
+  bool keeps_lists() { return std::exchange(lists_kept_, true); }
 
   const Robot& robot(std::uint32_t place) const { return *robots_[place]; }
   const SlotOrder& order_of(std::uint32_t place) const { return *slot_tables_[place]; }
@@ -171,6 +174,7 @@ class SizeClass {
   bool same_materials_ = false;  // all robots have the same table
   bool points_stale_ = true, valences_have_masses_ = false;
   bool phases_stale_ = true;
+  bool lists_kept_ = false;  // see keeps_lists()
   Clock phase_clock_;
 
   ChunkedArray<RobotHeader> device_headers_;

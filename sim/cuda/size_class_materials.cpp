@@ -103,6 +103,7 @@ void SizeClass::find_same_materials(std::uint32_t first_changed) {
 }
 
 void SizeClass::publish_materials(std::uint32_t place, const Configuration& configuration) {
+  lists_kept_ = false;
   describe(place, configuration);
   device_headers_.write(place, std::span(headers_).subspan(place, 1), urgent_->get());
   device_materials_.write(place, table(place), urgent_->get());

@@ -55,8 +55,8 @@ struct BlockPart {
                                                    const BlockContext<solver, Memory>& context) {
     const LaunchConfiguration& launch = arguments.launch;
     const ThreadContext<Memory>& thread = context.thread;
-    // From the last warps on, since faces begin at the first.
-    std::uint32_t warp = launch.warps_per_robot - 1 - thread.warp, warps = launch.warps_per_robot, robot = thread.robot;
+    std::uint32_t warp = launch.first_warps_write ? thread.warp : launch.warps_per_robot - 1 - thread.warp,
+                  warps = launch.warps_per_robot, robot = thread.robot;
     if (launch.shared_table) {
       warp = warp * launch.robots_per_block + context.number;
       warps *= launch.robots_per_block;
@@ -166,6 +166,8 @@ __global__ void __maxnreg__(72)
   const ThreadContext<Memory>& thread = part.context.thread;
   const bool active = part.active();
   if (active) part.stepper.store_status();
+  if constexpr (has_contacts)
+    if (part.context.has_robot && arguments.steps > 0) part.stepper.keep_contacts();
   if constexpr (!Memory::in_parts)
     if (arguments.report) {
       if (launch.apart) __syncthreads();  // all robots' springs are done

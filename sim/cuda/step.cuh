@@ -56,6 +56,10 @@ class RobotStepper {
   // All threads of the block must call these, since they have barriers or are followed by one.
   __device__ void begin_contacts() { contacts_.begin(robot_, *record_); }
   __device__ float update_contacts(std::uint32_t step) const { return contacts_.update_list(robot_, *record_, step); }
+  // At the end of the launch.
+  __device__ void keep_contacts() const {
+    if (robot_.arguments().launch.contact_buckets > 0) contacts_.keep_list(robot_, *record_);
+  }
   // After update_contacts(), with what it returned.
   __device__ void use_contacts(float reach) { contacts_.use_list(reach); }
   __device__ bool contacts_stale(std::uint32_t step) const { return contacts_.stale(robot_, *record_, step); }
@@ -68,7 +72,7 @@ class RobotStepper {
   // Adds the forces that depend on more than one mass: perturbations, faces, contacts.
   __device__ void add_environment(std::uint32_t step) {
     if (record_->failure.before(step, phase_environment)) return;
-    if (batch().perturbation_count > 0 && robot_.thread() == 0) add_perturbations();
+    if (batch().perturbation_count > 0) add_perturbations();
     if constexpr (EnvironmentModel::has_faces)
       if (faces_act())
         faces_.add(robot_, model_, environment_scale(), step, dither_of_step(robot_.arguments().clock.step + step),
@@ -263,6 +267,7 @@ class RobotStepper {
   }
 
   __device__ void add_perturbations() {
+    if (robot_.thread() != 0) return;
     for (std::uint32_t p = 0; p < batch().perturbation_count; ++p) {
       const DevicePerturbation& perturbation = batch().perturbations[p];
       if (perturbation.robot != robot_.context().robot) continue;

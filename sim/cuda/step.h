@@ -22,6 +22,7 @@ struct StepArguments {
   StepConstants constants;
   float stiffness_scale = 1;
   std::uint32_t steps = 0;
+  bool lists_kept = false;  // the lists of contacts that the last launch left are still of these robots
   LaunchConfiguration launch;
   DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
   Thoughts thoughts;

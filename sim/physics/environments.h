@@ -63,12 +63,12 @@ struct OceanModel {
   static constexpr bool has_faces = true, has_contacts = false, has_ground = false, still_water = false;
   static constexpr bool has_tangential_drag = true, real_bodies = false, has_flow = true, has_one_sided_water = false;
   Vec3 gravity, flow, thrice_flow;
-  float half_density = 0, drag_minus_lift = 0, lift = 0, tangential = 0;
+  float half_density = 0, of_sum = 0, drag_minus_lift = 0, lift = 0, tangential = 0;
 
   OceanModel(const FaceDrag& water, Vec3 gravity_)
       : gravity(gravity_), flow(water.flow), thrice_flow(3.0f * water.flow), half_density(water.density / 2),
-        drag_minus_lift(water.drag_coefficient - water.lift_coefficient), lift(water.lift_coefficient),
-        tangential(water.drag_tangential) {}
+        of_sum(half_density / -54), drag_minus_lift(water.drag_coefficient - water.lift_coefficient),
+        lift(water.lift_coefficient), tangential(water.drag_tangential) {}
 
   template <class Vector>
   MERCURY_HOST_DEVICE Vector on_mass(Vector) const {
@@ -114,14 +114,15 @@ struct OceanModel {
     return {factor * along.x, factor * along.y, factor * along.z};
   }
 
-  // Coefficients for the force on one corner, times `scale`, for vectors that need no multiplication to compute:
+  // Coefficients for the force on one corner, times `scale`, a power of two, for vectors that need no multiplication to
+  // compute; `of_sum` = rho / 2 / -54:
   //
   //   normal = -2 A n      cross product of two edges
   //   sum    = -3 u        sum of the corners' velocities, minus 3 flow
   //   F / 3  = rho A / 6 (... (u . n) u + ... |u|^2 n)
   //          = -rho / 108 (... |normal . sum| sum + ... |sum|^2 normal)
   MERCURY_HOST_DEVICE FaceCoefficients<float> of_sums(float scale) const {
-    const float common = -half_density * scale / 54;
+    const float common = of_sum * scale;
     return {common * drag_minus_lift, common * lift, common * tangential, 0};
   }
   // Coefficients for A n and u themselves.
@@ -161,11 +162,11 @@ struct ResistiveModel {
   static constexpr bool has_faces = true, has_contacts = true, has_ground = false, still_water = false;
   static constexpr bool has_tangential_drag = true, real_bodies = true, has_flow = true, has_one_sided_water = false;
   Vec3 gravity, flow, thrice_flow;
-  float half_density = 0, normal = 0, tangential = 0;
+  float half_density = 0, of_sum = 0, normal = 0, tangential = 0;
 
   ResistiveModel(const ResistiveDrag& water, Vec3 gravity_)
       : gravity(gravity_), flow(water.flow), thrice_flow(3.0f * water.flow), half_density(water.density / 2),
-        normal(water.normal_coefficient), tangential(water.tangential_coefficient) {}
+        of_sum(half_density / -54), normal(water.normal_coefficient), tangential(water.tangential_coefficient) {}
 
   template <class Vector, class Real>
   MERCURY_HOST_DEVICE Vector on_mass(Vector, Real weight) const {
@@ -194,7 +195,7 @@ struct ResistiveModel {
 
   // As those of OceanModel.
   MERCURY_HOST_DEVICE FaceCoefficients<float> of_sums(float scale) const {
-    const float common = -half_density * scale / 54;
+    const float common = of_sum * scale;
     return {0, 0, common * tangential, common * normal};
   }
 };
@@ -305,7 +306,7 @@ struct GeneralModel : OceanModel {
   }
   MERCURY_HOST_DEVICE FaceCoefficients<float> of_sums(float scale) const {
     FaceCoefficients<float> by = OceanModel::of_sums(scale);
-    by.normal = -half_density * scale / 54 * normal;
+    by.normal = of_sum * scale * normal;
     return by;
   }
   MERCURY_HOST_DEVICE FaceCoefficients<float> coefficients() const {
