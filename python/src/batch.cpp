@@ -312,10 +312,6 @@ SharedRobots Batch::robots() const {
   return use([&](const Simulation&) { return robots_; });
 }
 
-std::size_t Batch::robot_index(std::int64_t index) const {
-  return use([&](const Simulation& simulation) { return checked_index(index, simulation.size()); });
-}
-
 std::string Batch::device() const {
   return use([](const Simulation& simulation) -> std::string {
     if (const int device = simulation.cuda_device(); device >= 0) return "cuda:" + std::to_string(device);

@@ -57,8 +57,7 @@ class Batch {
   nb::object brain_arrays();
 
   SharedRobots robots() const;
-  std::size_t robot_index(std::int64_t index) const;  // throws IndexError
-  std::string device() const;                         // "cpu", "cuda:0", "cuda:all"
+  std::string device() const;  // "cpu", "cuda:0", "cuda:all"
 
  private:
   static constexpr std::size_t exploded_place = 4, actuation_place = 5, brains_place = 6;
