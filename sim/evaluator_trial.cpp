@@ -14,7 +14,7 @@ namespace {
 
 // Of a call of step() [s]. On a GPU each call ends with some robots stepping alone, so calls are longer there.
 constexpr double cpu_call = 0.1, cuda_call = 0.3;
-constexpr std::size_t most_samples = 1u << 19;  // of all robots in a call
+constexpr std::size_t most_samples = 1u << 16;  // of all robots in a call
 
 double size_of(const Robot& robot) { return static_cast<double>(robot.springs.size() + robot.masses.size()); }
 

@@ -381,10 +381,7 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
   // These may need the positions between samples.
   if (measures_folding() || parts_->upright || parts_->host_thinks() || parts_->pushes_within(steps)) {
-    for (std::size_t first = 0; first < samples.size(); first += size()) {
-      step(every);
-      std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));
-    }
+    parts_->sample_between_calls(*this, every, samples);
     if (samples.empty()) parts_->clock.step += steps;
     return samples;
   }
@@ -395,8 +392,29 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
     parts_->after_change();
   }
   parts_->clock.step += steps;
-  for (std::size_t i = 0; i < samples.size(); ++i) parts_->add_explosion(samples[i], i % size(), statuses[i]);
+  parallel_for(0, size(), [&](std::size_t i) {
+    for (std::size_t k = i; k < samples.size(); k += size()) parts_->add_explosion(samples[k], i, statuses[k]);
+  });
   return samples;
+}
+
+// While a GPU makes the steps after a sample, the CPU finds out how bodies are folded in it.
+void Simulation::Parts::sample_between_calls(Simulation& simulation, std::int64_t every, std::span<Telemetry> samples) {
+  std::span<Telemetry> last;
+  std::vector<Vec3> positions;
+  const auto add_posture_of_last = [&] { add_posture(last, positions); };
+  for (; !samples.empty(); samples = samples.subspan(size())) {
+    if (backend->cuda_device() >= 0) {
+      parallel_tasks(0, 2, [&](std::size_t task) { task == 0 ? simulation.step(every) : add_posture_of_last(); });
+    } else {
+      add_posture_of_last();
+      simulation.step(every);
+    }
+    last = samples.first(size());
+    report(last);
+    positions = positions_for_posture();
+  }
+  add_posture_of_last();
 }
 
 void Simulation::reset() {

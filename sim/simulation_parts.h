@@ -68,8 +68,13 @@ struct Simulation::Parts {
   void put_at_rest(std::size_t first);
 
   bool find_cells() const;  // returns whether the folding of any robot is measured
-  // To telemetry of all robots, explosions included, what positions say and somebody asks for.
-  void add_posture(std::span<Telemetry> telemetry) const;
+  // Fills in telemetry of all robots, but for what add_posture() does.
+  void report(std::span<Telemetry> telemetry) const;
+  // Fills in what these positions say of the robots; those of now, or none if nobody asks for it.
+  void add_posture(std::span<Telemetry> telemetry, std::span<const Vec3> positions) const;
+  std::vector<Vec3> positions_for_posture() const;
+  // step() and telemetry() in turn, until there are all samples.
+  void sample_between_calls(Simulation& simulation, std::int64_t every, std::span<Telemetry> samples);
   // Without the explosion.
   State state(std::size_t robot) const;
   // All materials of a robot as they are now. Ids that the robot does not have are air.

@@ -148,12 +148,15 @@ void Simulation::restore(const BatchState& state) {
 
 std::vector<Telemetry> Simulation::telemetry() const {
   std::vector<Telemetry> all(size());
-  std::vector<RobotStatus>& statuses = parts_->reported;
-  statuses.resize(all.size());
-  parts_->backend->report(parts_->clock, all, statuses);
-  for (std::size_t i = 0; i < all.size(); ++i) parts_->add_explosion(all[i], i, statuses[i]);
-  parts_->add_posture(all);
+  parts_->report(all);
+  parts_->add_posture(all, parts_->positions_for_posture());
   return all;
+}
+
+void Simulation::Parts::report(std::span<Telemetry> telemetry) const {
+  reported.resize(telemetry.size());
+  backend->report(clock, telemetry, reported);
+  for (std::size_t i = 0; i < telemetry.size(); ++i) add_explosion(telemetry[i], i, reported[i]);
 }
 
 void Simulation::measure_folding(bool on) {
@@ -183,15 +186,19 @@ bool Simulation::Parts::find_cells() const {
   return std::ranges::any_of(cells, [](const auto& of_robot) { return *of_robot != nullptr; });
 }
 
-void Simulation::Parts::add_posture(std::span<Telemetry> telemetry) const {
-  if (telemetry.empty()) return;
-  const bool folds = find_cells();
-  if (!folds && !upright) return;
+std::vector<Vec3> Simulation::Parts::positions_for_posture() const {
+  if (!find_cells() && !upright) return {};
   std::vector<Vec3> positions(offsets.back());
   backend->read_positions(positions);
-  parallel_for(0, size(), [&](std::size_t i) {
+  return positions;
+}
+
+void Simulation::Parts::add_posture(std::span<Telemetry> telemetry, std::span<const Vec3> positions) const {
+  if (positions.empty()) return;
+  const bool folds = folding_of != nullptr;
+  parallel_for(0, telemetry.size(), [&](std::size_t i) {
     if (telemetry[i].exploded) return;
-    const auto own = std::span<const Vec3>(positions).subspan(offsets[i], masses(i));
+    const auto own = positions.subspan(offsets[i], masses(i));
     if (upright) telemetry[i].upright = static_cast<float>(body_frame(*robots[i], own).up());
     const BodyCells* of_robot = folds ? cells[i]->get() : nullptr;
     if (!of_robot) return;

@@ -87,7 +87,7 @@ class CudaBackend final : public Backend {
   // What must be released while the device is the current one.
   struct Owned {
     SizeClasses classes;
-    Event start{Event::timed}, end{Event::timed}, sleepy_end{Event::sleepy}, forked;
+    Event start{Event::timed}, end{Event::timed}, forked;
     Event queued;                          // the end of what was last queued in a caller's stream
     DeviceArray<RobotView> views;          // [robot], if views_valid_
     DeviceArray<float> rest;               // [mass][6], positions and velocities at the start, if rest_valid_
@@ -95,13 +95,17 @@ class CudaBackend final : public Backend {
     std::vector<DrivenMaterial> driven;    // what these drive
     DeviceBrains brains;                   // none think if it is empty
     MappedArray<DeviceTelemetry> reports;  // of the current state if report_valid_
-    DeviceArray<DeviceTelemetry> samples;  // of step_and_report()
+    MappedArray<DeviceTelemetry> samples;  // of step_and_report(): of two portions
+    Event reported[2]{Event(Event::sleepy), Event(Event::sleepy)};  // the ends of these
+    Stream reporting{true};                                         // waits for them
   };
 
   const SizeClasses& classes() const { return owned_->classes; }
   // The stream of the largest robots. Those of the other classes start after it, and it ends after them.
   const Stream& main() const { return owned_->classes[launch_order_.front()].stream(); }
   SizeClass& class_of(std::size_t robot) const { return owned_->classes[places_[robot].size_class]; }
+  // Writes one vector per mass, see SizeClass.
+  void read_all(Field first_field, std::span<Vec3> out) const;
   static RobotStatus status_of(const DeviceStatus& status) { return {status.exploded_step, status.bad_mass}; }
 
   void use_device() const { check(cudaSetDevice(device_), "choosing the device"); }
@@ -142,7 +146,7 @@ class CudaBackend final : public Backend {
               bool early = false) const;
   // fork_launches() and join_launches() in main(), with the time in between.
   void begin_launches(const Clock& clock) const;
-  void end_launches(Event& end);
+  void end_launches();
 
   DeviceTelemetry* reports_on_device() const;
   template <class ReportAt>

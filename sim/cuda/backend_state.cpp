@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mercury/parallel.h"
 #include "sim/cuda/backend.h"
 
 namespace mercury::cuda {
@@ -51,14 +52,15 @@ void CudaBackend::put_at_rest_in_stream(std::span<const Robot* const> robots, st
   leave(stream);
 }
 
-void CudaBackend::read_positions(std::span<Vec3> out) const {
-  settle();
-  for (const auto& robots : classes()) robots->read_all(field_x, out);
-}
+void CudaBackend::read_positions(std::span<Vec3> out) const { read_all(field_x, out); }
+void CudaBackend::read_velocities(std::span<Vec3> out) const { read_all(field_v, out); }
 
-void CudaBackend::read_velocities(std::span<Vec3> out) const {
+void CudaBackend::read_all(Field first_field, std::span<Vec3> out) const {
   settle();
-  for (const auto& robots : classes()) robots->read_all(field_v, out);
+  parallel_tasks(0, classes().size(), [&](std::size_t c) {
+    use_device();
+    classes()[c].read_all(first_field, out);
+  });
 }
 
 bool CudaBackend::copy_positions(float* device_out) const {

@@ -71,7 +71,7 @@ inline constexpr std::uint32_t max_chunks = max_materials / lanes;
 // Of a material table's two barriers.
 inline constexpr std::uint32_t table_barrier_bytes = 16;
 // Of a RobotRecord (thread_context.cuh).
-inline constexpr std::uint32_t robot_record_bytes = 32;
+inline constexpr std::uint32_t robot_record_bytes = 40;
 
 // Ends of the parts of shared memory [bytes].
 struct BlockLayout {

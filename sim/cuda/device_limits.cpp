@@ -17,11 +17,16 @@ int attribute(cudaDeviceAttr which) {
 }  // namespace
 
 DeviceLimits device_limits() {
+  // Before, a block may have taken all named barriers (SplitBarrier::exists), of which there are 64.
+  constexpr std::uint32_t with_split_barriers = 8, without = 4;
   const auto limit = [](cudaDeviceAttr which) { return static_cast<std::uint32_t>(attribute(which)); };
   return {.shared_per_block = limit(cudaDevAttrMaxSharedMemoryPerBlockOptin),
           .shared_per_multiprocessor = limit(cudaDevAttrMaxSharedMemoryPerMultiprocessor),
           .reserved_per_block = limit(cudaDevAttrReservedSharedMemoryPerBlock),
           .multiprocessors = limit(cudaDevAttrMultiProcessorCount),
+          .blocks_per_multiprocessor = limit(cudaDevAttrComputeCapabilityMajor) < with_split_barriers
+                                           ? without
+                                           : limit(cudaDevAttrMaxBlocksPerMultiprocessor),
           .clusters = attribute(cudaDevAttrClusterLaunch) != 0};
 }
 

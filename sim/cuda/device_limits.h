@@ -13,7 +13,8 @@ struct DeviceLimits {
   std::uint32_t shared_per_multiprocessor;  // [bytes]
   std::uint32_t reserved_per_block;         // by the system, of the multiprocessor's shared memory [bytes]
   std::uint32_t multiprocessors;
-  bool clusters;  // whether blocks can reach each other's shared memory
+  std::uint32_t blocks_per_multiprocessor;  // of a step kernel with contacts, if they are small
+  bool clusters;                            // whether blocks can reach each other's shared memory
 };
 
 DeviceLimits device_limits();

@@ -96,12 +96,26 @@ bool kernel_has_contacts(const Environment& environment, bool viscous) {
 
 // Small robots: several per block. Robots that are apart fill a multiprocessor's warps in one block, so that all share
 // one table. Others do in two, so that one computes while the other waits at a barrier; so do robots beside other size
-// classes, since a large block would wait until a multiprocessor is empty.
+// classes, since a large block would wait until a multiprocessor is empty. Robots that would wait for each other and
+// share no table have blocks of their own.
 bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fields, const DeviceLimits& limits,
                  std::size_t batch_size, const BrainBytes& brain, std::uint32_t face_tiles) {
-  share_tiles(launch, robots.tile_stride, even_warps(robots.tile_stride, resident_warps / 2));
+  const std::size_t robots_each = (batch_size + limits.multiprocessors - 1) / limits.multiprocessors;
+  const auto share = static_cast<std::uint32_t>(std::max(resident_warps / robots_each, std::size_t{1}));
+  share_tiles(launch, robots.tile_stride, even_warps(robots.tile_stride, resident_warps / 2, share));
   const std::uint32_t warps = launch.warps_per_robot, most = resident_warps / warps;
   const bool can_be_apart = launch.apart;
+  const auto fits = [&](std::uint32_t n) {
+    launch.robots_per_block = n;
+    launch.apart = can_be_apart && n > 1;
+    launch.first_warps_write = first_warps_have_less(launch, robots.tile_stride, face_tiles);
+    return fit(launch, robots, fields, limits, most / n, brain);
+  };
+  if (!can_be_apart && !launch.shared_table) {
+    for (std::uint32_t n = divide_up(most, limits.blocks_per_multiprocessor); n <= most; ++n)
+      if (fits(n)) return true;
+    return false;
+  }
   const bool whole_batch = robots.robot_count == batch_size;
   const std::uint32_t blocks = can_be_apart && whole_batch ? 1u : 2u;
   // All multiprocessors have as many robots in each round, and enough to fill a common table together.
@@ -110,12 +124,8 @@ bool fit_several(LaunchConfiguration& launch, const BatchView& robots, std::uint
   auto n = static_cast<std::uint32_t>((batch_size + places - 1) / places);
   if (launch.shared_table) n = std::max(n, divide_up(launch.table_chunks, warps));
   if (!whole_batch) n = most;
-  for (n = std::min({n, most / blocks, robots.robot_count}); n > 0; --n) {
-    launch.robots_per_block = n;
-    launch.apart = can_be_apart && n > 1;
-    launch.first_warps_write = first_warps_have_less(launch, robots.tile_stride, face_tiles);
-    if (fit(launch, robots, fields, limits, most / n, brain)) return true;
-  }
+  for (n = std::min({n, most / blocks, robots.robot_count}); n > 0; --n)
+    if (fits(n)) return true;
   return false;
 }
 

@@ -51,15 +51,16 @@ struct LaunchConfiguration {
 
 // The warps that the kernel's registers allow on a multiprocessor.
 inline constexpr std::uint32_t resident_warps = 28;
-// Tiles that a warp computes in turn: enough to hide the cost of a barrier, few enough to share the work evenly.
-inline constexpr std::uint32_t min_tiles_per_warp = 3;
+// Tiles that a warp computes in turn where there are more tiles than warps: enough to hide the cost of a barrier, few
+// enough to share the work evenly.
+inline constexpr std::uint32_t most_turns = 3;
 
 MERCURY_HOST_DEVICE constexpr std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
 
-// The fewest warps that finish a robot's tiles in as many turns as `max_warps` would.
-constexpr std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps) {
-  const std::uint32_t turns = std::max(divide_up(tiles, max_warps), std::min(min_tiles_per_warp, tiles));
-  return divide_up(tiles, turns);
+// The fewest warps that finish a robot's tiles in as many turns as `share` warps would, but in no more than most_turns
+// if `max_warps` can do that. `share` = of a multiprocessor's warps, if all robots have as many; with many robots, 1.
+constexpr std::uint32_t even_warps(std::uint32_t tiles, std::uint32_t max_warps, std::uint32_t share = 1) {
+  return divide_up(tiles, std::max(divide_up(tiles, max_warps), std::min(most_turns, divide_up(tiles, share))));
 }
 
 // The first tile of each of a robot's warps, if they share its tiles; that of `warps` is the end. The last warps have a

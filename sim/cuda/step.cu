@@ -78,7 +78,7 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   if (own == step) {
     const std::uint32_t next = think<Part::Robot::solver, typename Part::Memory>(
         arguments, part.context.brain, thread.masses, part.context.material_table, part.context.moving,
-        part.context.number, thread.robot, thread.warp, step);
+        SplitBarrier(shared_address(&part.context.record->thinking)), thread.robot, thread.warp, step);
     if (thread.warp == 0 && thread.lane == 0) own = next;
   }
   __syncthreads();
@@ -106,17 +106,21 @@ __global__ void __maxnreg__(72)
     const ThreadContext<Memory>& thread = part.context.thread;
     if (thread.warp == 0 && thread.lane == 0) {
       part.context.record->failure = {part.active() ? Failure::never : 0, Failure::never};
-      if (!Memory::in_parts && arguments.thoughts.thinkers)
+      if (!Memory::in_parts && arguments.thoughts.thinkers) {
+        SplitBarrier(shared_address(&part.context.record->thinking)).begin(launch.warps_per_robot);
         part.context.next_thought[part.context.number] =
             part.context.has_robot ? first_thought(arguments, thread.robot) : Thoughts::none;
+      }
     }
-    if (!Memory::in_parts && arguments.thoughts.thinkers && arguments.steps > 0 && part.context.has_robot &&
-        arguments.thoughts.thinkers[thread.robot] != Thoughts::none)
-      load_brain<typename Part::Memory>(arguments, part.context.brain, part.context.number, thread.robot, thread.warp);
+    const bool has_brain = !Memory::in_parts && arguments.thoughts.thinkers && arguments.steps > 0 &&
+                           part.context.has_robot && arguments.thoughts.thinkers[thread.robot] != Thoughts::none;
+    if (has_brain) load_brain<Memory>(arguments, part.context.brain, thread.robot, thread.warp);
     part.stepper.load_lengths(part.context.lengths);
     Memory::wait_for_copies();
     if constexpr (has_contacts) part.stepper.begin_contacts();
     robot_barrier<Memory>();
+    if (has_brain && thread.warp == 0 && thread.lane == 0)
+      complete_brain<Memory>(arguments, part.context.brain, thread.robot);
   }
 
   for (std::uint32_t step = 0; step < arguments.steps;) {

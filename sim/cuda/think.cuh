@@ -59,10 +59,10 @@ __device__ T* part_of(const char* memory, std::uint32_t offset) {
   return reinterpret_cast<T*>(const_cast<char*>(memory) + offset);
 }
 
-// All warps of a robot that has a brain call this once per launch. Its memory is complete after their next barrier.
+// All warps of a robot that has a brain call this once per launch; complete_brain() follows after a barrier.
 template <class Memory>
-__device__ __noinline__ void load_brain(const StepArguments& arguments, std::uint32_t at, std::uint32_t number,
-                                        std::uint32_t place, std::uint32_t warp) {
+__device__ __noinline__ void load_brain(const StepArguments& arguments, std::uint32_t at, std::uint32_t place,
+                                        std::uint32_t warp) {
   char* const memory = brain_memory<Memory>(arguments, at, place);
   const Thoughts& thoughts = arguments.thoughts;
   const ThinkingRobot& from = thoughts.robots[thoughts.thinkers[place]];
@@ -96,8 +96,18 @@ __device__ __noinline__ void load_brain(const StepArguments& arguments, std::uin
         driven ? actuated_amplitude(*source.own, sources.amplitude[source.setting]) : 0,
         driven ? source.neuron : BrainPlan::none};
   }
-  wait_for_robot(number, arguments.launch.warps_per_robot);
-  if (thread != 0) return;
+}
+
+// One thread of the robot calls this. A barrier follows.
+template <class Memory>
+__device__ __noinline__ void complete_brain(const StepArguments& arguments, std::uint32_t at, std::uint32_t place) {
+  char* const memory = brain_memory<Memory>(arguments, at, place);
+  const Thoughts& thoughts = arguments.thoughts;
+  const ThinkingRobot& from = thoughts.robots[thoughts.thinkers[place]];
+  const BrainBytes& room = arguments.launch.brain;
+  char* const plan = memory + room.scratch;
+  char* const body = plan + from.plan_bytes;
+  float* const weights = part_of<float>(plan, room.tables);
   ThinkingRobot& head = *part_of<ThinkingRobot>(memory, 0);
   if (room.tables > 0) head.plan = plan, head.body = body;
   if (room.weights > 0) head.weights = weights;
@@ -122,7 +132,8 @@ struct ThinkingBody {
   typename Memory::Address masses;  // of slot 0
   SpringParameters<solver>* material_table;
   std::uint32_t* moving;  // of MaterialTable
-  std::uint32_t number, place, warp, lane, warps;
+  SplitBarrier barrier;   // of the robot's warps
+  std::uint32_t place, warp, lane, warps;
   std::uint32_t step;  // of the launch
 
   __device__ std::uint32_t threads() const { return warps * lanes; }
@@ -164,7 +175,13 @@ class Thought {
   }
 
  private:
-  __device__ void wait() const { wait_for_robot(robot_.number, robot_.warps); }
+  // No named barrier: with one, a block would take them all, and a multiprocessor would have room for four blocks.
+  __device__ void wait() const {
+    if constexpr (!SplitBarrier::exists) return wait_for_robot(number_in_block(robot_.arguments.launch), robot_.warps);
+    __syncwarp();
+    if (robot_.lane == 0) robot_.barrier.arrive_and_wait();
+    __syncwarp();
+  }
   template <class T>
   __device__ const T* plan_part(std::uint32_t offset) const {
     return part_of<const T>(of_.plan, offset);
@@ -549,14 +566,14 @@ __device__ inline std::uint32_t first_thought(const StepArguments& arguments, st
 template <Solver solver, class Memory>
 __device__ __noinline__ std::uint32_t think(const StepArguments& arguments, std::uint32_t at,
                                             typename Memory::Address masses, SpringParameters<solver>* material_table,
-                                            std::uint32_t* moving, std::uint32_t number, std::uint32_t place,
+                                            std::uint32_t* moving, SplitBarrier barrier, std::uint32_t place,
                                             std::uint32_t warp, std::uint32_t step) {
   const ThinkingBody<solver, Memory> body{arguments,
                                           brain_memory<Memory>(arguments, at, place),
                                           masses,
                                           material_table,
                                           moving,
-                                          number,
+                                          barrier,
                                           place,
                                           warp,
                                           threadIdx.x % lanes,

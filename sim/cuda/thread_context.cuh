@@ -72,6 +72,20 @@ class SplitBarrier {
     asm volatile("{\n.reg .b64 state;\nmbarrier.arrive.shared.b64 state, [%0];\n}" ::"r"(address_) : "memory");
 #endif
   }
+  // The same, and waits until the phase ends.
+  __device__ void arrive_and_wait() const {
+#if __CUDA_ARCH__ >= 900
+    asm volatile(
+        "{\n.reg .b64 state;\n.reg .pred ended;\nmbarrier.arrive.shared.b64 state, [%0];\n"
+        "again:\nmbarrier.try_wait.shared.b64 ended, [%0], state;\n@!ended bra again;\n}" ::"r"(address_)
+        : "memory");
+#elif __CUDA_ARCH__ >= 800
+    asm volatile(
+        "{\n.reg .b64 state;\n.reg .pred ended;\nmbarrier.arrive.shared.b64 state, [%0];\n"
+        "again:\nmbarrier.test_wait.shared.b64 ended, [%0], state;\n@!ended bra again;\n}" ::"r"(address_)
+        : "memory");
+#endif
+  }
   // Phase -1 has ended from the start.
   __device__ void wait_for(std::uint32_t phase) const {
 #if __CUDA_ARCH__ >= 900
@@ -165,6 +179,7 @@ struct RobotRecord {
   std::uint32_t* pairs;      // that may touch (contacts.cuh), in device memory
   std::uint32_t pair_count;  // of which ContactPass::most_pairs() fit
   std::uint32_t votes[2];    // the steps before which a part of the robot last voted, plus 1
+  std::uint64_t thinking;    // a SplitBarrier of the robot's warps, for its brain
 };
 static_assert(sizeof(RobotRecord) == robot_record_bytes);
 

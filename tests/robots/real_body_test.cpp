@@ -7,14 +7,18 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "mercury/cuda_devices.h"
 #include "mercury/error.h"
 #include "mercury/generator.h"
 #include "mercury/origin.h"
+#include "mercury/random_voxel.h"
 #include "mercury/robot_file.h"
+#include "mercury/simulation.h"
 #include "mercury/voxel.h"
 #include "tests/refusal.h"
 
@@ -270,6 +274,28 @@ TEST(RealBody, AFileOfModuliThatBreaksARuleIsRefused) {
             "/mass: follows from the density of the materials; leave it out");
   EXPECT_EQ(refusal(R"({"modulus":1e5,"density":1000})", R"("actuators":[{"name":"a","springs":[0]}],)"),
             "/actuators/0/springs: springs follow from the moduli of materials; name materials");
+}
+
+// Among them three whose contacts a GPU once found otherwise.
+TEST(RealBody, RandomBodiesMoveOnCudaAsOnTheCpu) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  std::vector<Robot> robots;
+  for (std::uint64_t i = 0; i < 200; ++i) robots.push_back(with_real_body(random_voxel_robot({}, 1, i), {}));
+  for (const std::uint64_t i : {165, 1396, 2544}) robots.push_back(with_real_body(random_voxel_robot({}, 1, i), {}));
+  for (const Solver solver : {Solver::force, Solver::xpbd}) {
+    Configuration configuration{.solver = solver, .environment = environment_named("water")};
+    configuration.device.kind = DeviceKind::cpu;
+    Simulation cpu(configuration, robots);
+    configuration.device.kind = DeviceKind::cuda;
+    Simulation cuda(configuration, robots);
+    for (Simulation* simulation : {&cpu, &cuda}) simulation->step(100);
+    for (std::size_t robot = 0; robot < robots.size(); ++robot) {
+      const auto expected = cpu.positions(robot), actual = cuda.positions(robot);
+      float farthest = 0;
+      for (std::size_t i = 0; i < expected.size(); ++i) farthest = std::max(farthest, length(expected[i] - actual[i]));
+      EXPECT_LT(farthest, 1e-5f) << name_of(solver) << ", robot " << robot;
+    }
+  }
 }
 
 TEST(RealBody, ErrorsSayWhatIsMissing) {
