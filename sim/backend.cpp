@@ -100,6 +100,8 @@ void Backend::put_at_rest(std::span<const Robot* const> robots, std::size_t firs
   }
 }
 
+bool Backend::measure_inversion(std::span<const BodyCells* const> /*cells*/) { return false; }
+
 void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
                               std::span<RobotStatus> statuses) {
   const std::size_t robots = samples.size() / static_cast<std::size_t>(steps / every);

@@ -24,7 +24,7 @@ constexpr std::size_t smallest_piece = 256, usual_piece = 512;
 constexpr std::size_t first_portion = 512, largest_portion = 8192;
 constexpr std::size_t usual_portion_bytes = std::size_t{64} << 20;
 // Until it is known how many robots a device steps at once.
-constexpr std::size_t portions_at_start = 3, waiting_at_start = 16384;
+constexpr std::size_t portions_at_start = 2, waiting_at_start = 16384;
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "mercury/voxels.h"
-#include "sim/physics/double3.h"
+#include "sim/physics/inversion.h"
 
 namespace mercury {
 namespace {
@@ -17,9 +17,6 @@ constexpr std::size_t tetrahedra_per_voxel = 6;
 // Flatter ones, by volume per cube of their longest edge, are no space between masses: four masses of one side of a
 // tapered cell, say, which may pass through their plane. A regular one has 0.12, a corner of a cube 0.06.
 constexpr double flat = 0.01;
-
-// Six times the volume; positive = right-handed.
-double sixfold_volume(Double3 a, Double3 b, Double3 c, Double3 d) { return dot(b - a, cross(c - a, d - a)); }
 
 double longest_edge(Double3 a, Double3 b, Double3 c, Double3 d) {
   double squared = 0;
@@ -163,21 +160,8 @@ void BodyCells::find_tetrahedra(const Robot& robot) {
 }
 
 bool BodyCells::is_inverted(std::size_t cell, std::span<const Vec3> positions) const {
-  if (voxels_.empty()) {
-    const auto& [a, b, c, d] = tetrahedra_[cell];
-    return sixfold_volume(Double3(positions[a]), Double3(positions[b]), Double3(positions[c]), Double3(positions[d])) <
-           0;
-  }
-  const auto& corners = voxels_[cell];
-  // Four times the vector between the centers of two opposite sides.
-  const auto across = [&](std::size_t axis) {
-    Double3 sum{0, 0, 0};
-    for (std::size_t corner = 0; corner < 8; ++corner)
-      sum =
-          (corner & axis) != 0 ? sum + Double3(positions[corners[corner]]) : sum - Double3(positions[corners[corner]]);
-    return sum;
-  };
-  return dot(across(1), cross(across(2), across(4))) < 0;
+  const auto corner = [&, masses = corners(cell).data()](int k) { return Double3(positions[masses[k]]); };
+  return voxels_.empty() ? is_inverted_tetrahedron(corner) : is_inverted_voxel(corner);
 }
 
 std::span<const std::uint16_t> BodyCells::corners(std::size_t cell) const {

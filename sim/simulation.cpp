@@ -153,6 +153,7 @@ std::size_t Simulation::add(std::span<const Robot> robots) { return add(copies_o
 std::size_t Simulation::add(std::span<const std::shared_ptr<const Robot>> robots) {
   const std::size_t first = size();
   parts_->brains.leave_backend();
+  parts_->backend_measures.reset();
   parts_->append(robots);
   if (robots.empty()) return first;
   try {
@@ -193,6 +194,7 @@ void Simulation::keep(std::span<const std::size_t> robots) {
     explosions.push_back(parts_->explosions[i]);
     cells.push_back(parts_->cells[i]);
   }
+  parts_->backend_measures.reset();
   parts_->backend->keep(pointers, robots);  // refers to the robots that go until it returns
   std::vector<std::size_t> offsets{0};
   std::vector<std::unique_ptr<MaterialTable>> tables;
@@ -380,8 +382,11 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
   // These may need the positions between samples.
-  if (measures_folding() || parts_->upright || parts_->host_thinks() || parts_->pushes_within(steps)) {
-    parts_->sample_between_calls(*this, every, samples);
+  if (parts_->reads_posture() || parts_->host_thinks() || parts_->pushes_within(steps)) {
+    for (std::size_t first = 0; first < samples.size(); first += size()) {
+      step(every);
+      std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));
+    }
     if (samples.empty()) parts_->clock.step += steps;
     return samples;
   }
@@ -396,25 +401,6 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
     for (std::size_t k = i; k < samples.size(); k += size()) parts_->add_explosion(samples[k], i, statuses[k]);
   });
   return samples;
-}
-
-// While a GPU makes the steps after a sample, the CPU finds out how bodies are folded in it.
-void Simulation::Parts::sample_between_calls(Simulation& simulation, std::int64_t every, std::span<Telemetry> samples) {
-  std::span<Telemetry> last;
-  std::vector<Vec3> positions;
-  const auto add_posture_of_last = [&] { add_posture(last, positions); };
-  for (; !samples.empty(); samples = samples.subspan(size())) {
-    if (backend->cuda_device() >= 0) {
-      parallel_tasks(0, 2, [&](std::size_t task) { task == 0 ? simulation.step(every) : add_posture_of_last(); });
-    } else {
-      add_posture_of_last();
-      simulation.step(every);
-    }
-    last = samples.first(size());
-    report(last);
-    positions = positions_for_posture();
-  }
-  add_posture_of_last();
 }
 
 void Simulation::reset() {

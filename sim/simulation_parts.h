@@ -39,9 +39,10 @@ struct Simulation::Parts {
   std::function<MeasuredFolding(const Robot&)> folding_of;     // none = of no robot
   // One per robot; nothing = not known yet, null = not measured.
   mutable std::vector<std::optional<std::shared_ptr<const BodyCells>>> cells;
-  bool upright = false;      // is measured
-  double check_seconds = 0;  // LoadTimes::check
-  std::vector<float> lifts;  // by which robots at rest stand higher; empty = not known
+  mutable std::optional<bool> backend_measures;  // their inversion; none = it has not been asked
+  bool upright = false;                          // is measured
+  double check_seconds = 0;                      // LoadTimes::check
+  std::vector<float> lifts;                      // by which robots at rest stand higher; empty = not known
   SharedState shared_state;
   SharedActuation shared_actuation;
   Brains brains;
@@ -68,13 +69,10 @@ struct Simulation::Parts {
   void put_at_rest(std::size_t first);
 
   bool find_cells() const;  // returns whether the folding of any robot is measured
-  // Fills in telemetry of all robots, but for what add_posture() does.
-  void report(std::span<Telemetry> telemetry) const;
-  // Fills in what these positions say of the robots; those of now, or none if nobody asks for it.
-  void add_posture(std::span<Telemetry> telemetry, std::span<const Vec3> positions) const;
-  std::vector<Vec3> positions_for_posture() const;
-  // step() and telemetry() in turn, until there are all samples.
-  void sample_between_calls(Simulation& simulation, std::int64_t every, std::span<Telemetry> samples);
+  // Whether telemetry needs the positions: the backend does not measure all that somebody asks for.
+  bool reads_posture() const;
+  // To telemetry of all robots, explosions included, what positions say and somebody asks for.
+  void add_posture(std::span<Telemetry> telemetry) const;
   // Without the explosion.
   State state(std::size_t robot) const;
   // All materials of a robot as they are now. Ids that the robot does not have are air.

@@ -147,16 +147,14 @@ void Simulation::restore(const BatchState& state) {
 }
 
 std::vector<Telemetry> Simulation::telemetry() const {
+  const bool reads_posture = parts_->reads_posture();
   std::vector<Telemetry> all(size());
-  parts_->report(all);
-  parts_->add_posture(all, parts_->positions_for_posture());
+  std::vector<RobotStatus>& statuses = parts_->reported;
+  statuses.resize(all.size());
+  parts_->backend->report(parts_->clock, all, statuses);
+  for (std::size_t i = 0; i < all.size(); ++i) parts_->add_explosion(all[i], i, statuses[i]);
+  if (reads_posture) parts_->add_posture(all);
   return all;
-}
-
-void Simulation::Parts::report(std::span<Telemetry> telemetry) const {
-  reported.resize(telemetry.size());
-  backend->report(clock, telemetry, reported);
-  for (std::size_t i = 0; i < telemetry.size(); ++i) add_explosion(telemetry[i], i, reported[i]);
 }
 
 void Simulation::measure_folding(bool on) {
@@ -166,6 +164,8 @@ void Simulation::measure_folding(bool on) {
 void Simulation::measure_folding(std::function<MeasuredFolding(const Robot&)> of) {
   parts_->folding_of = std::move(of);
   parts_->cells.assign(size(), {});
+  parts_->backend_measures.reset();
+  parts_->backend->measure_inversion({});
 }
 
 bool Simulation::measures_folding() const { return parts_->find_cells(); }
@@ -186,21 +186,26 @@ bool Simulation::Parts::find_cells() const {
   return std::ranges::any_of(cells, [](const auto& of_robot) { return *of_robot != nullptr; });
 }
 
-std::vector<Vec3> Simulation::Parts::positions_for_posture() const {
-  if (!find_cells() && !upright) return {};
-  std::vector<Vec3> positions(offsets.back());
-  backend->read_positions(positions);
-  return positions;
+bool Simulation::Parts::reads_posture() const {
+  if (!find_cells()) return upright;
+  if (!backend_measures) {
+    std::vector<const BodyCells*> of_robots;
+    for (const auto& of_robot : cells) of_robots.push_back(of_robot->get());
+    const auto is_enough = [](const BodyCells* c) { return !c || c->measured() == MeasuredFolding::inverted; };
+    backend_measures = std::ranges::all_of(of_robots, is_enough) && backend->measure_inversion(of_robots);
+  }
+  return upright || !*backend_measures;
 }
 
-void Simulation::Parts::add_posture(std::span<Telemetry> telemetry, std::span<const Vec3> positions) const {
-  if (positions.empty()) return;
-  const bool folds = folding_of != nullptr;
+void Simulation::Parts::add_posture(std::span<Telemetry> telemetry) const {
+  if (telemetry.empty()) return;
+  std::vector<Vec3> positions(offsets.back());
+  backend->read_positions(positions);
   parallel_for(0, telemetry.size(), [&](std::size_t i) {
     if (telemetry[i].exploded) return;
-    const auto own = positions.subspan(offsets[i], masses(i));
+    const auto own = std::span<const Vec3>(positions).subspan(offsets[i], masses(i));
     if (upright) telemetry[i].upright = static_cast<float>(body_frame(*robots[i], own).up());
-    const BodyCells* of_robot = folds ? cells[i]->get() : nullptr;
+    const BodyCells* of_robot = folding_of ? cells[i]->get() : nullptr;
     if (!of_robot) return;
     const Folding folding = of_robot->folding(own);
     telemetry[i].inverted = folding.inverted;

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "mercury/cuda_devices.h"
+#include "mercury/folding.h"
+#include "mercury/parallel.h"
 #include "sim/cuda/device_limits.h"
 
 namespace mercury {
@@ -224,6 +227,38 @@ PackedBrains CudaBackend::read_brains(bool weights) const {
   return owned_->brains.read(weights, main().get());
 }
 
+bool CudaBackend::measure_inversion(std::span<const BodyCells* const> cells) {
+  begin_change();
+  owned_->robot_cells = {};
+  if (places_.empty() || cells.empty()) return true;
+  std::vector<std::uint32_t> first(cells.size() + 1);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    first[i + 1] = first[i] + (cells[i] ? static_cast<std::uint32_t>(cells[i]->size()) : 0);
+  std::vector<RobotCells> robots(cells.size());
+  std::vector<DeviceCell> all(first.back());
+  parallel_for(0, cells.size(), [&](std::size_t i) {
+    const auto [size_class, number] = places_[i];
+    RobotCells& robot = robots[first_report_[size_class] + number];
+    robot = {owned_->classes[size_class].robot_view(number).state, first[i], first[i + 1] - first[i],
+             std::numeric_limits<double>::quiet_NaN()};
+    if (!cells[i]) return;
+    robot.volume = robot.count > 0 ? cells[i]->volume() : 1;
+    const SlotOrder& order = owned_->classes[size_class].order_of(number);
+    for (std::uint32_t cell = 0; cell < robot.count; ++cell) {
+      DeviceCell& to = all[robot.first + cell];
+      to.volume = cells[i]->volume(cell);
+      std::ranges::fill(to.corners, DeviceCell::no_corner);
+      std::ranges::transform(cells[i]->corners(cell), to.corners,
+                             [&](std::uint16_t mass) { return static_cast<std::uint16_t>(order.slot_of(mass)); });
+    }
+  });
+  owned_->cells = DeviceArray<DeviceCell>(all.size());
+  owned_->cells.write(0, all, main().get());
+  owned_->robot_cells = DeviceArray<RobotCells>(robots.size());
+  owned_->robot_cells.write(0, robots, main().get());
+  return true;
+}
+
 void CudaBackend::settle() const {
   use_device();
   if (queued_) owned_->queued.synchronize();
@@ -241,6 +276,7 @@ void CudaBackend::begin_exchange() {
   positions_copy_.reset();
   owned_->brains.clear();
   owned_->actuators.clear();
+  owned_->robot_cells = {};
   for (const auto& robots : classes()) robots->end_actuation();
 }
 

@@ -56,6 +56,7 @@ class CudaBackend final : public Backend {
   void write_brains(const PackedBrains& brains) override;
   PackedBrains read_brains(bool weights) const override;
   BrainArrays share_brains() override;
+  bool measure_inversion(std::span<const BodyCells* const> cells) override;
 
   // Time (backend_steps.cpp).
   void step(const Clock& clock, std::int64_t steps) override;
@@ -91,6 +92,8 @@ class CudaBackend final : public Backend {
     Event queued;                          // the end of what was last queued in a caller's stream
     DeviceArray<RobotView> views;          // [robot], if views_valid_
     DeviceArray<float> rest;               // [mass][6], positions and velocities at the start, if rest_valid_
+    DeviceArray<RobotCells> robot_cells;   // in the order of reports, if inversion is measured
+    DeviceArray<DeviceCell> cells;         // of all robots
     Actuators actuators;                   // none are driven if it is empty
     std::vector<DrivenMaterial> driven;    // what these drive
     DeviceBrains brains;                   // none think if it is empty

@@ -46,6 +46,7 @@ void CudaBackend::copy_reports(const ReportAt& report_at, std::span<Telemetry> t
     to.muscle_power = static_cast<double>(from.muscle_power);
     to.largest_strain = from.largest_strain;
     to.strained_share = from.strained_share;
+    if (from.exploded_step < 0) to.inverted = from.inverted;
     statuses[i] = {from.exploded_step, from.bad_mass};
   }
 }
@@ -185,6 +186,9 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
       }
       launch_steps(configuration_.solver, model, arguments, early, of_class);
     } while (done < steps);
+    if (report && owned_->robot_cells.size() > 0)
+      report_inversion(owned_->robot_cells.data() + first_report_[c], robots.size(), owned_->cells.data(),
+                       report + first_report_[c], of_class);
   }
 }
 

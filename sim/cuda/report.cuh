@@ -63,6 +63,7 @@ class RobotReporter {
       const DeviceStatus status = robot_.arguments().batch.statuses[robot_.context().robot];
       stage(offsetof(DeviceTelemetry, bad_mass), static_cast<int>(status.bad_mass));
       stage(offsetof(DeviceTelemetry, exploded_step), status.exploded_step);
+      stage(offsetof(DeviceTelemetry, inverted), __float_as_int(nanf("")));
       const float strained = staged(offsetof(DeviceTelemetry, strained_share)).value(field_staged);
       stage(offsetof(DeviceTelemetry, strained_share),
             __float_as_int(mercury::strained_share(__float_as_uint(strained), robot_.header().springs)));

@@ -8,8 +8,8 @@
 
 namespace mercury::cuda {
 
-// Aligned so that the device writes it to host memory in one transaction.
-struct alignas(64) DeviceTelemetry {
+// A warp writes it to host memory in one transaction; kernels.h adds `inverted`.
+struct alignas(128) DeviceTelemetry {
   Vec3 center_of_mass, velocity;  // [m], [m/s]
   float largest_strain;
   std::uint32_t bad_mass;
@@ -17,7 +17,8 @@ struct alignas(64) DeviceTelemetry {
   long long exploded_step;
   float muscle_power;  // [W]
   float strained_share;
+  float inverted;  // NaN = not measured
 };
-static_assert(sizeof(DeviceTelemetry) == 64);
+static_assert(sizeof(DeviceTelemetry) == 128);
 
 }  // namespace mercury::cuda

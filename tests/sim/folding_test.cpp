@@ -169,6 +169,27 @@ TEST_P(FoldingOn, TelemetryHasItWhereItIsAskedFor) {
   EXPECT_EQ(shaken.inverted, BodyCells(robots[0]).folding(simulation.positions(1)).inverted);
   EXPECT_TRUE(std::isnan(shaken.overlap));
   EXPECT_TRUE(std::isnan(simulation.telemetry(0).inverted));
+  simulation.add(robots);
+  const std::vector<Telemetry> samples_of_some = simulation.step_and_sample(20, 10);
+  ASSERT_EQ(samples_of_some.size(), 12u);
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const float inverted = samples_of_some[simulation.size() + i].inverted;
+    if (simulation.robot(i).masses.size() == robots[0].masses.size())
+      EXPECT_EQ(inverted, BodyCells(simulation.robot(i)).folding(simulation.positions(i)).inverted) << i;
+    else
+      EXPECT_TRUE(std::isnan(inverted)) << i;
+  }
+  // Voxels and tetrahedra, without overlap.
+  simulation.measure_folding(std::function([](const Robot&) { return MeasuredFolding::inverted; }));
+  float most = 0;
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const State folded = bodies::shaken(simulation.robot(i), 0.2f, 0, i);
+    simulation.set_state(i, folded.positions, folded.velocities);
+    const float inverted = simulation.telemetry(i).inverted;
+    EXPECT_EQ(inverted, BodyCells(simulation.robot(i)).folding(folded.positions).inverted) << i;
+    most = std::max(most, inverted);
+  }
+  EXPECT_GT(most, 0);
   simulation.measure_folding(false);
   EXPECT_TRUE(std::isnan(simulation.telemetry(0).overlap));
 }

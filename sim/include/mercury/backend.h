@@ -61,6 +61,7 @@ struct ActuationSources {
 };
 
 // Of the library's own backends (sim/physics/brain_plan.h).
+class BodyCells;
 struct BrainPlan;
 struct PackedBrains;
 
@@ -188,6 +189,11 @@ class Backend {
 
   // Replaces all perturbations.
   virtual void set_perturbations(std::span<const Perturbation> perturbations) = 0;
+
+  // From now on report() and step_and_report() fill in Telemetry::inverted as folding() of these cells does, one per
+  // robot; null = it stays NaN. It lasts until the next call, load(), add() or keep(). Returns false if it has no
+  // effect, as the default.
+  virtual bool measure_inversion(std::span<const BodyCells* const> cells);
 
   // Fills one element per robot: its telemetry except `exploded`, `exploded_at` and `culprit_spring`, which Simulation
   // derives from the status, and its status.

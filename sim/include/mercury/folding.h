@@ -41,7 +41,12 @@ class BodyCells {
   // well, as in a file of parts that are in each other, does not count for that cell. What is not measured is NaN.
   Folding folding(std::span<const Vec3> positions) const;
 
+  MeasuredFolding measured() const { return measured_; }
   std::size_t size() const { return volumes_.size(); }
+  // The masses at a cell's corners: eight of a voxel, four of a tetrahedron.
+  std::span<const std::uint16_t> corners(std::size_t cell) const;
+  float volume(std::size_t cell) const { return volumes_[cell]; }  // at rest [m3]
+  double volume() const { return volume_; }                        // of all cells
 
  private:
   using Tetrahedron = std::array<std::uint16_t, 4>;
@@ -49,7 +54,6 @@ class BodyCells {
   void find_tetrahedra(const Robot& robot);
   bool is_inverted(std::size_t cell, std::span<const Vec3> positions) const;
   void find_touching();
-  std::span<const std::uint16_t> corners(std::size_t cell) const;
   bool contains(std::size_t cell, Double3 point, std::span<const Vec3> positions) const;
   // Calls visit(mass, cell) for masses within cells that they do not touch.
   template <class Visit>
