@@ -242,6 +242,17 @@ class SplitBackend final : public Backend {
     for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p]->set_perturbations(shares[p]);
   }
 
+  bool measure_inversion(std::span<const BodyCells* const> cells) override {
+    bool is_measured = true;
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      std::vector<const BodyCells*> share;
+      if (!cells.empty())
+        for (const std::size_t robot : shares_.in_batch(p)) share.push_back(cells[robot]);
+      is_measured = parts_[p]->measure_inversion(share) && is_measured;
+    }
+    return is_measured;
+  }
+
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override {
     for_each_part([&](std::size_t p) {
       std::vector<Telemetry> share(shares_.size(p));
