@@ -84,7 +84,7 @@ Made make(const Video& video, OffscreenRenderer& offscreen, FrameWriter& writer,
 double encode(const Video& video, const std::string& output, const std::vector<render::Image>& frames) {
   const auto writer = open_frame_writer(output, video.settings);
   const double begin = now();
-  // Forwards and then backwards, so that consecutive pictures differ as little as in a real video.
+  // Forward and then backward, so that consecutive pictures differ as little as in a real video.
   const std::size_t count = frames.size();
   for (std::int64_t i = 0; i < video.timing.frames; ++i) {
     const std::size_t k = static_cast<std::size_t>(i) % (2 * count);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures how long the pictures of the window wait for an edit of a large scene, and the steps per second at unlimited
+// Measures how long the frames of the window wait for an edit of a large scene, and the steps per second at unlimited
 // speed: bench_window_edits [robots [side]].
 //
 // The robots are random voxel robots of side^3 voxels without air: side 10 has 1,331 masses and 14,230 springs. Prints
-// per edit the longest time of the scene's work for one picture (LiveScene::frame() and uploading bodies to the
-// renderer) and the time until a picture shows the edit.
+// per edit the longest time of the scene's work for one frame (LiveScene::frame() and uploading bodies to the
+// renderer) and the time until a frame shows the edit.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -32,8 +32,8 @@ class Window {
       : context_(render::make_context({.kind = render::ContextKind::automatic})),
         renderer_(*context_, {.width = 64, .height = 64}) {}
 
-  // Returns the time that one picture waits [s].
-  double picture(LiveScene& scene) {
+  // Returns the time that one frame waits [s].
+  double frame(LiveScene& scene) {
     const double start = now();
     scene.frame();
     DrawnScene& live = scene.drawn();
@@ -57,11 +57,11 @@ void measure(Window& window, LiveScene& scene, const char* name, const std::func
   const double call = now() - begin;
   double longest = 0;
   while (!seen() && now() - begin < 60) {
-    longest = std::max(longest, window.picture(scene));
+    longest = std::max(longest, window.frame(scene));
     std::this_thread::sleep_for(std::chrono::milliseconds(4));
   }
-  longest = std::max(longest, window.picture(scene));
-  std::printf("%-28s call %6.1f ms   longest picture %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest,
+  longest = std::max(longest, window.frame(scene));
+  std::printf("%-28s call %6.1f ms   longest frame %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest,
               1e3 * (now() - begin));
 }
 
@@ -74,20 +74,19 @@ void measure_speed(Window& window, LiveScene& scene) {
   scene.time().play();
   const auto playing = [&](double wanted) {
     const std::int64_t first = scene.snapshot().steps;
-    std::int64_t pictures = 0, seen = first;
+    std::int64_t frames = 0, seen = first;
     const double begin = now();
     while (now() - begin < wanted) {
-      window.picture(scene);
-      pictures += scene.snapshot().steps != seen;
+      window.frame(scene);
+      frames += scene.snapshot().steps != seen;
       seen = scene.snapshot().steps;
       std::this_thread::sleep_for(std::chrono::milliseconds(16));
     }
     const double spent = now() - begin;
-    return std::pair{static_cast<double>(scene.snapshot().steps - first) / spent,
-                     static_cast<double>(pictures) / spent};
+    return std::pair{static_cast<double>(scene.snapshot().steps - first) / spent, static_cast<double>(frames) / spent};
   };
   playing(1);  // until the interval of samples is constant
-  const auto [in_window, pictures] = playing(seconds);
+  const auto [in_window, frames] = playing(seconds);
   scene.time().pause();
   scene.wait_until_done();
   Simulation simulation(scene.document().configuration, robots);
@@ -105,8 +104,8 @@ void measure_speed(Window& window, LiveScene& scene) {
     spent = now() - begin;
   }
   const double alone = static_cast<double>(simulation.steps() - first) / spent;
-  std::printf("unlimited speed: %.4g steps/s with %.1f new frames/s; %.4g steps/s alone (%.0f %%)\n", in_window,
-              pictures, alone, 100 * in_window / alone);
+  std::printf("unlimited speed: %.4g steps/s with %.1f new frames/s; %.4g steps/s alone (%.0f %%)\n", in_window, frames,
+              alone, 100 * in_window / alone);
 }
 
 }  // namespace
@@ -153,9 +152,9 @@ int main(int argc, char** argv) {
       [&] { return scene.snapshot().configuration.damping == 0.5; });
   measure(
       window, scene, "reset", [&] { scene.time().reset(); }, [&] { return scene.snapshot().resets > 0; });
-  double picture = 0;
-  for (int i = 0; i < 20; ++i) picture += window.picture(scene) / 20;
-  std::printf("a picture without edits %.2f ms\n", 1e3 * picture);
+  double frame = 0;
+  for (int i = 0; i < 20; ++i) frame += window.frame(scene) / 20;
+  std::printf("a frame without edits %.2f ms\n", 1e3 * frame);
   measure_speed(window, scene);
   return 0;
 }

@@ -70,7 +70,7 @@ struct Insets {
 // A camera that turns around a target.
 struct Orbit {
   Vector3 target{0, 0, 0};     // [m]
-  float azimuth = -1.0f;       // direction from target to eye, from +x towards +y [rad]
+  float azimuth = -1.0f;       // direction from target to eye, from +x toward +y [rad]
   float elevation = 0.45f;     // above the horizon [rad], -pi/2 to pi/2
   float distance = 6;          // [m]
   float field_of_view = 0.6f;  // [rad]

@@ -25,7 +25,7 @@ enum class CameraMode {
 struct CameraPlan {
   CameraMode mode = CameraMode::group;
   std::string robot;                      // follow: its name, or its number from 0; empty = the group
-  std::optional<float> azimuth;           // direction from the robots to the eye, from +x towards +y [rad]
+  std::optional<float> azimuth;           // direction from the robots to the eye, from +x toward +y [rad]
   std::optional<float> elevation;         // of the eye above the horizon [rad]
   float zoom = 1;                         // above 1 = closer
   float field_of_view = 0.6f;             // of the picture's height [rad]

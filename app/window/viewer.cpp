@@ -81,7 +81,7 @@ class Viewer {
   void begin_close();
   void keep_anchor();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
-  bool draw_picture(double dt);
+  bool draw_frame(double dt);
   void present(bool draws);
   void update_screenshot();
   bool anything_moves() const;
@@ -278,7 +278,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   times_.mouse = since(mouse_begin);
   // In a steady view, the GPU draws the robots while the panels are made.
   const bool early = camera_placed_ && !redraw_ && scene_.time().playing();
-  bool draws = early && !left_out && draw_picture(dt);
+  bool draws = early && !left_out && draw_frame(dt);
   const auto panels_begin = Clock::now();
   split_area(panels_.draw_frame());
   panels_.draw_over(area_, shown_camera_, dt);
@@ -293,7 +293,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
     imgui_.discard_frame();
     return;
   }
-  if (!early) draws = draw_picture(dt);
+  if (!early) draws = draw_frame(dt);
   const auto waiting = Clock::now();
   viewport_.finish();
   second_.finish();
@@ -373,7 +373,7 @@ std::optional<std::size_t> Viewer::followed(const CameraPlan& plan) const {
   return std::nullopt;
 }
 
-// Puts the robots' picture into its area.
+// Puts the view of the robots into its area.
 void Viewer::place_views() {
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
   viewport_.place(static_cast<int>(area_.low.x * scale.x), static_cast<int>(area_.low.y * scale.y),
@@ -447,7 +447,7 @@ bool Viewer::leaves_gpu_to_steps() const {
 }
 
 // Returns whether it draws the robots.
-bool Viewer::draw_picture(double dt) {
+bool Viewer::draw_frame(double dt) {
   update_renderer();
   DrawnScene& live = scene_.drawn();
   camera_.floor =

@@ -416,7 +416,7 @@ void bind_batch(nb::module_& module) {
            nb::sig("def set_state(self, robot: int, positions: numpy.typing.ArrayLike, "
                    "velocities: numpy.typing.ArrayLike | None = None) -> None"),
            "Puts the masses of a robot to `positions` [m] with `velocities` [m/s], both (masses, 3); None = at rest.\n"
-           "The robot has not exploded afterwards. Raises InputError for another shape.")
+           "The robot has not exploded afterward. Raises InputError for another shape.")
       .def(
           "save",
           [](const Batch& self) { return self.use([](const Simulation& simulation) { return simulation.save(); }); },

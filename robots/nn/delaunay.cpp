@@ -138,7 +138,7 @@ class Builder {
     return orientation(at(0), at(1), at(2), at(3), errors_);
   }
 
-  // A cell that holds the point or has it beyond its side of the hull. The walk steps towards the point through any
+  // A cell that holds the point or has it beyond its side of the hull. The walk steps toward the point through any
   // side that has it on the other side; in a Delaunay triangulation it ends.
   std::uint32_t locate(const ExactPoint& point) const {
     std::uint32_t cell = hint_, last = none;

@@ -158,9 +158,9 @@ class CpuBackend final : public Backend {
     return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    RobotStatus& present = bodies_[robot]->status;
-    if ((present.exploded_step < 0) != (status.exploded_step < 0)) ++changes_since_grouping_;
-    present = status;
+    RobotStatus& current = bodies_[robot]->status;
+    if ((current.exploded_step < 0) != (status.exploded_step < 0)) ++changes_since_grouping_;
+    current = status;
   }
 
   void write_materials(std::span<const Material> tables) override {

@@ -292,7 +292,7 @@ TEST(CppnEvolution, ManyGenerationsStayValidWithoutCycles) {
     const CppnGenome child = crossover(mutate(a, 3, generation), b, generation);
     b = mutate(a, 3, generation + 1000);
     a = child;
-    ASSERT_NO_THROW(validate(a)) << generation;  // each edge leads upwards
+    ASSERT_NO_THROW(validate(a)) << generation;  // each edge leads upward
     ASSERT_TRUE(has_body(body_of(a)));
   }
   EXPECT_LE(a.network.nodes.size(), max_cppn_nodes);
