@@ -21,6 +21,8 @@ struct Bounds {
 
 // The box around points, 3 floats each; ignores points that are not finite.
 Bounds bounds_of(std::span<const float> points);
+// The box around boxes; ignores empty ones.
+Bounds bounds_of(std::span<const Bounds> boxes);
 
 // The i-th of `count` points spread over the unit disc (golden-angle spiral).
 Vector2 disc_sample(int i, int count);

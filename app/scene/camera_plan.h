@@ -39,6 +39,8 @@ struct CameraPlan {
 // "group", "follow", "turntable", "top", "still".
 std::string_view name_of(CameraMode mode);
 
+// Whether it is the name of a camera file, *.json.
+bool is_camera_file(const std::string& text);
 // "turntable", "follow:eel", the name of a camera file (*.json), or its members as text, {"mode": "still", ...}. Throws
 // ParameterError("camera", ...).
 CameraPlan camera_named(const std::string& text);

@@ -411,9 +411,7 @@ void Viewer::update_renderer() {
 // The samples are many and small: one of them shows first what moves here.
 void Viewer::begin_close() {
   const std::span<const render::Bounds> boxes = scene_.drawn().camera_boxes();
-  render::Bounds all;
-  for (const render::Bounds& box : boxes)
-    if (!box.empty()) all.extend(box);
+  const render::Bounds all = render::bounds_of(boxes);
   const auto middle = std::ranges::min_element(boxes, {}, [&](const render::Bounds& box) {
     return box.empty() ? std::numeric_limits<float>::max() : (box.center() - all.center()).norm();
   });
