@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/png.h"
+#include "tests/folder.h"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +12,7 @@
 namespace mercury::render {
 namespace {
 
-class Png : public testing::Test {
- protected:
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "mercury_png_test";
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-};
+class Png : public test::TestWithFolder {};
 
 TEST_F(Png, ReadsWhatItWrote) {
   Image image{3, 2, PixelFormat::rgb, {}};

@@ -96,6 +96,8 @@ TEST_F(RecordedPhysics, WhatComesWithARecordingThatCannotBeShownTakesEffect) {
   physics.wait_until_done();
   physics.set_recording(robots, in_environment(), 0, std::make_shared<TrajectoryReader>(path("other.h5")));
   physics.set_view({.color = &color_quantity("strain")});
+  const std::vector<LivePerturbation> pull{{.robot = 1, .mass = 0, .target = {1, 0, 0}, .stiffness = 20}};
+  physics.set_perturbations(pull);
   physics.set_speed(3);
   physics.play();
   physics.wait_until_done();
@@ -105,6 +107,8 @@ TEST_F(RecordedPhysics, WhatComesWithARecordingThatCannotBeShownTakesEffect) {
   EXPECT_FALSE(snapshot->timeline.recording);
   EXPECT_EQ(snapshot->speed, 3);
   EXPECT_EQ(snapshot->color->key, "strain");
+  EXPECT_EQ(snapshot->perturbations, pull);
+  physics.set_perturbations({});
   physics.set_scene({}, in_environment());
   physics.set_scene(robots, in_environment());
   physics.reset();
