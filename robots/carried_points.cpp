@@ -2,7 +2,6 @@
 #include "robots/carried_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>

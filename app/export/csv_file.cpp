@@ -2,7 +2,6 @@
 // A table of a motion, a line per frame: the center of mass and its velocity, and of a robot with a brain what is
 // recorded of its senses and neurons.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "app/base/output_files.h"

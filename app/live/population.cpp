@@ -2,7 +2,6 @@
 #include "app/live/population.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <unordered_map>

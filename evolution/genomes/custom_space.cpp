@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Custom genomes (mercury/custom.h). A genome holds the text of the program and the whole robot, so that the robots of
 // a run can be grown where the program is not.
-#include <atomic>
 #include <utility>
 
 #include "evolution/genomes/spaces.h"

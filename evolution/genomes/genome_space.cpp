@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Genomes and genome spaces of all kinds of robots that have genes (robots/genes.h), and which space a request is for.
 #include <algorithm>
-#include <atomic>
 #include <string>
 #include <utility>
 #include <vector>

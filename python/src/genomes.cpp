@@ -11,6 +11,7 @@
 #include "mercury/error.h"
 #include "mercury/generator.h"
 #include "mercury/names.h"
+#include "mercury/real_body.h"
 #include "python/src/bindings.h"
 #include "python/src/called_object.h"
 #include "python/src/values.h"

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/png.h"
-#include "tests/folder.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+
+#include "tests/folder.h"
 
 namespace mercury::render {
 namespace {

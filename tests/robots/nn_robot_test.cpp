@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/nn_robot.h"
-#include "mercury/fnv.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "mercury/fnv.h"
 #include "mercury/random.h"
 #include "tests/robots/nn_bodies.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shells by what their form promises: topology, thickness, symmetry, shares.
 #include "mercury/shell.h"
-#include "mercury/fnv.h"
 
 #include <gmock/gmock.h>
 
@@ -10,6 +9,7 @@
 #include <cmath>
 #include <set>
 
+#include "mercury/fnv.h"
 #include "mercury/inspect.h"
 #include "mercury/random.h"
 #include "robots/portable_math.h"

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "sim/host_memory.h"
 #include "tests/folder.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/picking.h"
 #include "app/live/population.h"
 #include "app/live/scene_robots.h"
 #include "mercury/error.h"
