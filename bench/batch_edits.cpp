@@ -6,7 +6,6 @@
 // prepares what the edit needs. If an edit costs no more than what it adds or moves, both columns of an edit stay the
 // same from row to row, but for the step itself.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -14,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 
@@ -21,11 +21,7 @@ namespace {
 
 using namespace mercury;
 
-double milliseconds(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
+double milliseconds(const std::function<void()>& work) { return 1e3 * seconds_of(work); }
 
 void measure(const Configuration& configuration, std::size_t size) {
   const std::vector<Robot> robots = random_voxel_robots({}, 1, size + 100);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/full_cube.h"
 #include "bench/timing.h"
 #include "mercury/brain.h"
 #include "mercury/random_voxel.h"
@@ -115,11 +116,7 @@ int main(int argc, char** argv) {
   const int edge = argc > 2 ? std::stoi(argv[2]) : 10;
   const std::size_t count = argc > 3 ? std::stoul(argv[3]) : 528;
   const int turns = argc > 4 ? std::stoi(argv[4]) : 100;
-  RandomVoxelOptions full;
-  full.smallest = full.largest = {edge, edge, edge};
-  full.air = 0;
-  full.patch = 1;
-  full.mirror = Mirror::none;
+  RandomVoxelOptions full = full_cube(edge);
   full.frequencies = 5;
   measure(configuration, random_voxel_robots(full, 1, count), turns);
   if (argc <= 5) return 0;

@@ -14,7 +14,7 @@ PlainLoop::PlainLoop(const Robot& robot, const Configuration& configuration)
       backs_(masses_behind(robot, faces_)) {
   std::array<Material, max_materials> materials{};
   std::ranges::copy(materials_of(robot), materials.begin());
-  const bool real = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(configuration.environment.water);
+  const bool real = has_own_points(robot, configuration.environment);
   points_ =
       real ? point_properties(robot, configuration.environment) : std::vector<PointProperties>(robot.masses.size());
   const InertiaRange inertia = inertia_range(points_);

@@ -5,7 +5,6 @@
 //
 // Measures each part alone and then the whole: simulating and drawing without encoding, with positions on the GPU and
 // through the host; encoding pictures that are kept in memory; and the whole export.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -16,14 +15,14 @@
 #include <vector>
 
 #include "app/video/video_pipeline.h"
+#include "bench/named_values.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
+#include "mercury/stopwatch.h"
 
 namespace {
 
 using namespace mercury;
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 using Options = std::map<std::string, std::string>;
 
@@ -31,17 +30,7 @@ Options options_of(int argc, char** argv) {
   Options options{{"robots", "64"},   {"width", "1920"},   {"height", "1080"}, {"frames", "300"},
                   {"device", "auto"}, {"quality", "auto"}, {"gl", "auto"},     {"output", "bench.mp4"},
                   {"ffmpeg", ""},     {"json", "0"},       {"crf", "-1"}};
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const auto found = options.find(argument.substr(0, argument.find('=')));
-    if (found == options.end()) {
-      std::fprintf(stderr, "bench_export_video: %s is not accepted; give NAME=VALUE with one of", argument.c_str());
-      for (const auto& [name, value] : options) std::fprintf(stderr, " %s", name.c_str());
-      std::fprintf(stderr, "\n");
-      std::exit(2);
-    }
-    found->second = argument.substr(argument.find('=') + 1);
-  }
+  set_named_values(options, argc, argv);
   return options;
 }
 
@@ -83,15 +72,15 @@ Made make(const Video& video, OffscreenRenderer& offscreen, FrameWriter& writer,
 
 double encode(const Video& video, const std::string& output, const std::vector<render::Image>& frames) {
   const auto writer = open_frame_writer(output, video.settings);
-  const double begin = now();
-  // Forwards and then backwards, so that consecutive pictures differ as little as in a real video.
+  const double begin = wall_now();
+  // Forward and then backward, so that consecutive pictures differ as little as in a real video.
   const std::size_t count = frames.size();
   for (std::int64_t i = 0; i < video.timing.frames; ++i) {
     const std::size_t k = static_cast<std::size_t>(i) % (2 * count);
     writer->write(frames[k < count ? k : 2 * count - 1 - k]);
   }
   writer->finish();
-  return static_cast<double>(video.timing.frames) / (now() - begin);
+  return static_cast<double>(video.timing.frames) / (wall_now() - begin);
 }
 
 int measure(const Options& options) {
@@ -120,10 +109,10 @@ int measure(const Options& options) {
   const std::string& output = options.at("output");
   const double encoded = encode(video, output, kept.frames);
   const auto writer = open_frame_writer(output, video.settings);
-  const double begin = now();
+  const double begin = wall_now();
   make(video, offscreen, *writer, true);
   writer->finish();
-  const double whole = static_cast<double>(video.timing.frames) / (now() - begin);
+  const double whole = static_cast<double>(video.timing.frames) / (wall_now() - begin);
   const auto bytes = static_cast<double>(std::filesystem::file_size(output));
   const char* limit = encoded < drawn.rate ? "the encoder" : "drawing and simulating";
   const char* format =

@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -219,7 +218,7 @@ void run_row(const Row& row, std::vector<std::string> arguments) {
   pointers.push_back(nullptr);
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
-  const auto start = std::chrono::steady_clock::now();
+  const double start = wall_now();
   const pid_t child = fork();
   if (child == 0) {
     dup2(ends[1], STDOUT_FILENO);
@@ -236,7 +235,7 @@ void run_row(const Row& row, std::vector<std::string> arguments) {
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);
-  const double whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double whole = wall_now() - start;
   if (status != 0 || !is_complete) {
     std::printf("%-44s failed\n", row.title);
     return;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/full_cube.h"
 #include "bench/timing.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
@@ -48,12 +49,7 @@ int main(int argc, char** argv) {
   using namespace mercury;
   const int edge = argc > 2 ? std::stoi(argv[2]) : 10;
   const std::size_t count = argc > 3 ? std::stoul(argv[3]) : 528;
-  RandomVoxelOptions full;
-  full.smallest = full.largest = {edge, edge, edge};
-  full.air = 0;
-  full.patch = 1;
-  full.mirror = Mirror::none;
-  const std::vector<Robot> robots = random_voxel_robots(full, 1, count);
+  const std::vector<Robot> robots = random_voxel_robots(full_cube(edge), 1, count);
   for (const char* environment : {"ocean", "ocean-simple", "land"})
     measure({.environment = environment_named(environment), .device = device_named(argc > 1 ? argv[1] : "auto")},
             robots, argc > 4 ? std::stoi(argv[4]) : 20);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "bench/full_cube.h"
 #include "bench/published_kernel.cuh"
 #include "mercury/cuda_devices.h"
 #include "mercury/random_voxel.h"
@@ -48,11 +49,7 @@ int main(int argc, char** argv) try {
     std::fputs("bench_published [robots >= 1] [voxels per side >= 1]\n", stderr);
     return 2;
   }
-  RandomVoxelOptions full;
-  full.smallest = full.largest = {side, side, side};
-  full.air = 0;
-  full.patch = 1;
-  full.mirror = Mirror::none;
+  RandomVoxelOptions full = full_cube(side);
   full.frequencies = 5;
   const std::vector<Robot> robots = random_voxel_robots(full, 1, static_cast<std::size_t>(count));
   const double ours = measure_mercury(robots, 1), theirs = published::measure(robots, 1).springs_per_second;

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/named_values.h"
 #include "render/readback.h"
 #include "render/renderer.h"
 
@@ -75,17 +76,7 @@ struct Options {
 
 Options options_of(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const auto found = options.set.find(argument.substr(0, argument.find('=')));
-    if (found == options.set.end()) {
-      std::fprintf(stderr, "bench_render_frames: %s is not accepted; give NAME=VALUE with one of", argument.c_str());
-      for (const auto& [name, value] : options.set) std::fprintf(stderr, " %s", name.c_str());
-      std::fprintf(stderr, "\n");
-      std::exit(2);
-    }
-    found->second = argument.substr(argument.find('=') + 1);
-  }
+  mercury::set_named_values(options.set, argc, argv);
   return options;
 }
 

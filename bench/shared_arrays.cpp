@@ -8,15 +8,16 @@
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
+#include "mercury/stopwatch.h"
 #include "sim/cuda/launch_configuration.h"
 #include "sim/cuda/memory.h"
 
@@ -35,15 +36,6 @@ constexpr Mode modes[] = {{"step()", false, false, false},
                           {"  arrays written", true, false, true},
                           {"  actuators driven", true, true, false},
                           {"  both", true, true, true}};
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 // Steps one batch as a program in one of the modes does.
 class Loop {
@@ -68,11 +60,11 @@ class Loop {
 
   // Some calls, without and with waiting for the device.
   void take_turn() {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_now();
     for (int call = 0; call < calls_per_turn; ++call) step();
-    queued_.push_back(seconds_since(start) / calls_per_turn);
+    queued_.push_back((wall_now() - start) / calls_per_turn);
     stream_.synchronize();
-    done_.push_back(seconds_since(start) / calls_per_turn);
+    done_.push_back((wall_now() - start) / calls_per_turn);
   }
 
   double seconds_per_call() const { return median(done_); }
@@ -148,10 +140,10 @@ int main(int argc, char** argv) try {
   const std::vector<Robot> robots = random_voxel_robots(solid, 1, static_cast<std::size_t>(count));
   std::vector<std::unique_ptr<Loop>> loops;
   for (const Mode& mode : modes) loops.push_back(std::make_unique<Loop>(mode, robots, steps));
-  const auto start = std::chrono::steady_clock::now();
+  const double start = wall_now();
   do {
     for (const auto& loop : loops) loop->take_turn();
-  } while (seconds_since(start) < seconds * static_cast<double>(loops.size()));
+  } while (wall_now() - start < seconds * static_cast<double>(loops.size()));
 
   std::printf("%s, %d robots of %zu masses and %zu springs, %zu actuators, %d steps per call\n",
               cuda_device_name(0).c_str(), count, robots[0].masses.size(), robots[0].springs.size(),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/full_cube.h"
 #include "bench/timing.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
@@ -44,11 +45,7 @@ int main(int argc, char** argv) {
   configuration.device = device_named(argc > 1 ? argv[1] : "auto");
   const std::size_t count = argc > 2 ? std::stoul(argv[2]) : 528;
   const int turns = argc > 3 ? std::stoi(argv[3]) : 200;
-  RandomVoxelOptions full;
-  full.smallest = full.largest = {10, 10, 10};
-  full.air = 0;
-  full.patch = 1;
-  full.mirror = Mirror::none;
+  RandomVoxelOptions full = full_cube(10);
   full.frequencies = 5;
   const std::vector<Robot> robots = random_voxel_robots(full, 1, count);
   measure(configuration, robots, turns);

@@ -3,16 +3,17 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <vector>
+
+#include "mercury/stopwatch.h"
 
 namespace mercury {
 
 inline double seconds_of(const auto& call) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = wall_now();
   call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return wall_now() - start;
 }
 
 inline double median(std::vector<double> values) {

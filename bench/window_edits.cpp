@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures how long the pictures of the window wait for an edit of a large scene, and the steps per second at unlimited
+// Measures how long the frames of the window wait for an edit of a large scene, and the steps per second at unlimited
 // speed: bench_window_edits [robots [side]].
 //
 // The robots are random voxel robots of side^3 voxels without air: side 10 has 1,331 masses and 14,230 springs. Prints
-// per edit the longest time of the scene's work for one picture (LiveScene::frame() and uploading bodies to the
-// renderer) and the time until a picture shows the edit.
+// per edit the longest time of the scene's work for one frame (LiveScene::frame() and uploading bodies to the
+// renderer) and the time until a frame shows the edit.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +17,7 @@
 #include "app/live/scene_robots.h"
 #include "app/live/scene_time.h"
 #include "mercury/random_voxel.h"
+#include "mercury/stopwatch.h"
 #include "render/context/context.h"
 #include "render/renderer.h"
 
@@ -24,24 +25,22 @@ namespace {
 
 using namespace mercury;
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 class Window {
  public:
   Window()
       : context_(render::make_context({.kind = render::ContextKind::automatic})),
         renderer_(*context_, {.width = 64, .height = 64}) {}
 
-  // Returns the time that one picture waits [s].
-  double picture(LiveScene& scene) {
-    const double start = now();
+  // Returns the time that one frame waits [s].
+  double frame(LiveScene& scene) {
+    const double start = wall_now();
     scene.frame();
     DrawnScene& live = scene.drawn();
     if (bodies_ != live.bodies_revision()) {
       live.set_bodies(renderer_);
       bodies_ = live.bodies_revision();
     }
-    return now() - start;
+    return wall_now() - start;
   }
 
  private:
@@ -52,17 +51,17 @@ class Window {
 
 void measure(Window& window, LiveScene& scene, const char* name, const std::function<void()>& edit,
              const std::function<bool()>& seen) {
-  const double begin = now();
+  const double begin = wall_now();
   edit();
-  const double call = now() - begin;
+  const double call = wall_now() - begin;
   double longest = 0;
-  while (!seen() && now() - begin < 60) {
-    longest = std::max(longest, window.picture(scene));
+  while (!seen() && wall_now() - begin < 60) {
+    longest = std::max(longest, window.frame(scene));
     std::this_thread::sleep_for(std::chrono::milliseconds(4));
   }
-  longest = std::max(longest, window.picture(scene));
-  std::printf("%-28s call %6.1f ms   longest picture %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest,
-              1e3 * (now() - begin));
+  longest = std::max(longest, window.frame(scene));
+  std::printf("%-28s call %6.1f ms   longest frame %6.1f ms   seen after %7.1f ms\n", name, 1e3 * call, 1e3 * longest,
+              1e3 * (wall_now() - begin));
 }
 
 // Measures steps per second while 60 frames per second are shown, and of the simulation alone.
@@ -74,39 +73,38 @@ void measure_speed(Window& window, LiveScene& scene) {
   scene.time().play();
   const auto playing = [&](double wanted) {
     const std::int64_t first = scene.snapshot().steps;
-    std::int64_t pictures = 0, seen = first;
-    const double begin = now();
-    while (now() - begin < wanted) {
-      window.picture(scene);
-      pictures += scene.snapshot().steps != seen;
+    std::int64_t frames = 0, seen = first;
+    const double begin = wall_now();
+    while (wall_now() - begin < wanted) {
+      window.frame(scene);
+      frames += scene.snapshot().steps != seen;
       seen = scene.snapshot().steps;
       std::this_thread::sleep_for(std::chrono::milliseconds(16));
     }
-    const double spent = now() - begin;
-    return std::pair{static_cast<double>(scene.snapshot().steps - first) / spent,
-                     static_cast<double>(pictures) / spent};
+    const double spent = wall_now() - begin;
+    return std::pair{static_cast<double>(scene.snapshot().steps - first) / spent, static_cast<double>(frames) / spent};
   };
   playing(1);  // until the interval of samples is constant
-  const auto [in_window, pictures] = playing(seconds);
+  const auto [in_window, frames] = playing(seconds);
   scene.time().pause();
   scene.wait_until_done();
   Simulation simulation(scene.document().configuration, robots);
   std::int64_t call = 1;
-  double begin = now(), spent = 0;
+  double begin = wall_now(), spent = 0;
   std::int64_t first = 0;
   while (spent < seconds) {
-    const double start = now();
+    const double start = wall_now();
     simulation.step(call);
-    if (now() - start < 0.1) {  // calls are still too short
+    if (wall_now() - start < 0.1) {  // calls are still too short
       call *= 2;
-      begin = now();
+      begin = wall_now();
       first = simulation.steps();
     }
-    spent = now() - begin;
+    spent = wall_now() - begin;
   }
   const double alone = static_cast<double>(simulation.steps() - first) / spent;
-  std::printf("unlimited speed: %.4g steps/s with %.1f new frames/s; %.4g steps/s alone (%.0f %%)\n", in_window,
-              pictures, alone, 100 * in_window / alone);
+  std::printf("unlimited speed: %.4g steps/s with %.1f new frames/s; %.4g steps/s alone (%.0f %%)\n", in_window, frames,
+              alone, 100 * in_window / alone);
 }
 
 }  // namespace
@@ -153,9 +151,9 @@ int main(int argc, char** argv) {
       [&] { return scene.snapshot().configuration.damping == 0.5; });
   measure(
       window, scene, "reset", [&] { scene.time().reset(); }, [&] { return scene.snapshot().resets > 0; });
-  double picture = 0;
-  for (int i = 0; i < 20; ++i) picture += window.picture(scene) / 20;
-  std::printf("a picture without edits %.2f ms\n", 1e3 * picture);
+  double frame = 0;
+  for (int i = 0; i < 20; ++i) frame += window.frame(scene) / 20;
+  std::printf("a frame without edits %.2f ms\n", 1e3 * frame);
   measure_speed(window, scene);
   return 0;
 }

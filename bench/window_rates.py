@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures and steps per second of the window, beside the steps of the same robots without a window.
+"""Frames and steps per second of the window, beside the steps of the same robots without a window.
 
     bench/window_rates.py build/bin/mercury --robots 1 12 100 1000 --seconds 8 --csv rates.csv
 
-Robots are full lattices of 10x10x10 voxels (1,331 masses, 14,230 springs). Each count runs in real time, where pictures
+Robots are full lattices of 10x10x10 voxels (1,331 masses, 14,230 springs). Each count runs in real time, where frames
 count, and as fast as possible, where steps count, with positions on the GPU and through the host. The window is
 unpaced: it draws as often as it can. It needs a display; the device is --device. An X server without a screen copies
 each frame from the GPU to the host, which takes 4 to 5 ms: "present", and "without_display" are the frames without it.
@@ -50,7 +50,7 @@ def frames_of(report):
 
 
 def window_rates(program, robots, arguments, seconds, extra, environment):
-    """Per second: frames, frames if bringing them to the display took no time, drawn pictures, steps; and the time of
+    """Per second: frames, frames if bringing them to the display took no time, drawn robots, steps; and the time of
     each part of a frame [ms]."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.jsonl"
@@ -77,7 +77,7 @@ def window_rates(program, robots, arguments, seconds, extra, environment):
     wall = frames[-1]["clock"] - frames[0]["clock"]
     count = frames[-1]["number"] - frames[0]["number"]
     present = mean(f["cost"]["present"] for f in frames)
-    return {"pictures_per_second": count / wall, "without_display": count / (wall - count * present),
+    return {"frames_per_second": count / wall, "without_display": count / (wall - count * present),
             "robots_drawn_per_second": (frames[-1]["drawn"] - frames[0]["drawn"]) / wall,
             **{f"{part}_ms": 1e3 * mean(f["cost"][part] for f in frames) for part in frames[0]["cost"]},
             "steps_per_second": (frames[-1]["steps"] - frames[0]["steps"]) / wall,

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "mercury/number_text.h"
 #include "mercury/quantity.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 namespace {

@@ -11,8 +11,8 @@
 #include "mercury/error.h"
 #include "mercury/evolution.h"
 #include "mercury/names.h"
+#include "mercury/number_text.h"
 #include "mercury/quantity.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 namespace {

@@ -12,7 +12,8 @@
 
 #include "evolution/trial_robot.h"
 #include "mercury/error.h"
-#include "mercury/origin.h"
+#include "mercury/generator.h"
+#include "mercury/observables.h"
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/real_body.h"
@@ -73,21 +74,6 @@ class TrialSource {
   std::map<std::size_t, std::shared_ptr<Taken>> taken_;
 };
 
-// Of the masses at these positions [m].
-std::array<double, 3> center_of(const Robot& robot, std::span<const Vec3> positions) {
-  std::array<double, 3> sum{};
-  double mass = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto m = static_cast<double>(mass_of(robot, i));
-    mass += m;
-    sum[0] += m * static_cast<double>(positions[i].x);
-    sum[1] += m * static_cast<double>(positions[i].y);
-    sum[2] += m * static_cast<double>(positions[i].z);
-  }
-  for (double& each : sum) each /= mass;
-  return sum;
-}
-
 // The first trial has the noise of a robot outside of trials.
 std::uint64_t noise_seed_of(std::uint64_t seed, std::size_t trial) {
   constexpr std::uint64_t of_noise = 0x6e6f697365000u;
@@ -99,7 +85,10 @@ float shortest_rest_length(const Robot& robot) {
   return std::ranges::min(robot.springs, {}, &Spring::rest_length).rest_length;
 }
 
-bool is_of_network(const Robot& robot) { return kind_of(robot) == "nn"; }
+bool may_be_tiny(const Robot& robot) {
+  const Generator* generator = generator_of(robot);
+  return generator && generator->may_be_tiny;
+}
 bool has_real_body(const Robot& robot) { return real_material_of(robot).has_value(); }
 
 bool is_of_folding(const Limit& limit) { return quantities()[find_quantity(limit.quantity).value()].of_folding; }
@@ -113,7 +102,7 @@ constexpr Limit limits_table[] = {
      .value = &TrialSettings::least_masses,
      .is_least = true,
      .fate = Fate::too_small,
-     .applies = is_of_network},
+     .applies = may_be_tiny},
 };
 
 // Calls found(limit, by how much it was exceeded as a share of it) for each limit that a trial broke.
@@ -207,7 +196,7 @@ void begin_trial(const Robot& robot, const TrialSettings& settings, const Enviro
       position = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
     }
   };
-  std::array<double, 3> center = center_of(robot, positions);
+  std::array<double, 3> center = mean_over_masses(robot, positions);
   if (settings.turned) {
     const auto [sine, cosine] = wave(Random(seed_of(seed_of(seed, trial), of_turn)).uniform());
     move([&, s = sine, c = cosine](double x, double y, double z) -> std::array<double, 3> {

@@ -95,6 +95,13 @@ Bounds bounds_of(std::span<const float> points) {
   return bounds;
 }
 
+Bounds bounds_of(std::span<const Bounds> boxes) {
+  Bounds all;
+  for (const Bounds& box : boxes)
+    if (!box.empty()) all.extend(box);
+  return all;
+}
+
 Matrix4 Camera::view() const {
   const Axes axes = axes_of(*this);
   Matrix4 m = Matrix4::identity();

@@ -21,6 +21,8 @@ struct Bounds {
 
 // The box around points, 3 floats each; ignores points that are not finite.
 Bounds bounds_of(std::span<const float> points);
+// The box around boxes; ignores empty ones.
+Bounds bounds_of(std::span<const Bounds> boxes);
 
 // The i-th of `count` points spread over the unit disc (golden-angle spiral).
 Vector2 disc_sample(int i, int count);
@@ -70,7 +72,7 @@ struct Insets {
 // A camera that turns around a target.
 struct Orbit {
   Vector3 target{0, 0, 0};     // [m]
-  float azimuth = -1.0f;       // direction from target to eye, from +x towards +y [rad]
+  float azimuth = -1.0f;       // direction from target to eye, from +x toward +y [rad]
   float elevation = 0.45f;     // above the horizon [rad], -pi/2 to pi/2
   float distance = 6;          // [m]
   float field_of_view = 0.6f;  // [rad]

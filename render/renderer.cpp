@@ -287,7 +287,7 @@ void Renderer::Parts::draw_solid(const Scene& scene, const Camera& camera, const
   timer.mark("surroundings");
 }
 
-// The light that water or air scatters towards the eye.
+// The light that water or air scatters toward the eye.
 void Renderer::Parts::draw_beams() const {
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_BLEND);

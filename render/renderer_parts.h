@@ -2,7 +2,7 @@
 // What a Renderer consists of, and how it draws one picture.
 //
 //   positions           each body's box; each face's normal; what the shadow map and the floor's light map cover; the
-//                       plane that cuts each body; lists of the faces that turn towards the eye and towards the light
+//                       plane that cuts each body; lists of the faces that turn toward the eye and toward the light
 //   shadow map          depth, seen from the key light
 //   prints              dents in the ground as a map
 //   light on the floor  soft shadows on the floor as a map; under water, a tile of caustics

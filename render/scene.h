@@ -144,7 +144,7 @@ struct Ghost {
 
 // The key light of a picture, in place of that of its theme.
 struct KeyLight {
-  Vector3 to_key{0, 0, 1};  // direction towards it
+  Vector3 to_key{0, 0, 1};  // direction toward it
 };
 
 struct Show {
@@ -175,7 +175,7 @@ struct Scene {
 
   Surroundings surroundings = Surroundings::water;
   Theme theme = Theme::dark;
-  std::optional<KeyLight> against_light;  // the camera looks towards this light, which bodies, water and air scatter
+  std::optional<KeyLight> against_light;  // the camera looks toward this light, which bodies, water and air scatter
   float floor = 0;                        // height of the ground or sand [m]
   bool catch_shadows = false;  // without surroundings: bodies still darken the backdrop where the floor would be
   // The backdrop is of this light alone, and bodies do not depend on it: what matted() takes two pictures of.

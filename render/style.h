@@ -9,7 +9,7 @@ namespace mercury::render {
 
 // All colors of light are linear.
 struct Style {
-  Vector3 to_key{0.35f, -0.45f, 0.85f};  // direction towards the key light, any length
+  Vector3 to_key{0.35f, -0.45f, 0.85f};  // direction toward the key light, any length
   Vector3 key_light, sky_light, ground_light;
   float key_size = 0.08f;               // tangent of the key light's half angle; larger = softer shadows
   Vector3 backdrop_high, backdrop_low;  // far away: level and above; straight down (on land straight up)
@@ -26,7 +26,7 @@ struct Style {
 
 // `values`: bodies are colored by values. Dark water is darker then, because the low ends of color maps are as dark.
 Style style_of(Surroundings surroundings, Theme theme, bool values = false);
-// The light of that style for pictures that look towards it: deep water with a bright surface; the last sun on land.
+// The light of that style for pictures that look toward it: deep water with a bright surface; the last sun on land.
 void set_against_light(Style& style, const KeyLight& light, Surroundings surroundings);
 
 }  // namespace mercury::render

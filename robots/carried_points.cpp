@@ -2,7 +2,6 @@
 #include "robots/carried_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -11,16 +10,11 @@
 #include "mercury/error.h"
 
 namespace mercury {
-namespace {
 
-// Points nearer to each other than this are one: no spring is that short.
-using Place = std::array<long long, 3>;
-Place place_of(Vec3 rest) {
+MassPlace mass_place_of(Vec3 rest) {
   const auto step = [](float x) { return std::llround(static_cast<double>(x) / (0.25 * min_rest_length)); };
   return {step(rest.x), step(rest.y), step(rest.z)};
 }
-
-}  // namespace
 
 void carry_brain(const Robot& from, Robot& to) {
   if (from.sensors.empty() && !from.brain) return;
@@ -46,11 +40,11 @@ void carry_control(const Robot& from, Robot& to) {
 
 void carry_points(const Robot& from, Robot& to) {
   if (from.mass.empty() && from.velocity.empty() && from.fixed.empty()) return;
-  std::map<Place, std::size_t> places;
-  for (std::size_t i = 0; i < from.masses.size(); ++i) places.emplace(place_of(from.masses[i]), i);
+  std::map<MassPlace, std::size_t> places;
+  for (std::size_t i = 0; i < from.masses.size(); ++i) places.emplace(mass_place_of(from.masses[i]), i);
   std::vector<std::optional<std::size_t>> source(to.masses.size());
   for (std::size_t i = 0; i < source.size(); ++i)
-    if (const auto found = places.find(place_of(to.masses[i])); found != places.end()) source[i] = found->second;
+    if (const auto found = places.find(mass_place_of(to.masses[i])); found != places.end()) source[i] = found->second;
 
   if (to.mass.empty() && !from.mass.empty()) {
     const double sum = std::accumulate(from.mass.begin(), from.mass.end(), 0.0);

@@ -2,9 +2,15 @@
 // What a robot says of its masses, and its brain, handed on to a body that is made from it.
 #pragma once
 
+#include <array>
+
 #include "mercury/robot.h"
 
 namespace mercury {
+
+// Where a mass is at rest. Masses nearer to each other than a step of it are one: no spring is that short.
+using MassPlace = std::array<long long, 3>;
+MassPlace mass_place_of(Vec3 rest);
 
 // Gives `to` the masses, velocities and fixed points of `from`, by place: a point where `from` has one gets what that
 // one has. Other points have the mean mass, and are at rest. A list that `to` has already stays.

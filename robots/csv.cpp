@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/csv.h"
 
-#include "robots/number_text.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 

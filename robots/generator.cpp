@@ -8,11 +8,11 @@
 #include "mercury/error.h"
 #include "mercury/muscle_laws.h"
 #include "mercury/names.h"
+#include "mercury/number_text.h"
 #include "mercury/origin.h"
 #include "mercury/real_body.h"
 #include "robots/carried_points.h"
 #include "robots/make_all.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 

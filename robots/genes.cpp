@@ -87,6 +87,12 @@ MaterialGenes read_material_genes(ByteReader& reader) {
   return genes;
 }
 
+void require_known_count(const MaterialGenes& genes) {
+  const std::size_t count = genes.size();
+  if (count != 0 && count != base_material_count && count + 1 < default_material_count)
+    throw InputError("genome", std::to_string(count) + " materials are not accepted; give 22, or 253 or more");
+}
+
 void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vector<bool>& in_use) {
   const MaterialGenes all = filled_in(genes);
   const bool only_used = all.size() == base_material_count && !in_use.empty();

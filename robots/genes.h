@@ -167,6 +167,8 @@ std::size_t muscle_numbers_of(const MaterialGenes& genes, const std::vector<bool
 void write(ByteWriter& writer, const MaterialGenes& genes);
 // Throws InputError for materials that are not valid.
 MaterialGenes read_material_genes(ByteReader& reader);
+// Throws InputError unless they are none, the base materials, or a whole table.
+void require_known_count(const MaterialGenes& genes);
 
 // Adds the materials in use; all with an empty list or in a whole table, whose pairs are materials of their own.
 void add_identity(IdentityHash& hash, const MaterialGenes& genes, const std::vector<bool>& in_use);

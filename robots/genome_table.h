@@ -98,7 +98,7 @@ inline double value_of(const GeneratorParameter& description, double number) {
   return bounded(number * (usual_step * (high - low)), low, high);
 }
 
-// moved(), drawn again where it changes nothing; at last the number `nudged` moves by a millionth of its range, towards
+// moved(), drawn again where it changes nothing; at last the number `nudged` moves by a millionth of its range, toward
 // the middle.
 template <class Genome, class Chosen>
 Genome surely_moved(const Genome& genome, const ParameterTable<Genome>& table, double size, std::uint64_t seed,

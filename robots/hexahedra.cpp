@@ -40,7 +40,7 @@ std::array<Vector, 3> edges_of(const Robot& robot, const Hexahedron& cell) {
 std::array<double, 8> spring_shares(const Vector& sizes) {
   constexpr std::array<double, 8> cube{0, 0.15, 0.15, 0.2, 0.15, 0.2, 0.2, 0.45};
   // Seven shares and six moduli C_ijkl = sum of 4 share n_i n_j n_k n_l [E]: xxxx, yyyy, zzzz, xxyy, yyzz, zzxx. A weak
-  // pull towards the cube's shares chooses among those that do.
+  // pull toward the cube's shares chooses among those that do.
   constexpr std::array<double, 6> wanted{1.2, 1.2, 1.2, 0.4, 0.4, 0.4};
   constexpr double pull = 0.05;
   std::array<std::array<double, 6>, 8> moduli{};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <numeric>
 
 namespace mercury {
@@ -34,6 +35,23 @@ std::string list_of(const std::vector<std::string>& names, const char* last) {
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) list += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
   return list;
+}
+
+std::string toml_text(std::string_view text) {
+  std::string quote = "\"";
+  for (const char letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (letter == '"' || letter == '\\') {
+      quote.append({'\\', letter});
+    } else if (byte < 0x20 || byte == 0x7f) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\u%04x", byte);
+      quote += code;
+    } else {
+      quote += letter;
+    }
+  }
+  return quote + '"';
 }
 
 std::string markup_text(std::string_view text) {

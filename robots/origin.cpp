@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "robots/file/document.h"
-#include "robots/number_text.h"
 #include "robots/origin_member.h"
 
 namespace mercury {

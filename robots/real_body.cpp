@@ -15,10 +15,10 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/random.h"
 #include "mercury/voxels.h"
 #include "robots/hexahedra.h"
-#include "robots/number_text.h"
 #include "robots/origin_member.h"
 
 namespace mercury {

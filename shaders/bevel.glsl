@@ -8,7 +8,7 @@ const vec2 pixels_beveled = vec2(7.0, 11.0);  // faces of this many pixels are n
 
 vec3 normal_of(uint bits) { return normalize(unpacked_direction(bits)); }
 
-// The face's normal at a point in the body's coordinates. Towards the edges it is blended with the neighbors', so that both
+// The face's normal at a point in the body's coordinates. Toward the edges it is blended with the neighbors', so that both
 // sides of an edge agree.
 vec3 beveled_normal(SeenFace face, vec3 normal, vec3 local, out float seam) {
   seam = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of the faces that turn towards the eye and towards the key light; render/passes/visibility_passes.h explains the stages.
+// Lists of the faces that turn toward the eye and toward the key light; render/passes/visibility_passes.h explains the stages.
 // STAGE 0 counts the faces in groups of 256, 1 sums the counts, 2 writes the lists.
 #include "frame.glsl"
 #include "bodies.glsl"

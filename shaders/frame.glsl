@@ -11,7 +11,7 @@ layout(std140, binding = 0) uniform Frame {
   mat4 view;                     // world to eye, which looks along -z
   mat4 shadow;                   // world to shadow map and its depth
   vec4 eye;                      // world; w = time [s]
-  vec4 to_key;                   // direction towards the key light; w = tangent of its half angle
+  vec4 to_key;                   // direction toward the key light; w = tangent of its half angle
   vec4 key_light;                // linear light; w = strength of muscles' glow
   vec4 sky_light;                // from straight above; w = how fast haze over land gives way to blue sky
   vec4 ground_light;             // from straight below

@@ -2,7 +2,7 @@
 // The share of ambient light that arrives, from the half-size map of occlusion.comp. Needs frame.glsl.
 layout(binding = 3) uniform sampler2D occlusion_map;  // share of ambient light, depth
 
-// The mean of the four nearest texels, weighted towards those at this pixel's depth.
+// The mean of the four nearest texels, weighted toward those at this pixel's depth.
 float openness(vec2 pixel, float range) {
   vec2 size = vec2(textureSize(occlusion_map, 0));
   vec2 at = 0.5 * pixel;

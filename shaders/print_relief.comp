@@ -23,7 +23,7 @@ void main() {
   ivec2 low = max(texel - 1, ivec2(0)), high = min(texel + 1, size - 1);
   vec2 slope = vec2(height_at(ivec2(high.x, texel.y)) - height_at(ivec2(low.x, texel.y)),
                     height_at(ivec2(texel.x, high.y)) - height_at(ivec2(texel.x, low.y))) / (2.0 * side);
-  // Towards the key light, as far as the highest rim could hide it.
+  // Toward the key light, as far as the highest rim could hide it.
   float lit = 1.0;
   const int steps = 10;
   float rise = to_key.z / max(length(to_key.xy), 1e-3);

@@ -9,6 +9,6 @@ struct SeenFace {
   uvec4 normals_around;  // packed normals of FaceRecord.neighbors; NO_NORMAL = none
   uint normal;           // packed
   uint material;
-  uint shape_and_size;   // halves: FaceRecord.shape, how wide the face is in the picture [pixels], turned towards the eye
+  uint shape_and_size;   // halves: FaceRecord.shape, how wide the face is in the picture [pixels], turned toward the eye
   uint face;
 };

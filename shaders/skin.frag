@@ -145,7 +145,7 @@ void main() {
   if (dot(normal, frame.to_key.xyz) > -0.25) key = frame.key_light.rgb * found.x;
 #else
   float open = openness(gl_FragCoord.xy, depth);
-  if (dot(normal, frame.to_key.xyz) > -0.25) {  // it turns towards the light
+  if (dot(normal, frame.to_key.xyz) > -0.25) {  // it turns toward the light
     key = frame.key_light.rgb * key_visibility(world, flat_normal, pixel_noise(gl_FragCoord.xy));
 #if AROUND == AROUND_WATER
     key *= caustics_on_skin(surface_point(world), 0.0);

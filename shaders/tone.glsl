@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From linear light to what a screen shows.
 
-// Identity up to `shoulder`, so that colors of values keep their meaning; above it, bends towards 1 and towards white,
+// Identity up to `shoulder`, so that colors of values keep their meaning; above it, bends toward 1 and toward white,
 // like photographic film.
 vec3 tone_mapped(vec3 light) {
   const float shoulder = 0.62;

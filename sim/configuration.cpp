@@ -2,10 +2,10 @@
 #include "mercury/configuration.h"
 
 #include <algorithm>
-#include <charconv>
 #include <thread>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/threads.h"
 
 namespace mercury {
@@ -48,10 +48,8 @@ Device device_named(std::string_view name) {
   if (name == "cuda") return {.kind = DeviceKind::cuda};
   if (name == "cuda:all") return {.kind = DeviceKind::cuda, .index = Device::all_devices};
   if (name.starts_with("cuda:")) {
-    const std::string_view digits = name.substr(5);
-    Device device{.kind = DeviceKind::cuda};
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), device.index);
-    if (error == std::errc{} && end == digits.data() + digits.size() && device.index >= 0) return device;
+    const auto index = parse_number<int>(name.substr(5));
+    if (index >= 0) return {.kind = DeviceKind::cuda, .index = *index};
   }
   throw ParameterError("device", "\"" + std::string(name) +
                                      "\" is not a device; give auto, cpu, cuda, cuda:N or cuda:all" +

@@ -6,7 +6,7 @@
 //       └────────────────────── memory of robots that were yielded ──────────────────────────────┘
 //
 // 1. One thread makes pieces of consecutive robots, each on all cores unless the source is serial. A piece is complete
-//    when it has as many robots as usual (fewer towards the end if there are several devices), when a device has too
+//    when it has as many robots as usual (fewer toward the end if there are several devices), when a device has too
 //    little to do and the piece is not tiny, or when its share of the memory is used up.
 // 2. Each device has several workers, each with a simulation of its own: while the robots of one are stepped, those of
 //    another are loaded. A worker takes several pieces as one portion (evaluator_threads.cpp).

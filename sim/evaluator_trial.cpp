@@ -8,6 +8,7 @@
 
 #include "mercury/error.h"
 #include "mercury/parallel.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury {
 namespace {
@@ -146,12 +147,12 @@ void PortionTrial::step_and_observe(std::int64_t steps) {
 
 template <class Call>
 void PortionTrial::timed(std::int64_t steps, Call call) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = wall_now();
   {
     const UnionClock::Interval all(*context_.stepping), device(*context_.device_stepping);
     call();
   }
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double elapsed = wall_now() - start;
   const double wanted = simulation_.cuda_device() >= 0 ? cuda_call : cpu_call;
   const bool as_many_as_allowed = 2 * steps > steps_per_call();
   if (elapsed > wanted || as_many_as_allowed)

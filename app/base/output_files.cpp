@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -22,6 +21,7 @@
 #include "app/base/messages.h"
 #include "mercury/error.h"
 #include "mercury/file_links.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -67,12 +67,6 @@ int access_error(const fs::path& path, int mode) {
   return ::faccessat(AT_FDCWD, path.c_str(), mode, AT_EACCESS) == 0 ? 0 : errno;
 }
 
-bool is_robot_file(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  return extension == ".json" || extension == ".cbor";
-}
-
 using FileNumber = std::pair<dev_t, ino_t>;
 FileNumber number_of(const struct stat& status) { return {status.st_dev, status.st_ino}; }
 
@@ -86,7 +80,7 @@ std::set<FileNumber> files_of(const std::vector<fs::path>& inputs) {
     if (!S_ISDIR(status->st_mode)) continue;
     std::error_code error;
     for (fs::recursive_directory_iterator entry(input, error), end; !error && entry != end; entry.increment(error))
-      if (const auto inside = status_of(entry->path()); is_robot_file(entry->path()) && inside)
+      if (const auto inside = status_of(entry->path()); find_robot_format(entry->path()) && inside)
         files.insert(number_of(*inside));
   }
   return files;

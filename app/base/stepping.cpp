@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "app/base/interrupt.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury {
 
@@ -12,9 +13,9 @@ bool Stepper::advance_to(std::int64_t target) {
   while (simulation_.steps() < target) {
     if (interrupted()) return false;
     const std::int64_t count = std::min(steps_per_call_, target - simulation_.steps());
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_now();
     simulation_.step(count);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = wall_now() - start;
     wall_seconds_ += seconds;
     if (seconds > target_duration)
       steps_per_call_ = std::max<std::int64_t>(1, count / 2);

@@ -2,7 +2,6 @@
 // Steps a simulation so that the user can interrupt it.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
 #include "mercury/simulation.h"

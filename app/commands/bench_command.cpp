@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -27,6 +26,7 @@
 #include "mercury/random_voxel.h"
 #include "mercury/real_body.h"
 #include "mercury/simulation.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury {
 namespace {
@@ -61,8 +61,6 @@ struct Measurement {
 
 constexpr std::int64_t steps_hashed = 100;
 constexpr std::int64_t sweep_steps = 1000;  // per call in a sweep
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // Boxes without air, with a random material per voxel; of real bodies, per robot, so that they have as many springs.
 // Throws Interrupted after Ctrl-C.
@@ -128,13 +126,13 @@ std::int64_t advance(Simulation& simulation, std::int64_t steps, double seconds_
 // if nothing has been measured by then.
 Measurement measure(const BenchOptions& options, const Configuration& configuration, std::size_t count) {
   Measurement result;
-  double start = now();
+  double start = wall_now();
   const auto robots = make_robots(options, count);
-  result.making = now() - start;
-  start = now();
+  result.making = wall_now() - start;
+  start = wall_now();
   Simulation simulation(configuration, robots, shown_work());
   simulation.step(1);
-  result.loading = now() - start;
+  result.loading = wall_now() - start;
   constexpr std::int64_t first_steps = 4;  // show how long a step takes
   double before = simulation.busy_seconds();
   simulation.step(first_steps);

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -34,6 +33,7 @@
 #include "mercury/quantity.h"
 #include "mercury/run_folder.h"
 #include "mercury/shards.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury {
 namespace {
@@ -127,10 +127,10 @@ bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor, ChampionCh
   };
   bool has_warned = false;
   while (!evolution.is_over()) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_now();
     const std::optional<Generation> generation = evolution.advance(assessor, watch);
     if (!generation) return false;
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = wall_now() - start;
     if (checks) checks->update();  // of the generations before, which are written
     run.append_later(*generation, {.seconds = seconds, .device = assessor.device_name()});
     if (!has_warned) has_warned = warn_of_undefined(*generation);

@@ -57,13 +57,13 @@ void add_files_of(const fs::path& folder, bool recursive, std::vector<fs::path>&
   }
   if (error) throw InputError(folder.string(), error.message());
   const auto has = [&](std::string_view extension) {
-    return std::ranges::any_of(own, [&](const fs::path& file) { return file.extension() == extension; });
+    return std::ranges::any_of(own, [&](const fs::path& file) { return extension_of(file) == extension; });
   };
   std::ranges::sort(own);
-  const auto others = std::ranges::count_if(own, [](const fs::path& f) { return f.extension() == ".rsc"; });
+  const auto others = std::ranges::count_if(own, [](const fs::path& f) { return extension_of(f) == ".rsc"; });
   for (const fs::path& file : own) {
     if (!import_format_of(file)) continue;
-    const bool builds = file.extension() == ".rsc" ? others > 1 : has(".vxd");
+    const bool builds = extension_of(file) == ".rsc" ? others > 1 : has(".vxd");
     if (is_import_base(file) && builds)
       say_detail(fmt::format("{}: the base of the files beside it", file.string()));
     else

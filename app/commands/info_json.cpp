@@ -14,6 +14,7 @@
 #include "mercury/generator.h"
 #include "mercury/import.h"
 #include "mercury/inspect.h"
+#include "mercury/number_text.h"
 #include "mercury/origin.h"
 #include "mercury/quantity.h"
 #include "mercury/real_body.h"

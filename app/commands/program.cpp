@@ -18,6 +18,7 @@
 #include "app/base/standard_streams.h"
 #include "app/base/version.h"
 #include "app/commands/command_list.h"
+#include "app/commands/command_table.h"
 #include "app/options/config_file.h"
 #include "app/options/option_values.h"
 #include "app/options/scene_file.h"
@@ -25,21 +26,26 @@
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
 #include "mercury/names.h"
+#include "mercury/stopwatch.h"
 #include "robots/file/document.h"
 
 namespace mercury {
 
-// All commands in the order of the help, each in a file of its own. describe-options comes after help.
-AddCommand add_view_command, add_render_command, add_run_command, add_evolve_command, add_new_command,
-    add_mutate_command, add_cross_command, add_grow_command, add_export_command, add_import_command, add_bench_command,
-    add_verify_command, add_check_command, add_info_command, add_describe_command;
-
 namespace {
 
-constexpr std::array commands{add_view_command,   add_render_command, add_run_command,   add_evolve_command,
-                              add_new_command,    add_mutate_command, add_cross_command, add_grow_command,
-                              add_export_command, add_import_command, add_bench_command, add_verify_command,
-                              add_check_command,  add_info_command};
+// In the help. Other commands follow by their names; describe-options comes after help.
+constexpr std::array<std::string_view, 14> order_of_help{"view",   "render", "run",   "evolve", "new",
+                                                         "mutate", "cross",  "grow",  "export", "import",
+                                                         "bench",  "verify", "check", "info"};
+std::vector<NamedCommand> commands_in_order() {
+  std::vector<NamedCommand> commands;
+  for (const NamedCommand& command : command_table)
+    if (command.add != add_describe_command) commands.push_back(command);
+  std::ranges::stable_sort(commands, {}, [](const NamedCommand& command) {
+    return std::ranges::find(order_of_help, command.name) - order_of_help.begin();
+  });
+  return commands;
+}
 
 constexpr const char* footer =
     "Options may stand before or after the name of the command, and in a file for --config.\n\n"
@@ -88,14 +94,14 @@ class Program {
     const Command program = tree_.root();
     program.set_footer(footer);
     const Choose choose = [this](CommandBody body) { body_ = std::move(body); };
-    for (AddCommand* const add : commands) add(program, choose);
+    for (const NamedCommand& command : commands_in_order()) command.add(program, choose);
     add_help_command(program);
     add_describe_command(program, choose);
     add_general_options(program);
   }
 
   int run(std::vector<std::string> arguments) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_now();
     errors_as_json_ = std::ranges::find(arguments, "--json") != arguments.end();
     try {
       parse(std::move(arguments));
@@ -103,7 +109,7 @@ class Program {
       int status = body_ ? body_() : status_done;
       if (status == status_failed && interrupted()) status = stopped_status();
       flush_standard_output();
-      if (body_) say_costs(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      if (body_) say_costs(wall_now() - start);
       return status;
     } catch (const ParameterError& error) {
       return refuse(option_of(error.parameter()) + ": " + error.problem());

@@ -16,6 +16,7 @@
 #include "app/video/figure.h"
 #include "app/video/picture_file.h"
 #include "app/video/video_pipeline.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -92,7 +93,7 @@ class Filming {
       const render::Overlay& text = offscreen_->renderer.overlay();
       if (options_.video.tight()) box = joined(box, text, margin, size);
       const Figure figure{image, text, box, options_.video.dpi(), comment};
-      const bool pdf = std::filesystem::path(path).extension() == ".pdf";
+      const bool pdf = extension_of(path) == ".pdf";
       const std::string document = pdf ? figure_pdf(figure) : figure_svg(figure);
       write_picture_bytes(path, std::span(reinterpret_cast<const std::uint8_t*>(document.data()), document.size()));
     } else {

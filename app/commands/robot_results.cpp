@@ -14,6 +14,7 @@
 #include "app/recording/configuration_json.h"
 #include "mercury/distance.h"
 #include "mercury/fnv.h"
+#include "mercury/number_text.h"
 #include "mercury/quantity.h"
 #include "mercury/real_body.h"
 #include "mercury/spread.h"

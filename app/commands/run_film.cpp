@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <span>
@@ -12,6 +11,7 @@
 #include "app/commands/description.h"
 #include "app/options/option_values.h"
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/quantity.h"
 
 namespace mercury {
@@ -113,14 +113,12 @@ const Individual& individual(const RunHistory& run, std::uint64_t id) {
 // "best" or an id.
 std::uint64_t id_from(const std::string& option, const std::string& text, const RunHistory& run) {
   if (text == "best") return run.living().front();
-  std::uint64_t id = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw InputError(option, fmt::format("\"{}\" is not accepted; give best, or the number of a robot", text));
-  if (id >= run.individuals().size())
+  const auto id = parse_number<std::uint64_t>(text);
+  if (!id) throw InputError(option, fmt::format("\"{}\" is not accepted; give best, or the number of a robot", text));
+  if (*id >= run.individuals().size())
     throw InputError(option, fmt::format("the run has no robot {}; give best, or a number from 0 to {}", text,
                                          run.individuals().size() - 1));
-  return id;
+  return *id;
 }
 
 // The ancestors of a line that raised the score above that of all before them, at most `most` of them: those that

@@ -13,8 +13,8 @@
 #include "mercury/custom.h"
 #include "mercury/host_memory.h"
 #include "mercury/names.h"
+#include "mercury/number_text.h"
 #include "mercury/quantity.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 namespace {

@@ -177,7 +177,7 @@ void add_view_command(const Command& program, const Choose& choose) {
       .in_group("Window");
   command
       .add_flag("--unpaced", options->unpaced,
-                "Draw as many pictures as possible, more than the display shows: for measurements")
+                "Draw as many frames as possible, more than the display shows: for measurements")
       .in_group("Window");
   command.add_flag("--fresh", options->fresh, "Neither load nor save settings").in_group("Window");
   add_text(command, "--report", options->report,

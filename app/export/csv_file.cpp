@@ -2,32 +2,16 @@
 // A table of a motion, a line per frame: the center of mass and its velocity, and of a robot with a brain what is
 // recorded of its senses and neurons.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "app/base/output_files.h"
 #include "app/export/writers.h"
 #include "mercury/brain.h"
+#include "mercury/observables.h"
 #include "mercury/robot.h"
 
 namespace mercury {
 namespace {
-
-// Of values per mass, weighted with the masses.
-std::array<double, 3> mean_of(const Robot& robot, std::span<const Vec3> values) {
-  std::array<double, 3> sum{};
-  double total = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double mass = robot.mass.empty() ? 1 : static_cast<double>(robot.mass[i]);
-    const Vec3 value = values[i];
-    sum[0] += mass * static_cast<double>(value.x);
-    sum[1] += mass * static_cast<double>(value.y);
-    sum[2] += mass * static_cast<double>(value.z);
-    total += mass;
-  }
-  for (double& number : sum) number /= total;
-  return sum;
-}
 
 // Headings for columns, all different: the second of a name ends in " 2".
 std::vector<std::string> headings(const char* kind, const std::vector<std::string>& names) {
@@ -53,8 +37,8 @@ void write_csv(const ExportedRobot& robot, RecordedMotion& motion, const std::fi
   for (std::size_t frame = 0; frame < motion.frames(); ++frame) {
     const Pose pose = motion.pose_with_velocities(frame);
     file.print("{}", pose.time);
-    for (const double number : mean_of(robot.robot, pose.positions)) file.print(",{}", csv_number(number));
-    for (const double number : mean_of(robot.robot, pose.velocities)) file.print(",{}", csv_number(number));
+    for (const double number : mean_over_masses(robot.robot, pose.positions)) file.print(",{}", csv_number(number));
+    for (const double number : mean_over_masses(robot.robot, pose.velocities)) file.print(",{}", csv_number(number));
     for (const std::span<const float> numbers : {motion.senses(frame), motion.neurons(frame)})
       for (const float number : numbers)
         file.print(",{}", std::isfinite(number) ? fmt::format("{}", number) : std::string());

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 namespace {
@@ -100,9 +101,6 @@ std::string outputs_text(const ExportFormat& format, const std::filesystem::path
 
 namespace {
 
-// The shortest decimal number that is the same float: 0.6f is not to become 0.60000002.
-double as_written(float value) { return std::stod(fmt::format("{}", value)); }
-
 std::vector<std::string> lost_of(const Environment& environment) {
   std::vector<std::string> lost;
   const auto lose = [&](bool is_lost, const char* what) {
@@ -132,18 +130,18 @@ VxaWorld vxa_world(const Environment& environment, double damping, std::optional
   VxaWorld world{.settings = {.environment = has_face_forces(environment) ? "resistive"
                                              : has_ground(environment)    ? "land"
                                                                           : "ocean-simple",
-                              .gravity = as_written(environment.gravity.z),
-                              .stiffness_scale = as_written(environment.stiffness_scale),
+                              .gravity = shortest(environment.gravity.z),
+                              .stiffness_scale = shortest(environment.stiffness_scale),
                               .self_collision = has_contacts(environment),
                               .damping = damping,
                               .seconds = seconds},
                  .lost = lost_of(environment)};
   if (const auto* plane = std::get_if<Plane>(&environment.ground)) {
-    world.settings.friction = as_written(plane->friction);
-    world.settings.static_friction = as_written(plane->static_friction);
+    world.settings.friction = shortest(plane->friction);
+    world.settings.static_friction = shortest(plane->static_friction);
   }
   // One-sided water slows a rigid body by its windward faces alone.
-  const auto coefficient = [](float own, float density) { return as_written(own) * as_written(density) / 1000; };
+  const auto coefficient = [](float own, float density) { return shortest(own) * shortest(density) / 1000; };
   if (const auto* water = std::get_if<ResistiveDrag>(&environment.water))
     world.settings.drag_coefficient =
         (water->one_sided ? 1 : 2) * coefficient(water->normal_coefficient, water->density);

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "mercury/error.h"
 #include "mercury/import.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -131,9 +131,7 @@ const ExportFormat& export_format(std::string_view name) {
 }
 
 const ExportFormat* export_format_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  const auto found = std::ranges::find(formats, extension, &ExportFormat::extension);
+  const auto found = std::ranges::find(formats, extension_of(file), &ExportFormat::extension);
   return found == formats.end() ? nullptr : &*found;
 }
 

@@ -12,6 +12,7 @@
 #include "app/export/writers.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 namespace {

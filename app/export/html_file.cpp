@@ -24,6 +24,8 @@
 #include "mercury/error.h"
 #include "mercury/fnv.h"
 #include "mercury/names.h"
+#include "mercury/number_text.h"
+#include "mercury/observables.h"
 #include "render/context/shader_source.h"
 #include "render/style.h"
 
@@ -183,8 +185,8 @@ class PageRobotWriter {
     values.reserve(frames.count() * masses_ * 3);
     for (std::size_t frame = 0; frame < frames.count(); ++frame) {
       const std::vector<Vec3> positions = frames.positions(frame);
-      if (frame == 0) first_center_ = center_of(positions);
-      if (frame + 1 == frames.count()) last_center_ = center_of(positions);
+      if (frame == 0) first_center_ = mean_over_masses(robot_, positions);
+      if (frame + 1 == frames.count()) last_center_ = mean_over_masses(robot_, positions);
       for (std::size_t mass = 0; mass < positions.size(); ++mass) {
         if (index_[mass] < 0) continue;
         const Vec3 p = positions[mass];
@@ -193,20 +195,6 @@ class PageRobotWriter {
       choices_.watch(std::min(++done, total), total);
     }
     numbers_.add("positions", values, 3 * masses_, 2);
-  }
-
-  std::array<double, 3> center_of(std::span<const Vec3> positions) const {
-    std::array<double, 3> sum{};
-    double total = 0;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      const double mass = mass_of(robot_, i);
-      total += mass;
-      sum[0] += mass * positions[i].x;
-      sum[1] += mass * positions[i].y;
-      sum[2] += mass * positions[i].z;
-    }
-    for (double& x : sum) x /= total;
-    return sum;
   }
 
   // How far the center of mass got, on ground along it.

@@ -27,7 +27,7 @@ SkinShape skin_shape(const Robot& robot, bool with_springs);
 // The positions of the vertices at a moment [m].
 std::vector<Vec3> vertices_of(const SkinShape& shape, std::span<const Vec3> positions);
 
-// Normals of a curved skin, per vertex: the mean of its faces by their areas. Outwards; up without a face.
+// Normals of a curved skin, per vertex: the mean of its faces by their areas. Outward; up without a face.
 std::vector<Vec3> vertex_normals(const SkinShape& shape, std::span<const Vec3> vertices);
 
 // The color of each vertex: the mean of its faces in linear light, gray without a face.

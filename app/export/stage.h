@@ -22,7 +22,7 @@ struct StageFloor {
   std::array<float, 3> color;  // linear light
 };
 
-// Looks along its third axis, backwards, as cameras of glTF and USD do.
+// Looks along its third axis, backward, as cameras of glTF and USD do.
 struct StageCamera {
   std::array<render::Vector3, 3> axes;  // to the right, up, and back to the viewer, of length 1
   render::Vector3 eye;                  // [m]

@@ -15,6 +15,7 @@
 #include "app/options/generator_options.h"
 #include "app/options/option_values.h"
 #include "app/scene/view_words.h"
+#include "mercury/names.h"
 
 namespace mercury {
 namespace {
@@ -115,16 +116,7 @@ std::string toml_value(const std::string& text) {
                        text.find('.') + 1 < text.size() && std::count(text.begin(), text.end(), '.') == 1 &&
                        text.find_last_of('-') == (text.starts_with('-') ? 0 : std::string::npos);
   if (!text.empty() && ((digits && (text == "0" || text.front() != '0') && text.size() < 19) || decimal)) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    const auto code = static_cast<unsigned char>(letter);
-    if (letter == '"' || letter == '\\') quoted += '\\';
-    if (code < 0x20 || code == 0x7f)
-      quoted += fmt::format("\\u{:04x}", code);
-    else
-      quoted += letter;
-  }
-  return quoted + "\"";
+  return toml_text(text);
 }
 
 OptionValues options_of(const Configuration& configuration) {

@@ -3,142 +3,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <condition_variable>
 #include <exception>
-#include <mutex>
 #include <set>
 #include <thread>
-#include <type_traits>
 
+#include "app/live/physics_exchange.h"
 #include "app/live/recording_player.h"
 #include "app/live/timeline_player.h"
 
 namespace mercury {
-namespace {
-
-// Commands that the physics thread has not taken yet, the latest of each kind.
-struct PendingCommands {
-  struct Scene {
-    std::vector<LiveRobot> robots;
-    Configuration configuration;
-    std::shared_ptr<const Repro> repro;           // to replay, or nothing
-    std::shared_ptr<TrajectoryReader> recording;  // to play, or nothing
-    std::uint64_t surroundings = 0;
-  };
-  std::optional<Scene> scene;
-  std::optional<TrialStart> start;
-  std::optional<ViewSettings> view;
-  std::optional<std::vector<LivePerturbation>> perturbations;
-  std::optional<std::shared_ptr<PositionBridge>> bridge;
-  std::optional<bool> playing, pause_on_explosion;
-  std::optional<double> speed, seek, seek_first;  // seek_first: before go_on
-  std::optional<TimelinePlayer::Loop> loop;
-  std::optional<std::optional<SideDifference>> difference;
-  std::optional<std::vector<LiveRobot>> ghosts;
-  std::optional<std::size_t> timeline_budget;
-  std::optional<RobotId> brain;
-  std::int64_t steps = 0, steps_back = 0;
-  bool drop_steps = false, reset = false, go_on = false, quit = false;
-  std::uint64_t ticket = 0;  // of the latest wait_until_done(), 0 = none
-
-  bool any() const {
-    return scene || start || view || perturbations || bridge || playing || pause_on_explosion || speed || seek ||
-           seek_first || loop || difference || ghosts || timeline_budget || brain || steps > 0 || steps_back > 0 ||
-           reset || go_on || quit || ticket > 0;
-  }
-  // Forgets the moments that were asked for.
-  void drop_timeline() {
-    seek.reset();
-    seek_first.reset();
-    steps_back = 0;
-    go_on = false;
-  }
-};
-
-// What both threads share, under one mutex.
-class Exchange {
- public:
-  // The window's side: changes the pending commands and wakes the physics thread.
-  template <class Change>
-  void request(Change change) {
-    const std::lock_guard lock(mutex_);
-    change(pending_);
-    wake_.notify_all();
-  }
-  // The same, for a command that replaces the pending one of its kind.
-  template <class Command>
-  void set(std::optional<Command> PendingCommands::*kind, std::type_identity_t<Command> command) {
-    request([&](PendingCommands& pending) { pending.*kind = std::move(command); });
-  }
-  std::shared_ptr<const Snapshot> newest() {
-    const std::lock_guard lock(mutex_);
-    wanted_ = true;
-    wake_.notify_all();
-    return snapshot_;
-  }
-  void wait_until_done() {
-    std::unique_lock lock(mutex_);
-    const std::uint64_t ticket = pending_.ticket = ++tickets_;
-    wanted_ = true;
-    wake_.notify_all();
-    done_.wait(lock, [&] { return served_ >= ticket; });
-  }
-
-  // The physics thread's side. Takes the commands that are there. If it is `idle`, waits for them or until `due` (wall
-  // time [s]; infinity = for ever), and wakes up for a snapshot: if there is an `unpublished` state, or if
-  // `wakes_for_snapshot` and none was wanted so far.
-  struct Waiting {
-    bool idle = false, unpublished = false, wakes_for_snapshot = false;
-    double due = 0;
-  };
-  PendingCommands take(const Waiting& waiting) {
-    std::unique_lock lock(mutex_);
-    const auto ready = [&] {
-      return pending_.any() || (waiting.unpublished && (wanted_ || taken_ > served_)) ||
-             (waiting.wakes_for_snapshot && wanted_);
-    };
-    if (waiting.idle && !ready()) {
-      served_ = taken_;
-      done_.notify_all();
-      if (std::isfinite(waiting.due))
-        wake_.wait_until(
-            lock,
-            std::chrono::steady_clock::time_point(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                std::chrono::duration<double>(waiting.due))),
-            ready);
-      else
-        wake_.wait(lock, ready);
-    }
-    watched_ = wanted_;
-    PendingCommands taken = std::exchange(pending_, {});
-    taken_ = std::max(taken_, taken.ticket);
-    return taken;
-  }
-  void publish(std::shared_ptr<const Snapshot> next) {
-    const std::lock_guard lock(mutex_);
-    snapshot_ = std::move(next);
-    wanted_ = false;
-  }
-  bool is_wanted() const {  // a snapshot
-    const std::lock_guard lock(mutex_);
-    return wanted_ || is_awaited();
-  }
-  bool is_awaited() const { return taken_ > served_; }  // wait_until_done() waits; for the physics thread
-  bool was_watched() const { return watched_; }         // a snapshot was wanted at the last take(); the same
-
- private:
-  mutable std::mutex mutex_;
-  std::condition_variable wake_, done_;  // for the physics thread; for wait_until_done()
-  PendingCommands pending_;
-  std::shared_ptr<const Snapshot> snapshot_;
-  bool wanted_ = true;                      // newest() was called after the last snapshot
-  std::uint64_t tickets_ = 0, served_ = 0;  // calls of wait_until_done() begun and served
-  std::uint64_t taken_ = 0;                 // the latest one that the physics thread has taken
-  bool watched_ = false;
-};
-
-}  // namespace
 
 // The physics thread: takes commands, carries them out, steps, and publishes snapshots. All members but the exchange
 // and what is thread-safe belong to it.
@@ -174,6 +47,7 @@ struct PhysicsThread::Parts {
   PendingCommands wait_for_commands();
   bool guarded(auto task);
   void carry_out(PendingCommands& taken);
+  void begin_again(PendingCommands& taken);
   void change_robots(PendingCommands& taken, bool scene_changed, bool robots_changed);
   void prepare_changes(const PendingCommands& taken);
   bool set_scene(const PendingCommands::Scene& scene);
@@ -183,7 +57,7 @@ struct PhysicsThread::Parts {
   void show_recording(double time);
   void seek(double time);
   void carry_out_seek(const PendingCommands& taken);
-  void make_present();
+  void make_present(bool with_keyframe);
   bool advance();
   void take_steps(std::int64_t count);
   void note_explosions() { explosions.note(*batch.robots(), batch.telemetry()); }
@@ -360,6 +234,7 @@ void PhysicsThread::Parts::carry_out(PendingCommands& taken) {
   if (taken.view) batch.watch(*taken.view);
   if (taken.view) comparison.watch(*taken.view);
   if (taken.brain) watched_brain = *taken.brain;
+  if (!guarded([&] { begin_again(taken); })) fails = true;
   if (!guarded([&] { change_robots(taken, scene_changed, robots_changed); })) fails = true;
   if (taken.bridge) batch.set_bridge(std::move(*taken.bridge));
   if (robots_changed) stepping.forget_cost();
@@ -371,8 +246,8 @@ void PhysicsThread::Parts::carry_out(PendingCommands& taken) {
   stepping.follow_time_step();
 }
 
-// What acts on the robots of the scene.
-void PhysicsThread::Parts::change_robots(PendingCommands& taken, bool scene_changed, bool robots_changed) {
+// Who goes along, and where all begin.
+void PhysicsThread::Parts::begin_again(PendingCommands& taken) {
   if (taken.difference) comparison.set_second(*taken.difference);
   if (taken.ghosts) comparison.set_ghosts(std::move(*taken.ghosts));
   if (taken.scene && taken.scene->recording)
@@ -381,6 +256,10 @@ void PhysicsThread::Parts::change_robots(PendingCommands& taken, bool scene_chan
     show_recording(recording.begin());
   else if (taken.reset || (taken.scene && repro.is_set()))
     restart();
+}
+
+// What acts on the robots of the scene.
+void PhysicsThread::Parts::change_robots(PendingCommands& taken, bool scene_changed, bool robots_changed) {
   const bool perturbed = taken.perturbations || scene_changed;
   if (perturbed) {
     batch.perturb(taken.perturbations ? std::move(*taken.perturbations) : batch.perturbations());
@@ -402,7 +281,9 @@ void PhysicsThread::Parts::prepare_changes(const PendingCommands& taken) {
   if (taken.timeline_budget) timeline.set_budget(*taken.timeline_budget);
   if (taken.seek_first) seek(*taken.seek_first);
   const bool perturbed = taken.perturbations && *taken.perturbations != batch.perturbations();
-  if (is_viewing() && (taken.scene || taken.go_on || perturbed)) make_present();
+  // A recording begins a past of its own.
+  const bool keeps_past = !taken.scene || !taken.scene->recording;
+  if (is_viewing() && (taken.scene || taken.go_on || perturbed)) make_present(keeps_past);
   if (taken.reset) timeline.return_to_present();
 }
 
@@ -502,13 +383,13 @@ void PhysicsThread::Parts::carry_out_seek(const PendingCommands& taken) {
 }
 
 // The moment that is shown becomes the present.
-void PhysicsThread::Parts::make_present() {
+void PhysicsThread::Parts::make_present(bool with_keyframe) {
   if (recording.is_open()) {
     recording.leave();
     batch.cut_measures(batch.steps());
-    timeline.restart();
+    timeline.restart(with_keyframe);
     stepping.start();
-  } else if (timeline.make_present()) {
+  } else if (timeline.make_present(with_keyframe)) {
     repro.skip();
   } else {
     return;

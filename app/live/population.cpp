@@ -2,12 +2,12 @@
 #include "app/live/population.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <unordered_map>
 
 #include "mercury/parallel.h"
+#include "robots/carried_points.h"
 
 namespace mercury {
 namespace {
@@ -43,13 +43,6 @@ std::shared_ptr<const LiveRobots> listed(const std::vector<LiveRobot>& robots, c
   list->shapes = changed ? shapes_of(robots, before) : before.shapes;
   list->bodies = changed ? bodies_of(list->shapes) : before.bodies;
   return list;
-}
-
-// Masses nearer to each other than this are one: no spring is that short.
-using Place = std::array<long long, 3>;
-Place place_of(Vec3 rest) {
-  const auto step = [](float x) { return std::llround(static_cast<double>(x) / (0.25 * min_rest_length)); };
-  return {step(rest.x), step(rest.y), step(rest.z)};
 }
 
 }  // namespace
@@ -239,8 +232,8 @@ std::vector<Perturbation> Population::perturbations_of(std::span<const LivePertu
 
 std::optional<State> carried_state(const Robot& before, const State& state, const Robot& after) {
   if (state.exploded || state.positions.size() != before.masses.size()) return std::nullopt;
-  std::map<Place, std::size_t> places;
-  for (std::size_t i = 0; i < before.masses.size(); ++i) places.emplace(place_of(before.masses[i]), i);
+  std::map<MassPlace, std::size_t> places;
+  for (std::size_t i = 0; i < before.masses.size(); ++i) places.emplace(mass_place_of(before.masses[i]), i);
   State carried{.positions = after.masses, .velocities = std::vector<Vec3>(after.masses.size())};
   std::vector<std::size_t> kept, added;
   const auto take = [&](std::size_t mass, std::size_t from) {
@@ -248,7 +241,7 @@ std::optional<State> carried_state(const Robot& before, const State& state, cons
     carried.velocities[mass] = state.velocities[from];
   };
   for (std::size_t i = 0; i < after.masses.size(); ++i) {
-    const auto found = places.find(place_of(after.masses[i]));
+    const auto found = places.find(mass_place_of(after.masses[i]));
     (found == places.end() ? added : kept).push_back(i);
     if (found == places.end()) continue;
     carried.positions[i] = state.positions[found->second];

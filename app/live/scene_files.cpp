@@ -23,6 +23,7 @@
 #include "mercury/error.h"
 #include "mercury/import.h"
 #include "mercury/real_body.h"
+#include "mercury/robot_file.h"
 #include "mercury/samples.h"
 
 namespace mercury {
@@ -63,11 +64,9 @@ std::vector<fs::path> files_of(const std::vector<fs::path>& paths, Messages& mes
     }
     std::vector<fs::path> inside;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
-      const fs::path extension = entry->path().extension();
       std::error_code ignored;
       if (entry->is_directory(ignored)) continue;
-      if (extension == ".json" || extension == ".cbor" || import_format_of(entry->path()))
-        inside.push_back(entry->path());
+      if (find_robot_format(entry->path()) || import_format_of(entry->path())) inside.push_back(entry->path());
     }
     if (error)
       messages.add(Severity::error, path.string() + ": " + error.message());

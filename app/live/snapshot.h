@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state that a view shows. The physics thread makes it; it never changes afterwards (physics.h, Threads).
+// The state that a view shows. The physics thread makes it; it never changes afterward (physics.h, Threads).
 #pragma once
 
 #include <cstdint>
@@ -89,7 +89,7 @@ struct LivePerturbation {
 };
 
 // The positions of a snapshot: on the host, or on the GPU until somebody on the host asks for them. The physics thread
-// sets them; afterwards every thread may read them.
+// sets them; afterward every thread may read them.
 class SnapshotPositions {
  public:
   std::size_t size() const { return size_; }  // number of masses

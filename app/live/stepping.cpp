@@ -2,13 +2,10 @@
 #include "app/live/stepping.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 namespace mercury {
-
-double wall_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 void Pace::start(double wall, double speed, double dt) {
   start_ = wall;

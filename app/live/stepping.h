@@ -7,11 +7,9 @@
 #include <deque>
 
 #include "app/live/live_batch.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury {
-
-// Wall time [s] from an arbitrary origin; never goes back.
-double wall_now();
 
 // If physics is too slow, it falls behind for good: delays of more than a tenth of a second are forgotten, so that no
 // backlog of steps builds up.

@@ -23,10 +23,10 @@ void TimelinePlayer::clear() {
   work_ = keyframe_work_ = 0;
 }
 
-void TimelinePlayer::restart() {
+void TimelinePlayer::restart(bool with_keyframe) {
   clear();
   replay_log_.follow(batch_.simulation(), *batch_.robots(), batch_.perturbations());
-  keep_keyframe();
+  if (with_keyframe) keep_keyframe();
 }
 
 void TimelinePlayer::keep_keyframe() {
@@ -187,7 +187,7 @@ void TimelinePlayer::return_to_present() {
   batch_.sample();
 }
 
-bool TimelinePlayer::make_present() {
+bool TimelinePlayer::make_present(bool with_keyframe) {
   finish_seek();
   if (!viewing_) return false;
   viewing_ = false;
@@ -198,7 +198,7 @@ bool TimelinePlayer::make_present() {
   comparison_.forget_later();
   replay_log_.cut(batch_.simulation(), *batch_.robots(), batch_.perturbations());
   if (loop_ && loop_->second > batch_.time()) loop_.reset();
-  keep_keyframe();
+  if (with_keyframe) keep_keyframe();
   stepping_.start();
   return true;
 }

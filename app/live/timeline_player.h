@@ -31,7 +31,7 @@ class TimelinePlayer {
 
   // The past.
   void clear();                                          // forgets it
-  void restart();                                        // the same, and begins at the present
+  void restart(bool with_keyframe = true);               // the same, and begins at the present
   void forget_states() { replay_log_.forget_states(); }  // the steps before do not lead to the current ones
   // Call it after the robots, their parameters or what acts on them may have changed.
   void follow_changes(bool robots_changed);
@@ -58,8 +58,9 @@ class TimelinePlayer {
   // Steps have been made: ends the view of the past if they led to the present.
   void arrive();
   void return_to_present();
-  // The moment that is shown becomes the present. Returns whether it was none before.
-  bool make_present();
+  // The moment that is shown becomes the present. Returns whether it was none before. Without a keyframe for a past
+  // that is forgotten next.
+  bool make_present(bool with_keyframe = true);
 
   TimelineState state() const;
 

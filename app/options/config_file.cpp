@@ -14,6 +14,7 @@
 #define TOML_EXCEPTIONS 1
 #include <toml++/toml.h>
 
+#include "app/scene/camera_plan.h"
 #include "mercury/error.h"
 #include "mercury/names.h"
 #include "mercury/samples.h"
@@ -133,9 +134,9 @@ void ConfigFile::take_scene(Table& table) {
     const auto file = camera->template value<std::string>();
     if (const toml::table* const members = camera->as_table()) take_camera(*members);
     // A camera file stands beside the scene, as robots do.
-    if (file && file->ends_with(".json"))
-      take_camera_option((std::filesystem::path(path_).parent_path() / *file).string(), *camera);
-    if (camera->is_table() || (file && file->ends_with(".json"))) table.erase("camera");
+    const bool is_file = file && is_camera_file(*file);
+    if (is_file) take_camera_option((std::filesystem::path(path_).parent_path() / *file).string(), *camera);
+    if (camera->is_table() || is_file) table.erase("camera");
   }
   for (const char* own : {"format", "version", "robots"}) table.erase(own);
 }

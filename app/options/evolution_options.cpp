@@ -42,12 +42,11 @@ std::vector<std::string> words_of_from() {
 // "masses", "masses:20:120" or "masses:20:120:8"
 MapAxis axis_from(const std::string& text) {
   const std::vector<std::string_view> parts = split(text, ':');
-  const std::optional<std::size_t> quantity = find_quantity(parts.front());
-  if (!quantity)
+  std::optional<MapAxis> usual = usual_axis(parts.front());
+  if (!usual)
     throw InputError("--axis", fmt::format("\"{}\" is not a quantity; give {}", parts.front(),
                                            fmt::join(names_of_quantities(), ", ")));
-  const Quantity& found = quantities()[*quantity];
-  MapAxis axis{.quantity = std::string(found.name), .lowest = found.usual_lowest, .highest = found.usual_highest};
+  MapAxis& axis = *usual;
   if (parts.size() == 2 || parts.size() > 4)
     throw InputError("--axis",
                      fmt::format("\"{}\" is not accepted; give NAME, NAME:LOW:HIGH or NAME:LOW:HIGH:CELLS", text));
@@ -159,12 +158,10 @@ std::optional<int> EvolutionOptions::generations() const {
 AlgorithmSettings EvolutionOptions::algorithm() const {
   AlgorithmSettings algorithm = given_.algorithm;
   for (const std::string& axis : axes_) algorithm.axes.push_back(axis_from(axis));
-  algorithm.name = algorithm_.value_or(!axes_.empty() ? "map-elites" : objectives_.size() > 1 ? "nsga2" : "afpo");
-  if (algorithm_named(algorithm.name).of_behavior) {
-    if (algorithm.axes.empty()) algorithm.axes = {axis_from("masses"), axis_from("muscle_share")};
-  } else if (!algorithm.axes.empty()) {
+  algorithm.name = algorithm_.value_or("");
+  complete_algorithm(algorithm, algorithm_.has_value(), objectives_.size());
+  if (!algorithm.axes.empty() && !algorithm_named(algorithm.name).of_behavior)
     throw InputError("--axis", "goes with --algorithm map-elites, novelty or cma-me");
-  }
   if (algorithm_named(algorithm.name).of_numbers)
     for (const char* option :
          {"--tournament", "--elites", "--crossover", "--children", "--muscle-adaptation", "--muscle-tail"})

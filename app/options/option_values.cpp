@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mercury/number_text.h"
+
 namespace mercury {
 
 std::string option_of(std::string_view parameter) {
@@ -70,11 +72,8 @@ Vec3 vector_from(const std::string& option, std::string_view text) {
 std::vector<int> sizes_from(const std::string& option, std::string_view text, std::size_t count, const char* form) {
   const auto parts = split(text, 'x');
   std::vector<int> sizes;
-  for (const std::string_view part : parts) {
-    int size = 0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), size);
-    if (error == std::errc{} && end == part.data() + part.size() && size > 0) sizes.push_back(size);
-  }
+  for (const std::string_view part : parts)
+    if (const auto size = parse_number<int>(part); size > 0) sizes.push_back(*size);
   if (sizes.size() != count || parts.size() != count)
     throw InputError(option, fmt::format("\"{}\" is not accepted; give {} in whole numbers above 0", text, form));
   return sizes;

@@ -5,22 +5,19 @@
 
 #include <algorithm>
 #include <cctype>
-#include <iterator>
-
-#include "app/options/trial_start.h"
+#include <initializer_list>
 
 namespace mercury {
 namespace {
 
-// --seconds is an option of the simulation; what else is left out has no option.
-bool is_of_every_measurement(std::string_view name) {
-  constexpr std::string_view names[] = {"settle",         "trials",         "jitter",        "strain_limit",
-                                        "strained_limit", "inverted_limit", "overlap_limit", "least_masses",
-                                        "folding",        "upright"};
-  return is_of_start(name) || std::ranges::find(names, name) != std::end(names);
+bool is_one_of(std::initializer_list<std::string_view> names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
 }
-bool is_of_evolution(std::string_view name) {
-  return !is_of_every_measurement(name) && name != "seconds" && name != "median" && name != "noise_per_trial";
+
+bool is_of_evolution(std::string_view name) { return is_one_of({"delay", "noise", "damage", "mean", "racing"}, name); }
+// --seconds is an option of the simulation. The other two have none: they say what runs of earlier versions did.
+bool is_of_every_measurement(std::string_view name) {
+  return !is_of_evolution(name) && !is_one_of({"seconds", "median", "noise_per_trial"}, name);
 }
 
 }  // namespace

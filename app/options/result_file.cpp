@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -19,7 +18,9 @@
 #include "app/base/stepping.h"
 #include "app/recording/configuration_json.h"
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/real_body.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -49,9 +50,10 @@ RobotOfResult robot_of(const Json& row, const std::string& place) {
                       .springs = static_cast<std::size_t>(count_of(row, "springs", place)),
                       .physics = text_of(row, "physics")};
   const std::string hash = text_of(row, "hash");
-  const auto [end, error] = std::from_chars(hash.data(), hash.data() + hash.size(), robot.hash, 16);
-  if (error != std::errc() || end != hash.data() + hash.size())
+  const auto number = parse_number<std::uint64_t>(hash, 16);
+  if (!number)
     throw InputError(place + "/hash", fmt::format("\"{}\" is not accepted; give 16 hexadecimal digits", hash));
+  robot.hash = *number;
   if (robot.file.empty() == robot.random.empty())
     throw InputError(place, "give either file or random, as mercury run --json does");
   return robot;
@@ -103,7 +105,7 @@ void require_same(const RobotOfResult& wanted, const Robot& robot) {
 }  // namespace
 
 bool is_result(const fs::path& path) {
-  if (path.extension() != ".json" || !fs::is_regular_file(path)) return false;
+  if (extension_of(path) != ".json" || !fs::is_regular_file(path)) return false;
   constexpr std::size_t first_members = 4096;
   std::ifstream file(path, std::ios::binary);
   std::string begin(first_members, '\0');

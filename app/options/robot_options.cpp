@@ -251,7 +251,7 @@ double mean_bytes(RandomRobots request, const MemoryUse& use) {
   return robots.empty() ? 0 : sum / static_cast<double>(robots.size());
 }
 
-// Two digits, downwards: "31,000".
+// Two digits, downward: "31,000".
 std::string rounded(double count) {
   const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(count, 1.0))) - 1));
   return fmt::format("{:.0f}", std::floor(count / unit) * unit);

@@ -15,6 +15,7 @@
 #include "mercury/error.h"
 #include "mercury/file_links.h"
 #include "mercury/parallel.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -52,9 +53,8 @@ void RobotOutput::add_files_to(const Command& command) {
 }
 
 bool RobotOutput::names_file() const {
-  const std::string extension = fs::path(path_).extension().string();
   return is_standard_output(path_) || is_device_or_pipe(path_) ||
-         ((extension == ".json" || extension == ".cbor") && !fs::is_directory(path_));
+         (find_robot_format(path_) && !fs::is_directory(path_));
 }
 
 std::optional<std::string> RobotOutput::file_stem() const {
@@ -97,7 +97,7 @@ RobotFiles RobotOutput::open(std::uint64_t robots, const RobotNames& names, cons
     outputs.add_folder("-o", path_);
     std::error_code error;
     for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
-      if (entry->path().extension() != "." + format_) continue;
+      if (find_robot_format(entry->path()) != files.format_) continue;
       files.existing_.insert(entry->path());
       if (names(entry->path().stem().string())) outputs.add_stream("-o", entry->path().string());
     }

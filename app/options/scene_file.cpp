@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <optional>
 
 #include "app/options/config_file.h"
@@ -14,6 +13,7 @@
 #include "app/options/view_options.h"
 #include "mercury/error.h"
 #include "mercury/origin.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 
@@ -76,9 +76,7 @@ std::string value_in(const std::vector<std::string>& arguments, const std::strin
 }  // namespace
 
 bool is_scene_name(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return extension == ".toml" && path.filename() != "run.toml";
+  return extension_of(path) == ".toml" && path.filename() != "run.toml";
 }
 
 SceneFile::SceneFile(const std::filesystem::path& path) : parts_(std::make_unique<Parts>(path)) {

@@ -56,7 +56,7 @@ std::string where_and_default(std::string_view name) {
   return fmt::format("(default {})", fmt::join(defaults, ", "));
 }
 
-// One number is a magnitude, downwards.
+// One number is a magnitude, downward.
 Vec3 gravity_from(const std::string& option, const std::string& text) {
   if (text.find(',') != std::string::npos) return vector_from(option, text);
   return {0, 0, -number_from<float>(option, text)};
@@ -141,7 +141,7 @@ void SimulationOptions::add_environment_parameters(const Command& command) {
     } else {
       target.option = option_of(name);
       const std::string help =
-          fmt::format("{}{} {}", parameter.help, parameter.takes_downward_magnitude ? ", downwards or as a vector" : "",
+          fmt::format("{}{} {}", parameter.help, parameter.takes_downward_magnitude ? ", downward or as a vector" : "",
                       where_and_default(name));
       if constexpr (!std::is_same_v<Value, Vec3>)
         option = add_value(command, target.option, target.value, help, form_of(parameter.unit), number_from<Value>)

@@ -9,6 +9,7 @@
 
 #include "app/options/option_values.h"
 #include "app/video/contact_sheet.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -91,7 +92,7 @@ render::Quality VideoOptions::quality() const {
 }
 
 void VideoOptions::set_usual_still(double seconds) {
-  if (!single_picture() && (text_aside() || std::filesystem::path(output_).extension() == ".png")) still_ = seconds;
+  if (!single_picture() && (text_aside() || extension_of(output_) == ".png")) still_ = seconds;
 }
 
 PictureSize VideoOptions::asked_size() const {
@@ -110,7 +111,7 @@ VideoOptions::Plan VideoOptions::plan(double seconds) const {
 }
 
 bool VideoOptions::text_aside() const {
-  const std::filesystem::path extension = std::filesystem::path(output_).extension();
+  const std::string extension = extension_of(output_);
   return extension == ".svg" || extension == ".pdf";
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/options/command.h"
+#include "app/scene/camera_plan.h"
 #include "app/scene/view_words.h"
 
 namespace mercury {
@@ -16,7 +17,7 @@ class ViewOptions {
   // `usual`: the layout without --layout.
   ViewSettings settings(Layout usual = Layout::grid) const;
   // The camera file that is read; empty = none.
-  std::string camera_file() const { return words_.camera.ends_with(".json") ? words_.camera : std::string(); }
+  std::string camera_file() const { return is_camera_file(words_.camera) ? words_.camera : std::string(); }
   bool chooses_what_is_shown() const { return words_.show.has_value(); }
 
  private:

@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 namespace {
@@ -60,14 +60,6 @@ void read_parameters(const Json& json, Struct& values) {
 }
 
 }  // namespace
-
-double shortest(float value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  double number = value;
-  std::from_chars(text, end, number);
-  return static_cast<float>(number) == value ? number : static_cast<double>(value);
-}
 
 Json json_of(Vec3 v) { return Json::array({shortest(v.x), shortest(v.y), shortest(v.z)}); }
 

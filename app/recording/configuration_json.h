@@ -21,10 +21,7 @@ std::string environment_text(const Configuration& configuration);
 // "force, dt 0.001 s, damping 0.1 1/s"
 std::string solver_text(const Configuration& configuration);
 
-// The double with the shortest decimal that converts back to this float: 0.2, not 0.20000000298023224.
-double shortest(float value);
-
-// [x, y, z], each as by shortest().
+// [x, y, z], each as by shortest() (mercury/number_text.h).
 nlohmann::ordered_json json_of(Vec3 v);
 
 }  // namespace mercury

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "mercury/robot_file.h"
+
 namespace mercury {
 
-bool is_repro_name(const std::filesystem::path& path) { return path.extension() == ".repro"; }
+bool is_repro_name(const std::filesystem::path& path) { return extension_of(path) == ".repro"; }
 
 Simulation start_of(const Repro& repro, const Device& device) {
   Configuration configuration = repro.configuration;

@@ -9,6 +9,7 @@
 #include "app/recording/configuration_json.h"
 #include "app/recording/repro.h"
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/robot_file.h"
 #include "robots/file/whole_file.h"
 

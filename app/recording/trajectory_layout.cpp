@@ -2,7 +2,6 @@
 #include "app/recording/trajectory_layout.h"
 
 #include <algorithm>
-#include <cctype>
 #include <stdexcept>
 #include <string_view>
 #include <unordered_map>
@@ -13,6 +12,7 @@
 #include "app/recording/recording_file.h"
 #include "app/recording/trajectory_hdf5_writing.h"
 #include "mercury/error.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -34,8 +34,7 @@ std::string legal(std::string_view name) {
 }  // namespace
 
 bool is_trajectory_name(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  const std::string extension = extension_of(path);
   return extension == ".h5" || extension == ".hdf5" || extension == ".h5md";
 }
 

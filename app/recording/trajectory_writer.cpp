@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -88,10 +87,6 @@ RecordingFailure write_failure(const std::filesystem::path& path, const std::str
 }
 
 }  // namespace
-
-double wall_clock() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 bool flush_is_due(double since_flush, double last_frame_took, double period) {
   return since_flush >= period || since_flush + last_frame_took >= 2 * period;

@@ -20,13 +20,11 @@
 #include "mercury/clock.h"
 #include "mercury/configuration.h"
 #include "mercury/robot.h"
+#include "mercury/stopwatch.h"
 #include "mercury/telemetry.h"
 #include "mercury/work_watch.h"
 
 namespace mercury {
-
-// Wall time from any start [s].
-double wall_clock();
 
 // Everything in a trajectory except robots and frames.
 struct TrajectoryHeader {
@@ -40,7 +38,7 @@ struct TrajectoryHeader {
   bool brains = false;                      // frames have the senses and neurons of robots with brains, too
   int deflate = 0;                          // compression of the frames: 0 = none, 1 (fast) .. 9
   double flush_period = 5;                  // [s] of wall time from one flush to the next; 0 = flush each frame
-  double (*clock)() = wall_clock;           // [s]; tests set their own
+  double (*clock)() = wall_now;             // [s]; tests set their own
   WorkWatch watch;                          // sees how many robots are written; may throw to stop the work
   std::function<void(hdf5::Id file)> more;  // writes what else the file has, before the frames; throws hdf5::Error
 };

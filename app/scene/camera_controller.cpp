@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "render/vector.h"
 
 namespace mercury {
@@ -49,19 +49,10 @@ float least_distance(std::span<const render::Bounds> boxes, const render::Orbit&
   return least;
 }
 
-render::Bounds all_of(std::span<const render::Bounds> boxes) {
-  render::Bounds all;
-  for (const render::Bounds& box : boxes)
-    if (!box.empty()) all.extend(box);
-  return all;
-}
-
 std::size_t robot_named(const std::string& name, std::span<const std::string> names) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc{} && end == name.data() + name.size() && number < names.size()) return number;
+  if (const auto number = parse_number<std::size_t>(name); number && *number < names.size()) return *number;
   throw ParameterError(
       "camera", fmt::format("no robot is named \"{}\"; give a name, or a number from 0 to {}", name, names.size() - 1));
 }
@@ -122,7 +113,7 @@ void CameraController::keep_in_view(std::span<const render::Bounds> robots, doub
 
 void CameraController::follow(std::span<const render::Bounds> robots, double dt) {
   const auto followed = robot_ ? robots.subspan(*robot_, 1) : robots;
-  const render::Bounds box = all_of(followed);
+  const render::Bounds box = bounds_of(followed);
   if (box.empty()) return;  // it has exploded: the camera stays where it is
   if (!started_) orbit_.frame(followed, picture_.aspect, (robot_ ? follow_margin : margin) / plan_.zoom, picture_.free);
   render::Vector3 middle = render::Vector3::all(0);
@@ -136,7 +127,7 @@ void CameraController::follow(std::span<const render::Bounds> robots, double dt)
 }
 
 void CameraController::circle(std::span<const render::Bounds> robots, double dt) {
-  const render::Bounds box = all_of(robots);
+  const render::Bounds box = bounds_of(robots);
   if (box.empty()) return;
   // Frames a sphere, which is the same from all sides, so that the distance does not vary as the camera turns.
   const float smaller_side = std::min(1.0f, picture_.aspect);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mercury/error.h"
+#include "mercury/robot_file.h"
 #include "robots/file/whole_file.h"
 
 namespace mercury {
@@ -109,13 +110,15 @@ CameraPlan plan_from(const Reader& read) {
 
 }  // namespace
 
+bool is_camera_file(const std::string& text) { return extension_of(text) == ".json"; }
+
 CameraPlan camera_named(const std::string& text) {
   if (text.starts_with("{")) {
     const Json json = Json::parse(text, nullptr, false);
     if (!json.is_object()) throw ParameterError("camera", "is not valid JSON");
     return plan_from(Reader("", json));
   }
-  if (text.ends_with(".json")) return load_camera(text);
+  if (is_camera_file(text)) return load_camera(text);
   const std::size_t colon = text.find(':');
   const auto mode = mode_named(text.substr(0, colon));
   if (!mode || (colon != std::string::npos && *mode != CameraMode::follow))

@@ -25,7 +25,7 @@ enum class CameraMode {
 struct CameraPlan {
   CameraMode mode = CameraMode::group;
   std::string robot;                      // follow: its name, or its number from 0; empty = the group
-  std::optional<float> azimuth;           // direction from the robots to the eye, from +x towards +y [rad]
+  std::optional<float> azimuth;           // direction from the robots to the eye, from +x toward +y [rad]
   std::optional<float> elevation;         // of the eye above the horizon [rad]
   float zoom = 1;                         // above 1 = closer
   float field_of_view = 0.6f;             // of the picture's height [rad]
@@ -39,6 +39,8 @@ struct CameraPlan {
 // "group", "follow", "turntable", "top", "still".
 std::string_view name_of(CameraMode mode);
 
+// Whether it is the name of a camera file, *.json.
+bool is_camera_file(const std::string& text);
 // "turntable", "follow:eel", the name of a camera file (*.json), or its members as text, {"mode": "still", ...}. Throws
 // ParameterError("camera", ...).
 CameraPlan camera_named(const std::string& text);

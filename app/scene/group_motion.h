@@ -55,7 +55,7 @@ class GroupMotion {
   render::Vector3 along_{1, 0, 0};
 };
 
-// While the mouse pulls at a robot, the robot follows it: what is subtracted of its way stays as it was. Afterwards it
+// While the mouse pulls at a robot, the robot follows it: what is subtracted of its way stays as it was. Afterward it
 // glides back into its cell.
 class HeldRobot {
  public:

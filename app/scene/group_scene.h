@@ -22,7 +22,7 @@
 
 namespace mercury {
 
-// The robots of a group, for making its scene. The scene does not refer to it afterwards.
+// The robots of a group, for making its scene. The scene does not refer to it afterward.
 struct Group {
   std::vector<const Robot*> robots;
   std::vector<std::string> names;                    // one per robot
@@ -158,7 +158,7 @@ class GroupScene {
   std::vector<render::Path> paths_;
   std::vector<std::vector<float>> marks_;         // of the paths
   std::vector<bool> seeks_target_, seeks_light_;  // robots with a sensor of the target, of the light
-  std::vector<std::vector<float>> sense_lines_;   // around these and towards them, in the robots' coordinates
+  std::vector<std::vector<float>> sense_lines_;   // around these and toward them, in the robots' coordinates
   std::vector<render::Label> labels_;
   std::vector<render::Patch> patches_;
   std::vector<render::Mover> movers_;

@@ -220,7 +220,7 @@ void add_rays(std::vector<std::vector<float>>& lines, Vec3 at, float from, float
 }  // namespace
 
 // What robots sense: rings where they feel the ground, brighter where more of a sensor's masses do; three circles
-// around the target, the same with rays around the light, and beside each robot a line towards it. In cells, where
+// around the target, the same with rays around the light, and beside each robot a line toward it. In cells, where
 // robots stay, there is no place for target and light.
 void GroupScene::mark_senses(std::span<const TouchMark> touches) {
   constexpr float share = 0.12f;              // of a room's radius: circles

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/scene/group_state.h"
 
-#include <variant>
-
 namespace mercury {
 
 GroupState read_state(const Simulation& simulation) {
@@ -42,11 +40,8 @@ std::vector<Vec3> net_forces(const Simulation& simulation, std::size_t index, co
   const auto positions = masses_of(simulation, index, state.positions);
   const auto velocities = masses_of(simulation, index, state.velocities);
   std::vector<Vec3> forces = spring_forces(robot, materials_at(simulation, index, state), positions);
-  const Vec3 gravity = gravity_of(environment);
-  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = forces[i] + mass_of(robot, i) * gravity;
-  if (const auto* water = std::get_if<PointDrag>(&environment.water))
-    for (std::size_t i = 0; i < forces.size(); ++i)
-      forces[i] = forces[i] + water->point_drag * (water->flow - velocities[i]);
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    forces[i] += mass_force(environment, mass_of(robot, i), velocities[i]);
   if (has_face_forces(environment)) {
     const std::vector<std::uint16_t> behind = masses_behind_faces(robot, environment);
     for (std::size_t i = 0; i < robot.faces.size(); ++i) {

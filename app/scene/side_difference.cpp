@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
 #include <string_view>
 #include <type_traits>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 namespace {
@@ -19,11 +19,9 @@ namespace {
 
 template <class Number>
 Number number_from(const std::string& name, std::string_view text) {
-  Number value{};
-  const char* const all = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), all, value);
-  if (text.empty() || end != all || error != std::errc{}) refuse(fmt::format("{}: \"{}\" is not a number", name, text));
-  return value;
+  const auto value = parse_number<Number>(text);
+  if (!value) refuse(fmt::format("{}: \"{}\" is not a number", name, text));
+  return *value;
 }
 
 Vec3 vector_from(const std::string& name, std::string_view text) {

@@ -5,13 +5,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <string_view>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 namespace {
@@ -47,14 +47,13 @@ render::Color background_from(const std::string& text) {
   if (text == "transparent") return {0, 0, 0, 0};
   if (text == "white") return {};
   if (text == "black") return {0, 0, 0, 255};
-  std::uint32_t number = 0;
-  const auto [end, error] =
-      std::from_chars(text.data() + std::min<std::size_t>(1, text.size()), text.data() + text.size(), number, 16);
-  if (text.size() != 7 || text[0] != '#' || error != std::errc{} || end != text.data() + text.size())
+  const auto number =
+      parse_number<std::uint32_t>(std::string_view(text).substr(std::min<std::size_t>(1, text.size())), 16);
+  if (text.size() != 7 || text[0] != '#' || !number)
     throw ParameterError(
         "background",
         fmt::format("\"{}\" is not accepted; give white, black, transparent or a color as #2a6f97", text));
-  return render::rgb(number);
+  return render::rgb(*number);
 }
 
 // "y", "-y:30%" or "y:0.2"
@@ -75,12 +74,9 @@ render::Cut cut_from(const std::string& text) {
   std::string_view place = std::string_view(text).substr(colon + 1);
   const bool is_share = place.ends_with('%');
   if (is_share) place.remove_suffix(1);
-  float value = 0;
-  const char* const all = place.data() + place.size();
-  const auto [end, error] = std::from_chars(place.data(), all, value);
-  if (place.empty() || end != all || error != std::errc{}) refuse();
-  if (is_share ? !(value >= 0 && value <= 100) : !(std::abs(value) <= farthest_cut)) refuse();
-  (is_share ? cut.percent : cut.shift) = value;
+  const auto value = parse_number<float>(place);
+  if (!value || (is_share ? !(*value >= 0 && *value <= 100) : !(std::abs(*value) <= farthest_cut))) refuse();
+  (is_share ? cut.percent : cut.shift) = *value;
   return cut;
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/video/picture_file.h"
 #include "mercury/error.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 
@@ -20,7 +21,7 @@ PictureSize size_of_sheet(Grid grid, PictureSize frame, int gap) {
 }
 
 void require_picture_name(const std::string& output) {
-  if (std::filesystem::path(output).extension() != ".png")
+  if (extension_of(output) != ".png")
     throw ParameterError("output", output + ": a picture is written as .png; give such a name");
 }
 

@@ -39,7 +39,7 @@ class DrawingThread {
   DrawingThread(const DrawingThread&) = delete;
   DrawingThread& operator=(const DrawingThread&) = delete;
 
-  // Waits for the tasks that are queued, and gives the context back. post() throws DeviceError afterwards.
+  // Waits for the tasks that are queued, and gives the context back. post() throws DeviceError afterward.
   void end();
 
   // Queues a task. The future passes on what it throws, and render::ContextError if there is no OpenGL here. Throws

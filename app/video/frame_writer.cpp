@@ -11,6 +11,7 @@
 #include "app/video/png_folder.h"
 #include "mercury/error.h"
 #include "mercury/real_body.h"
+#include "mercury/robot_file.h"
 
 namespace mercury {
 namespace {
@@ -78,7 +79,7 @@ VideoKind video_kind_of(const std::string& output) {
   if (is_standard_output(output))
     throw ParameterError("output", "videos and pictures are not written to standard output; give a file or a folder");
   if (fs::is_directory(path) || path.filename().empty()) return VideoKind::png_folder;
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   if (extension == ".mp4") return VideoKind::mp4;
   if (extension == ".webm") return VideoKind::webm;
   if (extension == ".gif") return VideoKind::gif;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "app/base/stepping.h"
 #include "app/video/moment_sampler.h"
 #include "mercury/error.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury {
 namespace {
@@ -35,7 +35,7 @@ class VideoStages {
         }) {}
 
   VideoResult run() {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_now();
     std::exception_ptr failure_of_simulation, failure_of_drawing;
     std::thread simulating([&] { guard(failure_of_simulation, [this] { simulate(); }); });
     guard(failure_of_drawing, [this] { draw(); });
@@ -44,9 +44,7 @@ class VideoStages {
     for (const std::exception_ptr& failure : {failure_of_simulation, failure_of_drawing})
       if (failure) std::rethrow_exception(failure);
     encoder_.finish();
-    return {.frames = encoder_.frames(),
-            .interrupted = interrupted_,
-            .wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+    return {.frames = encoder_.frames(), .interrupted = interrupted_, .wall_seconds = wall_now() - start};
   }
 
  private:

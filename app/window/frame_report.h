@@ -2,12 +2,12 @@
 // Writes an event per frame to the event log, for programs that watch the window (docs/window.md).
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
 #include "app/window/panels/panel.h"
 #include "app/window/toolkit/window.h"
 #include "app/window/viewport/viewport.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury::window {
 
@@ -26,9 +26,9 @@ class FrameReport {
  private:
   void write_gl_messages(PanelContext& context);
   void write_robots(PanelContext& context);
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  double seconds() const { return wall_now() - start_; }
 
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const double start_ = wall_now();
   std::int64_t frames_ = 0;
   std::uint64_t input_ = 0;  // as last written
   double written_at_ = -1;   // when a frame was last written [s]

@@ -81,7 +81,7 @@ class Viewer {
   void begin_close();
   void keep_anchor();
   std::optional<std::size_t> followed(const CameraPlan& plan) const;
-  bool draw_picture(double dt);
+  bool draw_frame(double dt);
   void present(bool draws);
   void update_screenshot();
   bool anything_moves() const;
@@ -278,7 +278,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
   times_.mouse = since(mouse_begin);
   // In a steady view, the GPU draws the robots while the panels are made.
   const bool early = camera_placed_ && !redraw_ && scene_.time().playing();
-  bool draws = early && !left_out && draw_picture(dt);
+  bool draws = early && !left_out && draw_frame(dt);
   const auto panels_begin = Clock::now();
   split_area(panels_.draw_frame());
   panels_.draw_over(area_, shown_camera_, dt);
@@ -293,7 +293,7 @@ void Viewer::draw_frame(const std::vector<InputEvent>& events, double dt) {
     imgui_.discard_frame();
     return;
   }
-  if (!early) draws = draw_picture(dt);
+  if (!early) draws = draw_frame(dt);
   const auto waiting = Clock::now();
   viewport_.finish();
   second_.finish();
@@ -373,7 +373,7 @@ std::optional<std::size_t> Viewer::followed(const CameraPlan& plan) const {
   return std::nullopt;
 }
 
-// Puts the robots' picture into its area.
+// Puts the view of the robots into its area.
 void Viewer::place_views() {
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
   viewport_.place(static_cast<int>(area_.low.x * scale.x), static_cast<int>(area_.low.y * scale.y),
@@ -411,9 +411,7 @@ void Viewer::update_renderer() {
 // The samples are many and small: one of them shows first what moves here.
 void Viewer::begin_close() {
   const std::span<const render::Bounds> boxes = scene_.drawn().camera_boxes();
-  render::Bounds all;
-  for (const render::Bounds& box : boxes)
-    if (!box.empty()) all.extend(box);
+  const render::Bounds all = render::bounds_of(boxes);
   const auto middle = std::ranges::min_element(boxes, {}, [&](const render::Bounds& box) {
     return box.empty() ? std::numeric_limits<float>::max() : (box.center() - all.center()).norm();
   });
@@ -447,7 +445,7 @@ bool Viewer::leaves_gpu_to_steps() const {
 }
 
 // Returns whether it draws the robots.
-bool Viewer::draw_picture(double dt) {
+bool Viewer::draw_frame(double dt) {
   update_renderer();
   DrawnScene& live = scene_.drawn();
   camera_.floor =

@@ -192,7 +192,7 @@ def mean_thrust(slip: float, steepness: float, environment, count: int) -> float
 def slip_of(steepness: float, environment, count: int) -> float:
     """U/c at which the mean force along x is zero: the swimming speed of the sheet, by bisection."""
     low, high = 0.0, 1.0
-    # A force towards -x drives the sheet on.
+    # A force toward -x drives the sheet on.
     if mean_thrust(1e-4, steepness, environment, count) > 0:
         return 0.0
     low = 1e-4

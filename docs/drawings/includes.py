@@ -82,7 +82,7 @@ def spread(wanted, low, high, step=30):
 
 
 def aim(a, b):
-    """Where an arrow from a to b wants to leave: straight down if b is there, otherwise towards its middle."""
+    """Where an arrow from a to b wants to leave: straight down if b is there, otherwise toward its middle."""
     middle, _, width = PLACES[b][:3]
     return PLACES[a][0] if abs(PLACES[a][0] - middle) < width / 2 - 20 else middle
 
@@ -126,7 +126,7 @@ def drawing(root=ROOT):
 
 
 def curve(d, a, b, color):
-    """An arrow that leaves a downwards and enters b from above."""
+    """An arrow that leaves a downward and enters b from above."""
     bend = 0.5 * (b[1] - a[1])
     d.add(f'<path d="M{a[0]:.1f},{a[1]:.1f} C{a[0]:.1f},{a[1] + bend:.1f} {b[0]:.1f},{b[1] - bend:.1f} '
           f'{b[0]:.1f},{b[1]:.1f}" fill="none" stroke="{color}" stroke-width="1.8" marker-end="url(#{d.head(color)})"/>')

@@ -27,7 +27,7 @@ class BrainPart {
   virtual BrainPartPointer mutated(double strength, std::uint64_t seed) const = 0;
   // With a part of an alike family; `fitness` compares this one's genome with the other's.
   virtual BrainPartPointer crossed(const BrainPart& other, std::partial_ordering fitness, std::uint64_t seed) const = 0;
-  // Puts it into a robot that has the family's brain. If it does not fit, the robot has none afterwards.
+  // Puts it into a robot that has the family's brain. If it does not fit, the robot has none afterward.
   virtual void put_into(Robot& robot) const = 0;
   virtual void add_identity(IdentityHash& hash) const = 0;
   virtual void write(ByteWriter& writer) const = 0;

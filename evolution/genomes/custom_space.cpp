@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Custom genomes (mercury/custom.h). A genome holds the text of the program and the whole robot, so that the robots of
 // a run can be grown where the program is not.
-#include <atomic>
 #include <utility>
 
 #include "evolution/genomes/spaces.h"
@@ -47,12 +46,7 @@ class CustomGenome : public Genome {
     return make(context_->needed(context_->operators.cross)(genes_, custom_genes_of(other), seed));
   }
   std::uint64_t identity() const override {
-    std::uint64_t identity = identity_.load(std::memory_order_relaxed);
-    if (identity != 0) return identity;
-    IdentityHash hash;
-    hash.add(genes_.problem.empty() ? document() : genes_.text);
-    identity_.store(identity = hash.value(), std::memory_order_relaxed);
-    return identity;
+    return identity_.value([&](IdentityHash& hash) { hash.add(genes_.problem.empty() ? document() : genes_.text); });
   }
   std::string encode() const override {
     ByteWriter writer;
@@ -71,7 +65,7 @@ class CustomGenome : public Genome {
 
   const CustomGenes genes_;
   const std::shared_ptr<const CustomSpace::Context> context_;
-  mutable std::atomic<std::uint64_t> identity_{0};  // 0 = not computed yet
+  CachedIdentity identity_;
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Genomes and genome spaces of all kinds of robots that have genes (robots/genes.h), and which space a request is for.
 #include <algorithm>
-#include <atomic>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,12 +48,7 @@ class BodyGenome : public Genome {
     return make(genes_->crossed(*mate->genes_, context_->genes, seed), step_.crossed(mate->step_));
   }
   std::uint64_t identity() const override {
-    std::uint64_t identity = identity_.load(std::memory_order_relaxed);
-    if (identity != 0) return identity;
-    IdentityHash hash;
-    genes_->add_identity(hash);
-    identity_.store(identity = hash.value(), std::memory_order_relaxed);
-    return identity;
+    return identity_.value([&](IdentityHash& hash) { genes_->add_identity(hash); });
   }
   std::string encode() const override {
     ByteWriter writer;
@@ -80,7 +74,7 @@ class BodyGenome : public Genome {
   GenesPointer genes_;
   MuscleStep step_;
   std::shared_ptr<const GenomeContext> context_;
-  mutable std::atomic<std::uint64_t> identity_{0};  // 0 = not computed yet
+  CachedIdentity identity_;
 };
 
 // The real material of the founders, which is one, or that of the request.

@@ -2,6 +2,7 @@
 // What the genome spaces share.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -18,6 +19,22 @@ inline constexpr double strongest_at_first = 4;
 void write_head(ByteWriter& writer, std::uint8_t tag);
 // Throws InputError unless the bytes are of this kind, and of a version that this program knows.
 void read_head(ByteReader& reader, std::uint8_t tag);
+
+// A hash that is computed when it is asked for first, by whatever thread.
+class CachedIdentity {
+ public:
+  std::uint64_t value(auto add_to) const {
+    std::uint64_t value = value_.load(std::memory_order_relaxed);
+    if (value != 0) return value;
+    IdentityHash hash;
+    add_to(hash);
+    value_.store(value = hash.value(), std::memory_order_relaxed);
+    return value;
+  }
+
+ private:
+  mutable std::atomic<std::uint64_t> value_{0};  // 0 = not computed yet
+};
 
 // The step by which the muscles of a genome move, in units of their usual one. Files have it only where it adapts
 // itself; elsewhere it is 1.

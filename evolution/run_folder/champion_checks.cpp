@@ -2,7 +2,6 @@
 #include "evolution/run_folder/champion_checks.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <set>
 #include <string>
@@ -10,9 +9,9 @@
 #include "evolution/run_folder/derived_files.h"
 #include "mercury/csv.h"
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/random.h"
 #include "robots/file/whole_file.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 namespace {
@@ -21,9 +20,9 @@ constexpr std::size_t head_fields = 4, step_fields = 6;
 
 template <class Number>
 bool parse(const std::string& text, Number& number) {
-  const char* const end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, number);
-  return result.ec == std::errc() && result.ptr == end;
+  const auto parsed = parse_number<Number>(text);
+  number = parsed.value_or(number);
+  return parsed.has_value();
 }
 
 // Nothing if the line is none of checks.csv.

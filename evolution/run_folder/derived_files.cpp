@@ -16,13 +16,13 @@
 #include "evolution/run_folder/plot.h"
 #include "mercury/csv.h"
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/origin.h"
 #include "mercury/parallel.h"
 #include "mercury/quantity.h"
 #include "mercury/random.h"
 #include "mercury/robot_file.h"
 #include "robots/file/whole_file.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "robots/number_text.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 namespace {

@@ -6,7 +6,6 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -21,11 +20,11 @@
 #include "evolution/run_folder/run_file_layout.h"
 #include "mercury/error.h"
 #include "mercury/generator.h"
+#include "mercury/number_text.h"
 #include "mercury/robot_file.h"
 #include "mercury/vec3.h"
 #include "robots/bytes.h"
 #include "robots/file/whole_file.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 
@@ -147,16 +146,13 @@ class RunFileReader {
   requires std::is_integral_v<Whole>
   void read(std::string_view key, const toml::node& node, Whole& value) const {
     if constexpr (std::is_unsigned_v<Whole>)
-      if (node.is_string() && from_digits(**node.as_string(), value)) return;
+      if (const auto digits = node.is_string() ? parse_number<Whole>(**node.as_string()) : std::nullopt) {
+        value = *digits;
+        return;
+      }
     if (!node.is_integer() || !std::in_range<Whole>(**node.as_integer()))
       wrong(key, node, std::is_unsigned_v<Whole> ? "a whole number of 0 or more" : "a whole number");
     value = static_cast<Whole>(**node.as_integer());
-  }
-  template <class Whole>
-  static bool from_digits(const std::string& digits, Whole& value) {
-    const char* end = digits.data() + digits.size();
-    const auto result = std::from_chars(digits.data(), end, value);
-    return result.ec == std::errc() && result.ptr == end;
   }
   template <class Element>
   void read(std::string_view key, const toml::node& node, std::vector<Element>& list) const {

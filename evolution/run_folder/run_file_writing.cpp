@@ -6,29 +6,13 @@
 #include "evolution/run_folder/run_file.h"
 #include "evolution/run_folder/run_file_layout.h"
 #include "mercury/generator.h"
+#include "mercury/names.h"
+#include "mercury/number_text.h"
 #include "mercury/quantity.h"
 #include "mercury/robot_file.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 namespace {
-
-std::string toml_text(std::string_view text) {
-  std::string quote = "\"";
-  for (const char letter : text) {
-    const auto byte = static_cast<unsigned char>(letter);
-    if (letter == '"' || letter == '\\') {
-      quote.append({'\\', letter});
-    } else if (byte < 0x20 || byte == 0x7f) {
-      char code[8];
-      std::snprintf(code, sizeof code, "\\u%04x", byte);
-      quote += code;
-    } else {
-      quote += letter;
-    }
-  }
-  return quote + '"';
-}
 
 // TOML takes a number with neither point nor exponent for a whole one.
 std::string as_fraction(std::string text) {

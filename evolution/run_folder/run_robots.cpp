@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mercury/run_robots.h"
 
-#include <charconv>
 #include <span>
 
 #include "evolution/run_folder/derived_files.h"
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/robot_file.h"
 
 namespace mercury {
@@ -25,14 +25,12 @@ std::vector<std::uint64_t> individuals_named(const RunHistory& run, const std::s
   if (choice == elites_of_run) return {living.begin(), living.end()};
   if (choice == best_of_run && !living.empty()) return {living.front()};
   const std::size_t count = run.individuals().size();
-  std::uint64_t id = 0;
-  const char* const end = choice.data() + choice.size();
-  const auto [parsed, error] = std::from_chars(choice.data(), end, id);
-  if (error != std::errc() || parsed != end || id >= count)
+  const auto id = parse_number<std::uint64_t>(choice);
+  if (!id || *id >= count)
     throw ParameterError("robot", "\"" + choice.substr(0, 80) +
                                       "\" is not accepted; give best, elites, champions, or one of the " +
                                       std::to_string(count) + " robots of " + run.folder().string() + ", from 0 on");
-  return {id};
+  return {*id};
 }
 
 }  // namespace mercury

@@ -8,6 +8,7 @@
 #include "mercury/custom.h"
 #include "mercury/error.h"
 #include "mercury/names.h"
+#include "mercury/quantity.h"
 
 namespace mercury {
 
@@ -35,6 +36,19 @@ const AlgorithmDescription& algorithm_of(const AlgorithmSettings& settings) {
   static const AlgorithmDescription map = custom_map();
   const AlgorithmDescription& named = algorithm_named(settings.name);
   return is_custom(settings.name) && !settings.axes.empty() ? map : named;
+}
+
+std::optional<MapAxis> usual_axis(std::string_view name) {
+  const auto quantity = find_quantity(name);
+  if (!quantity) return std::nullopt;
+  const Quantity& found = quantities()[*quantity];
+  return MapAxis{.quantity = std::string(found.name), .lowest = found.usual_lowest, .highest = found.usual_highest};
+}
+
+void complete_algorithm(AlgorithmSettings& settings, bool is_named, std::size_t objectives) {
+  if (!is_named) settings.name = !settings.axes.empty() ? "map-elites" : objectives > 1 ? "nsga2" : "afpo";
+  if (algorithm_of(settings).of_behavior && settings.axes.empty())
+    settings.axes = {*usual_axis("masses"), *usual_axis("muscle_share")};
 }
 
 std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings) {

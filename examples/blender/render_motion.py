@@ -25,7 +25,7 @@ def arguments():
     parser.add_argument("--frame", type=int, default=0, help="of the recording")
     parser.add_argument("--size", default="1280x720", help="WIDTHxHEIGHT")
     parser.add_argument("--samples", type=int, default=64, help="per pixel")
-    parser.add_argument("--azimuth", type=float, default=-62, help="of the eye, from +x towards +y [degrees]")
+    parser.add_argument("--azimuth", type=float, default=-62, help="of the eye, from +x toward +y [degrees]")
     parser.add_argument("--elevation", type=float, default=16, help="of the eye above the horizon [degrees]")
     parser.add_argument("--zoom", type=float, default=1, help="above 1 is closer")
     parser.add_argument("--save", help="keep the scene in this .blend file")
@@ -184,17 +184,17 @@ def add_sun(middle, size):
 def add_camera(scene, middle, points, options):
     """Looks at the robot from the side that the options say, so near that it fills most of the picture."""
     azimuth, elevation = math.radians(options.azimuth), math.radians(options.elevation)
-    towards = Vector((math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)))
+    toward = Vector((math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)))
     bpy.ops.object.camera_add()
     camera = scene.camera = bpy.context.object
-    camera.rotation_euler = towards.to_track_quat("Z", "Y").to_euler()
+    camera.rotation_euler = toward.to_track_quat("Z", "Y").to_euler()
     camera.data.lens = 50
     turn = camera.rotation_euler.to_matrix().transposed()
     aspect = scene.render.resolution_x / scene.render.resolution_y
     half = 18 / 50  # of the picture's width at distance 1
     distance = max(max(abs(p.x) / half, abs(p.y) * aspect / half) + p.z for p in (turn @ (q - middle) for q in points))
     distance *= 1.12 / options.zoom
-    camera.location = middle + distance * towards
+    camera.location = middle + distance * toward
     camera.data.dof.use_dof = True
     camera.data.dof.focus_distance = distance
     camera.data.dof.aperture_fstop = 2.8

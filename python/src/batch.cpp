@@ -2,7 +2,6 @@
 #include "python/src/batch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <set>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
+#include "mercury/stopwatch.h"
 #include "mercury/threads.h"
 #include "python/src/arguments.h"
 
@@ -166,9 +166,9 @@ void Batch::step(std::int64_t steps, nb::handle stream) {
       simulation_->step_in_stream(count, cuda_stream);
       *last_stream_ = cuda_stream;
     } else {
-      const auto start = std::chrono::steady_clock::now();
+      const double start = wall_now();
       simulation_->step(count);
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const double seconds = wall_now() - start;
       if (seconds > cpu_seconds_at_once)
         steps_at_once_ = std::max<std::int64_t>(1, count / 2);
       else if (count == steps_at_once_ && seconds < cpu_seconds_at_once / 4)

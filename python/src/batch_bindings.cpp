@@ -30,11 +30,12 @@ robots. They are the same objects until add() or keep(), which make new ones; th
 
 Several threads may use a batch; one at a time does, the others wait. The GIL is released meanwhile.)";
 
-constexpr const char* init_description =
-    R"(Loads robots onto a device.
+std::string init_description() {
+  return R"(Loads robots onto a device.
 
 robots: a Robot, or a sequence of them; none is also accepted.
-environment: Ocean, OceanSimple, Land or Environment, or the name of one; None = Ocean().
+environment: )" +
+         environment_classes() + R"(, or the name of one; None = Ocean().
 solver: "force" (Algorithm 1 of the paper) or "xpbd" (Algorithm 2, stable at longer time steps).
 dt: time step [s]. damping: velocities shrink by exp(-damping dt) per step [1/s].
 device: "auto" (CUDA if there is a device), "cpu", "cuda", "cuda:1", "cuda:all".
@@ -42,6 +43,7 @@ threads: of the CPU; 0 = all cores.
 
 Raises InputError for a value or a robot that breaks a rule, DeviceError if the device is not there, MemoryError if the
 robots do not fit into the memory that can be used.)";
+}
 
 constexpr const char* step_description =
     R"(Advances every robot that has not exploded by `n` time steps.
@@ -400,7 +402,7 @@ void bind_batch(nb::module_& module) {
            nb::sig("def __init__(self, robots: Robot | collections.abc.Iterable[Robot], "
                    "environment: Environment | str | None = None, solver: str = 'force', dt: float = 0.001, "
                    "damping: float = 0.1, device: object = 'auto', threads: int = 0) -> None"),
-           init_description)
+           init_description().c_str())
       .def("step", &Batch::step, nb::arg("n") = 1, nb::arg("stream") = nb::none(),
            nb::sig("def step(self, n: int = 1, stream: typing.Any = None) -> None"), step_description)
       .def("reset", &Batch::reset, nb::arg("mask") = nb::none(), nb::arg("stream") = nb::none(),
@@ -416,7 +418,7 @@ void bind_batch(nb::module_& module) {
            nb::sig("def set_state(self, robot: int, positions: numpy.typing.ArrayLike, "
                    "velocities: numpy.typing.ArrayLike | None = None) -> None"),
            "Puts the masses of a robot to `positions` [m] with `velocities` [m/s], both (masses, 3); None = at rest.\n"
-           "The robot has not exploded afterwards. Raises InputError for another shape.")
+           "The robot has not exploded afterward. Raises InputError for another shape.")
       .def(
           "save",
           [](const Batch& self) { return self.use([](const Simulation& simulation) { return simulation.save(); }); },

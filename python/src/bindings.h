@@ -36,6 +36,9 @@ Environment environment_of(nb::handle environment);
 // The reverse: of the class of the preset, or an Environment.
 nb::object object_of(const Environment& environment);
 
+// "Ocean, OceanSimple, Land, Water or Environment": their classes.
+std::string environment_classes();
+
 // Sets parameters of environments of the same parts: one value for all, or one per environment. Throws TypeError,
 // InputError.
 void set_parameters(std::vector<Environment>& environments, const nb::kwargs& values);

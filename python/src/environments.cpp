@@ -5,12 +5,12 @@
 #include <nanobind/stl/vector.h>
 
 #include <cctype>
-#include <charconv>
 
 #include "mercury/configuration.h"
 #include "mercury/environment.h"
 #include "mercury/error.h"
 #include "mercury/names.h"
+#include "mercury/number_text.h"
 #include "python/src/arguments.h"
 #include "python/src/bindings.h"
 #include "python/src/values.h"
@@ -18,14 +18,7 @@
 namespace mercury::python {
 namespace {
 
-// The shortest number in double precision that is this one in single precision: 0.2, not 0.20000000298.
-nb::object to_python(float value) {
-  char room[32];
-  const char* end = std::to_chars(room, room + sizeof room, value).ptr;
-  double number = 0;
-  std::from_chars(room, end, number);
-  return nb::float_(number);
-}
+nb::object to_python(float value) { return nb::float_(shortest(value)); }
 nb::object to_python(bool value) { return nb::bool_(value); }
 nb::object to_python(Vec3 value) { return nb::make_tuple(to_python(value.x), to_python(value.y), to_python(value.z)); }
 
@@ -209,13 +202,15 @@ void bind_preset(nb::module_& module) {
 }
 
 void bind_combination(nb::module_& module) {
-  nb::class_<Combination> kind(module, "Environment",
-                               R"(An environment of any parts. It never changes; replace() makes copies.
+  const std::vector<std::string_view> presets = environment_names();
+  const std::string documentation = R"(An environment of any parts. It never changes; replace() makes copies.
 
     pool = mercurysim.Environment("ocean+ground+contacts", gravity=2, friction=0.5)
 
-name: a preset (ocean, ocean-simple, land) or space, followed by +ground or +contacts or both.
-parameters: those of the parts, as Ocean, OceanSimple and Land have them.)");
+name: a preset ()" + mercury::list_of({presets.begin(), presets.end()}) +
+                                    R"() or space, followed by +ground or +contacts or both.
+parameters: those of the parts, as the classes of the presets have them.)";
+  nb::class_<Combination> kind(module, "Environment", documentation.c_str());
   kind.def(
           "__init__",
           [](Combination* self, const std::string& name, const nb::kwargs& values) {
@@ -268,6 +263,13 @@ parameters: those of the parts, as Ocean, OceanSimple and Land have them.)");
 }
 
 }  // namespace
+
+std::string environment_classes() {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < environment_presets.size(); ++i) names.emplace_back(class_name(i));
+  names.emplace_back("Environment");
+  return mercury::list_of(names, " or ");
+}
 
 Environment environment_of(nb::handle environment) {
   if (environment.is_none()) return environment_presets.front().environment;

@@ -40,14 +40,10 @@ MapAxis axis_from(nb::handle given) {
   if (!nb::isinstance<nb::list>(parts) && !nb::isinstance<nb::tuple>(parts)) refuse_type("axes", wanted, given);
   const std::size_t count = nb::len(parts);
   if (count != 1 && count != 3 && count != 4) throw InputError("axes", "give " + wanted);
-  MapAxis axis;
-  axis.quantity = text_from("axes", parts[0]);
-  const auto quantity = find_quantity(axis.quantity);
-  if (!quantity)
-    throw InputError("axes",
-                     "\"" + axis.quantity + "\" is no quantity" + suggestion(axis.quantity, names_of_quantities()));
-  axis.lowest = quantities()[*quantity].usual_lowest;
-  axis.highest = quantities()[*quantity].usual_highest;
+  const std::string name = text_from("axes", parts[0]);
+  std::optional<MapAxis> usual = usual_axis(name);
+  if (!usual) throw InputError("axes", "\"" + name + "\" is no quantity" + suggestion(name, names_of_quantities()));
+  MapAxis& axis = *usual;
   const nb::object to_number = nb::borrow(nb::handle(reinterpret_cast<PyObject*>(&PyFloat_Type)));
   if (count > 1)
     axis.lowest = nb::cast<double>(to_number(parts[1])), axis.highest = nb::cast<double>(to_number(parts[2]));
@@ -129,10 +125,7 @@ EvolutionSettings settings_from(const nb::dict& given, GenomeSpaceRequest& space
   settings.configuration.device = device_named(nb::str(device).c_str());
   settings.configuration.device.threads = threads;
   require_possible_threads(settings.configuration.device);
-  if (!has_algorithm)
-    algorithm.name = !algorithm.axes.empty() ? "map-elites" : settings.objectives.size() > 1 ? "nsga2" : "afpo";
-  if (algorithm_of(algorithm).of_behavior && algorithm.axes.empty())
-    for (const char* usual : {"masses", "muscle_share"}) algorithm.axes.push_back(axis_from(nb::str(usual)));
+  complete_algorithm(algorithm, has_algorithm, settings.objectives.size());
   if (settings.trials.racing && !has_trials) settings.trials.trials = 1;
   validate(settings);
   for (const std::string& formula : settings.objectives)

@@ -11,6 +11,7 @@
 #include "mercury/error.h"
 #include "mercury/generator.h"
 #include "mercury/names.h"
+#include "mercury/real_body.h"
 #include "python/src/bindings.h"
 #include "python/src/called_object.h"
 #include "python/src/values.h"
@@ -125,11 +126,9 @@ WantedSpace space_wanted(nb::handle robots, nb::handle parameters, const std::st
     words.push_back(generator.kind);
     if (word == generator.word || word == generator.kind) found = &generator;
   }
-  if (!found) {
-    std::string all;
-    for (const std::string& each : words) all += (all.empty() ? "" : ", ") + each;
-    throw InputError("robots", "\"" + word + "\" is no kind of robots; there are " + all + suggestion(word, words));
-  }
+  if (!found)
+    throw InputError("robots", "\"" + word + "\" is no kind of robots; there are " + mercury::list_of(words) +
+                                   suggestion(word, words));
   request.kind = found->kind;
   if (!parameters.is_none())
     request.values = generator_values("parameters of " + found->kind, *found,
@@ -199,15 +198,16 @@ void bind_genomes(nb::module_& module) {
           nb::arg("other").none(), nb::sig("def __eq__(self, other: object, /) -> bool"))
       .def("__hash__",
            [](const SharedGenome& self) { return static_cast<std::int64_t>(self.genome->identity() >> 2); });
-  nb::class_<Genomes>(module, "Genomes",
-                      R"(The genomes among which a search looks.
+  const std::string of_genomes = R"(The genomes among which a search looks.
 
-robots: a kind of robots ("voxel", "cppn", "nn", "shell", "tapered"), or Robots to begin with; a class of yours, whose
+robots: a kind of robots ()" + generator_kinds() +
+                                 R"(), or Robots to begin with; a class of yours, whose
 objects are genomes (docs/python.md), or "python:NAME" for genomes that are Robots themselves (of_robot()).
 parameters: of that kind, as of mercurysim.random_voxel() and its like; of the last two, {"physics": "real"} or none.
 genes: what changes: "body", "muscles", "both", or these with "brain" ("muscles,brain").
 
-Raises InputError for what cannot be used.)")
+Raises InputError for what cannot be used.)";
+  nb::class_<Genomes>(module, "Genomes", of_genomes.c_str())
       .def(
           "__init__",
           [](Genomes* self, nb::handle robots, nb::handle parameters, const std::string& genes) {

@@ -25,6 +25,17 @@ def mercury():
     return run
 
 
+@pytest.fixture
+def recorded(robots, tmp_path, mercury):
+    """A recording of the robots of the test: 5 frames in 0.2 s."""
+    for i, robot in enumerate(robots):
+        robot.save(tmp_path / f"{i}.json")
+    path = tmp_path / "run.h5"
+    where = ["--record", path, "--every", 50, "--seconds", 0.2, "--device", "cpu"]
+    mercury("run", *(tmp_path / f"{i}.json" for i in range(len(robots))), *where)
+    return path
+
+
 @pytest.fixture(params=["cpu", "cuda"])
 def device(request):
     """Every device that Mercury steps robots on; skips those that this machine or build lacks."""

@@ -18,12 +18,8 @@ def robots():
 
 
 @pytest.fixture
-def recording(robots, tmp_path, mercury):
-    for i, robot in enumerate(robots):
-        robot.save(tmp_path / f"{i}.json")
-    where = ["--record", tmp_path / "run.h5", "--every", 50, "--seconds", 0.2, "--device", "cpu"]
-    mercury("run", tmp_path / "0.json", tmp_path / "1.json", *where)
-    return mercurysim.Recording(tmp_path / "run.h5")
+def recording(recorded):
+    return mercurysim.Recording(recorded)
 
 
 def test_a_robot_is_exported_at_rest(robots, tmp_path):

@@ -500,11 +500,11 @@ def test_each_episode_has_an_environment_of_its_own(torch, mode):
     if torch:
         torch_or_skip()
 
-    def upwards(random, n):
+    def upward(random, n):
         return np.stack([np.zeros(n), np.zeros(n), random.uniform(-9, -8, n)], 1)
 
     env = WalkEnv(quadruped(), 3, episode_seconds=0.08, torch=torch, autoreset_mode=mode, device="cpu",
-                  randomize={"friction": (0.2, 1.2), "gravity": upwards})
+                  randomize={"friction": (0.2, 1.2), "gravity": upward})
     assert env.episode_steps == 4
 
     def now():

@@ -13,18 +13,8 @@ def robots():
     return mercurysim.random_voxel(2, seed=1)
 
 
-@pytest.fixture
-def path(robots, tmp_path, mercury):
-    for i, robot in enumerate(robots):
-        robot.save(tmp_path / f"{i}.json")
-    path = tmp_path / "run.h5"
-    where = ["--record", path, "--every", 50, "--seconds", 0.2, "--device", "cpu"]
-    mercury("run", tmp_path / "0.json", tmp_path / "1.json", *where)
-    return path
-
-
-def test_a_recording_has_what_a_batch_goes_through(robots, path):
-    recording = mercurysim.Recording(path)
+def test_a_recording_has_what_a_batch_goes_through(robots, recorded):
+    recording = mercurysim.Recording(recorded)
     assert len(recording) == 5
     assert "2 robots, 5 frames" in repr(recording)
     assert recording.program.startswith("mercury ")
@@ -39,8 +29,8 @@ def test_a_recording_has_what_a_batch_goes_through(robots, path):
         batch.step(50)
 
 
-def test_frames_count_from_the_end_too_and_stay(path):
-    recording = mercurysim.Recording(str(path))
+def test_frames_count_from_the_end_too_and_stay(recorded):
+    recording = mercurysim.Recording(str(recorded))
     last = recording.positions(-1)
     kept = last.copy()
     assert np.array_equal(last, recording.positions(np.int64(4)))
@@ -111,8 +101,8 @@ def test_senses_and_neurons_as_a_frame_of_pandas(tmp_path):
     assert np.array_equal(frame["senses"].to_numpy(), recording.senses(2))
 
 
-def test_senses_and_neurons_are_recorded_on_request(path, tmp_path):
-    recording = mercurysim.Recording(path)
+def test_senses_and_neurons_are_recorded_on_request(recorded, tmp_path):
+    recording = mercurysim.Recording(recorded)
     assert not recording.has_brains
     with pytest.raises(mercurysim.InputError, match="run.h5: has no senses and neurons; Recorder"):
         recording.neurons(0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the picture and its light have to show, found on the GPU: the boxes of bodies, what the shadow map covers, and
-// the lists of the faces that turn towards the eye and of those that turn towards the key light.
+// the lists of the faces that turn toward the eye and of those that turn toward the key light.
 //
 //   stage 0   one work group per 256 faces: counts the faces of each list
 //   stage 1   one work group: counts -> offsets, and the commands for indirect drawing

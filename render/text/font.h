@@ -13,7 +13,7 @@ struct FontGlyph {
   int code;                 // Unicode
   float advance;            // to the next glyph
   int x, y, width, height;  // in the atlas
-  int left, top;            // from the pen on the base line to its upper left corner, y downwards
+  int left, top;            // from the pen on the base line to its upper left corner, y downward
 };
 
 // All lengths in pixels, for lines of `size` pixels.

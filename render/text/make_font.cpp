@@ -24,7 +24,7 @@ constexpr int atlas_width = 1024;
 struct Glyph {
   int code = 0;
   float advance = 0;
-  int x = 0, y = 0, width = 0, height = 0, left = 0, top = 0;  // in the atlas; offset from the pen, downwards
+  int x = 0, y = 0, width = 0, height = 0, left = 0, top = 0;  // in the atlas; offset from the pen, downward
   std::vector<std::uint8_t> distances;
 };
 

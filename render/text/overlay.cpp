@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 #include "render/text/font.h"
 #include "render/text/label_layout.h"
@@ -41,6 +42,18 @@ float round_length(float most) {
   for (const float factor : {5.0f, 2.0f, 1.0f})
     if (factor * power <= most * 1.0001f) return factor * power;
   return power;
+}
+
+ScaleBar scale_bar(const Camera& camera, float width, float height, float share) {
+  const float distance = (camera.eye - camera.target).norm();
+  const float pixels_per_meter = height / (2 * distance * std::tan(0.5f * camera.field_of_view));
+  const float meters = round_length(share * width / pixels_per_meter);
+  const auto [factor, unit] = meters < 0.01f ? std::pair(1000, "mm")
+                              : meters < 1   ? std::pair(100, "cm")
+                                             : std::pair(1, "m");
+  char text[32];
+  std::snprintf(text, sizeof text, "%g %s", double(float(factor) * meters), unit);
+  return {.pixels = meters * pixels_per_meter, .text = text};
 }
 
 Overlay::Overlay(int width, int height, float text_size, const Style& style)
@@ -252,20 +265,11 @@ void Overlay::caption(std::string_view shown) {
 }
 
 void Overlay::length(const Camera& camera) {
-  const float distance = (camera.eye - camera.target).norm();
-  const float pixels_a_meter = height_ / (2 * distance * std::tan(0.5f * camera.field_of_view));
-  const float shown = round_length(0.2f * width_ / pixels_a_meter);
-  const float across = shown * pixels_a_meter, size = text_size_;
-  std::array<char, 32> name{};
-  if (shown < 0.01f)
-    std::snprintf(name.data(), name.size(), "%g mm", double(1000 * shown));
-  else if (shown < 1)
-    std::snprintf(name.data(), name.size(), "%g cm", double(100 * shown));
-  else
-    std::snprintf(name.data(), name.size(), "%g m", double(shown));
+  const ScaleBar bar = render::scale_bar(camera, width_, height_, 0.2f);
+  const float across = bar.pixels, size = text_size_;
   const float x = width_ - across - 1.5f * size, y = height_ - 1.3f * size, line = std::max(1.5f, 0.12f * size);
   backing({x - 0.5f * size, y - 1.35f * size, across + size, 2.05f * size}, 0.5f);
-  text(name.data(), x + 0.5f * across, y - 1.2f * size, size, 0.5f);
+  text(bar.text, x + 0.5f * across, y - 1.2f * size, size, 0.5f);
   box({x, y, across, line}, 0, style_.text, 1);
   box({x, y - 0.25f * size, line, 0.5f * size + line}, 0, style_.text, 1);
   box({x + across - line, y - 0.25f * size, line, 0.5f * size + line}, 0, style_.text, 1);

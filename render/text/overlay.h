@@ -83,4 +83,12 @@ class Overlay {
 // The longest of 1, 2, 5 times a power of ten that is not above `most`.
 float round_length(float most);
 
+// A round length, and how long it is in a picture at the distance of the camera's target.
+struct ScaleBar {
+  float pixels = 0;
+  std::string text;  // "20 cm"
+};
+// At most this share of the picture's width, which is in pixels like its height.
+ScaleBar scale_bar(const Camera& camera, float width, float height, float share);
+
 }  // namespace mercury::render

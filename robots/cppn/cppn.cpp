@@ -171,7 +171,7 @@ class Places {
     return found == hidden_.end() ? std::nullopt : std::optional(found->second);
   }
   Key key(std::uint32_t id) const { return {of(id).value_or(0), id}; }
-  bool leads_upwards(const CppnEdge& edge) const {
+  bool leads_upward(const CppnEdge& edge) const {
     const auto from = of(edge.from), to = of(edge.to);
     return from && to && *from < *to;
   }
@@ -213,7 +213,7 @@ std::optional<std::uint32_t> place_of(const Cppn& network, std::uint32_t id) {
 void restore_order(Cppn& network) {
   std::ranges::sort(network.nodes, {}, [](const CppnNode& node) { return Key(node.place, node.id); });
   const Places places(network);
-  std::erase_if(network.edges, [&](const CppnEdge& edge) { return !places.leads_upwards(edge); });
+  std::erase_if(network.edges, [&](const CppnEdge& edge) { return !places.leads_upward(edge); });
   sort_edges(network);
 }
 

@@ -87,7 +87,7 @@ class Mutation {
   Random& random_;
 };
 
-// Inherits nodes from the outputs downwards, as long as edges lead to further ones.
+// Inherits nodes from the outputs downward, as long as edges lead to further ones.
 class Inheritance {
  public:
   Inheritance(const Cppn& a, const Cppn& b, Random& random) : a_(a), b_(b), random_(random) {}

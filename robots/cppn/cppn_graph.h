@@ -40,13 +40,13 @@ constexpr std::uint32_t output_of(std::uint32_t id) {
 // The node's place; none if there is no such node.
 std::optional<std::uint32_t> place_of(const Cppn& network, std::uint32_t id);
 
-// Puts nodes and edges in order. Edges that do not lead upwards, or join nodes that do not exist, are dropped.
+// Puts nodes and edges in order. Edges that do not lead upward, or join nodes that do not exist, are dropped.
 void restore_order(Cppn& network);
 
 // Drops hidden nodes that nothing leads into or that lead to no output, and their edges.
 void prune(Cppn& network);
 
-// The weight of an edge, which is added if it is missing. The edge must lead upwards.
+// The weight of an edge, which is added if it is missing. The edge must lead upward.
 float& weight_of(Cppn& network, std::uint32_t from, std::uint32_t to);
 
 // Puts a new node between the ends of an edge. The edge itself stays. False, without a change, if there is no room.

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 #include "mercury/robot_file.h"
 #include "robots/file/robot_document.h"
-#include "robots/number_text.h"
 
 namespace mercury {
 namespace {

@@ -15,20 +15,6 @@
 namespace mercury {
 namespace {
 
-std::string lower_case(std::string text) {
-  for (char& letter : text)
-    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
-  return text;
-}
-
-// .json and .cbor, in capitals too; none for another extension.
-std::optional<RobotFormat> format_of(const std::filesystem::path& path) {
-  const std::string extension = lower_case(path.extension().string());
-  if (extension == ".json") return RobotFormat::json;
-  if (extension == ".cbor") return RobotFormat::cbor;
-  return std::nullopt;
-}
-
 // Adds the robot files of a folder, sorted, each folder's own files before those of the folders inside it. Links to
 // folders are not followed, since they may lead in circles.
 void add_files_of(const std::filesystem::path& folder, bool recursive, std::vector<std::filesystem::path>& files) {
@@ -38,7 +24,7 @@ void add_files_of(const std::filesystem::path& folder, bool recursive, std::vect
     std::error_code ignored;
     if (entry->is_directory(ignored)) {
       if (!entry->is_symlink(ignored)) folders.push_back(entry->path());
-    } else if (format_of(entry->path())) {
+    } else if (find_robot_format(entry->path())) {
       own.push_back(entry->path());
     }
   }
@@ -52,8 +38,22 @@ void add_files_of(const std::filesystem::path& folder, bool recursive, std::vect
 
 }  // namespace
 
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& letter : extension)
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  return extension;
+}
+
+std::optional<RobotFormat> find_robot_format(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  if (extension == ".json") return RobotFormat::json;
+  if (extension == ".cbor") return RobotFormat::cbor;
+  return std::nullopt;
+}
+
 RobotFormat robot_format_of(const std::filesystem::path& path) {
-  if (const auto format = format_of(path)) return *format;
+  if (const auto format = find_robot_format(path)) return *format;
   const auto extension = path.extension();
   throw InputError(path.string(), extension.empty()
                                       ? "a robot file needs an extension; give .json or .cbor"

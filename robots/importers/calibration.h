@@ -25,7 +25,7 @@ struct BeamModel {
   double elastic_modulus = 1e6;  // E of the stiffest material [Pa]; decides about the time step
   double density = 1e3;          // mean over the voxels [kg/m3]; here all masses are the same
   double edge = 0.01;            // of a voxel [m]
-  double gravity = 9.81;         // downwards [m/s2]
+  double gravity = 9.81;         // downward [m/s2]
   double slow_damping = 0;       // zeta of the damping against the ground, 2 zeta sqrt(m E edge) v [1]
   double aggregate_drag = 0;     // c of evosoro's water, -c A (v.n)^2 n on each face that meets the water [kg/m3]
   // Voxels across the bar for which frequency and stretch are exact; 0 = a bar without a surface. Thinner bars are
@@ -38,7 +38,7 @@ struct Calibration {
   double length_scale = 1;           // meters here per meter there
   double time_scale = 1;             // seconds here per second there; frequencies [rad/s] are divided by it
   double stiffness_per_modulus = 0;  // of a spring, per elastic modulus [N/m per Pa]
-  double gravity = 0;                // downwards [m/s2]
+  double gravity = 0;                // downward [m/s2]
   double damping = 0;                // Configuration::damping [1/s]
   double contact_stiffness = 0;      // Land::contact_stiffness times the stiffness scale [N/m]
   double drag_coefficient = 0;       // C_N of one-sided resistive water of 1000 kg/m3 [1]

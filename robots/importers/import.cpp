@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 
 #include "mercury/error.h"
+#include "mercury/robot_file.h"
 #include "robots/file/whole_file.h"
 #include "robots/importers/report_builder.h"
 #include "robots/importers/xml_document.h"
@@ -23,11 +23,6 @@ ImportFormat history_format();
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string small_letters(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char letter) { return std::tolower(letter); });
-  return text;
-}
 
 // All formats. Each is described beside its reader.
 const std::vector<ImportFormat>& formats() {
@@ -96,7 +91,7 @@ std::string import_sources() {
 }
 
 const ImportFormat* import_format_of(const fs::path& path) {
-  const std::string extension = small_letters(path.extension().string());
+  const std::string extension = extension_of(path);
   for (const ImportFormat& format : formats()) {
     if (std::ranges::count(words_of(format.extensions), extension) == 0) continue;
     if (!format.recognizes) return &format;

@@ -44,7 +44,7 @@ struct Kind {
   double relaxation_time;  // as a share
 };
 constexpr Kind along_edge{1.0 / 16, 0.5}, across_side{1.0 / 15, 0.5}, to_corner{13.0 / 20, 1}, to_middle{7.0 / 10, 1.5};
-// Of a voxel that stands on its middle, between 3/2, which half a voxel needs to be as stiff upwards, and 3/4 in shear.
+// Of a voxel that stands on its middle, between 3/2, which half a voxel needs to be as stiff upward, and 3/4 in shear.
 constexpr double to_corner_of_foot = 1.06, amplitude_of_foot = 4.0 / 3;
 
 constexpr std::array<Place, 8> corners{

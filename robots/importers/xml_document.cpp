@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
 #include "mercury/error.h"
+#include "mercury/number_text.h"
 
 namespace mercury {
 namespace {
@@ -62,10 +62,8 @@ std::string_view trimmed(std::string_view text) {
 std::optional<double> number_from(std::string_view text) {
   text = trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const auto value = parse_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 XmlDocument::XmlDocument(std::string_view text, const std::string& where) {

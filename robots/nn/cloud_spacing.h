@@ -4,7 +4,7 @@
 // A spring of 3 mm is as stiff, in N/m, as one of 30 cm. Where the long one moves its ends by 4 cm, the short one is
 // torn to ten times its length. So
 //
-//   1. points go that are nearer than `distance` to one that stays, from the outermost point inwards: the shape stays;
+//   1. points go that are nearer than `distance` to one that stays, from the outermost point inward: the shape stays;
 //   2. those that stay push each other apart, in three small steps, up to twice the distance;
 //   3. points that came too near to each other on the way go, as in 1.
 //

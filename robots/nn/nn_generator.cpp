@@ -110,6 +110,7 @@ Generator nn_generator() {
                .help = "Robots grown by random neural networks",
                .note = "A file keeps the network, so that the robot can be changed and grown again.",
                .smooth = true,
+               .may_be_tiny = true,
                .example = {.name = "blob", .seed = 4, .values = {{"points", "1000"}}},
                .regrow = regrow,
                .mutate = mutant,

@@ -121,9 +121,7 @@ struct NnGenes {
     validate(genome);
     if (genome.network.has_fields()) return genes;
     genes.materials = read_material_genes(reader);
-    const std::size_t count = genes.materials.size();
-    if (count != 0 && count != base_material_count && count + 1 < default_material_count)
-      throw InputError("genome", std::to_string(count) + " materials are not accepted; give 22, or 253 or more");
+    require_known_count(genes.materials);
     return genes;
   }
 

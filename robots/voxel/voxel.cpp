@@ -54,7 +54,7 @@ class Lattice {
   std::size_t at(int x, int y, int z) const {
     return static_cast<std::size_t>(x) + row_ * static_cast<std::size_t>(y) + layer_ * static_cast<std::size_t>(z);
   }
-  // Unsigned: a step backwards wraps around, and wraps back when it is added to an index.
+  // Unsigned: a step backward wraps around, and wraps back when it is added to an index.
   std::size_t step(int x, int y, int z) const { return at(x, y, z); }
 
   MaterialId voxel(std::size_t index) const { return voxels_[index]; }

@@ -86,9 +86,7 @@ struct VoxelGenes {
     if (std::ranges::all_of(genes.grid.cells, [](MaterialId cell) { return cell == air; }))
       throw InputError("genome", "all voxels are air");
     genes.materials = read_material_genes(reader);
-    const std::size_t count = genes.materials.size();
-    if (count != 0 && count != base_material_count && count + 1 < default_material_count)
-      throw InputError("genome", std::to_string(count) + " materials are not accepted; give 22, or 253 or more");
+    require_known_count(genes.materials);
     return genes;
   }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <iterator>
 #include <unordered_set>
 
@@ -108,7 +107,7 @@ class CpuBackend final : public Backend {
   void step(const Clock& clock, std::int64_t steps) override {
     pool_.execute([&] { group_bodies(); });
     watch_ = {};
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_now();
     std::atomic<std::size_t> broken_up = 0;
     pool_.execute([&] {
       parallel_for(0, batches_.size(),
@@ -119,7 +118,7 @@ class CpuBackend final : public Backend {
     std::size_t groups = 0;
     for (const WorkBatch& batch : batches_) groups += batch.groups.size();
     if (16 * changes_since_grouping_ > groups) ungroup();
-    busy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    busy_seconds_ += wall_now() - start;
   }
 
   void read(std::size_t robot, std::span<Vec3> positions, std::span<Vec3> velocities) const override {
@@ -158,9 +157,9 @@ class CpuBackend final : public Backend {
     return all;
   }
   void set_status(std::size_t robot, const RobotStatus& status) override {
-    RobotStatus& present = bodies_[robot]->status;
-    if ((present.exploded_step < 0) != (status.exploded_step < 0)) ++changes_since_grouping_;
-    present = status;
+    RobotStatus& current = bodies_[robot]->status;
+    if ((current.exploded_step < 0) != (status.exploded_step < 0)) ++changes_since_grouping_;
+    current = status;
   }
 
   void write_materials(std::span<const Material> tables) override {

@@ -2,7 +2,7 @@
 // Telemetry of a robot, computed from the masses in working memory after the last step of a launch.
 //
 //   begin             each thread   zero, for a word of the staged report
-//   -- barrier --     also behind MaterialTable::write_rates()
+//   -- barrier --     also after MaterialTable::write_rates()
 //   measure_springs   each lane     energy and power of the springs it owns            -> fields of the masses
 //                     each warp     their largest strain, the number of strained ones  -> the staged report
 //   -- barrier --

@@ -18,7 +18,7 @@ void SizeClass::describe(std::uint32_t place, const Configuration& of_batch) {
   const Robot& robot = *robots_[place];
   const RobotMeasures& measures = measures_[place];
   const Environment& environment = configuration.environment;
-  const bool own = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(environment.water);
+  const bool own = has_own_points(robot, environment);
   point_properties_[place] = own ? point_properties(robot, environment) : std::vector<PointProperties>();
   const InertiaRange inertia = inertia_range(point_properties_[place]);
   RobotHeader& header = headers_[place];

@@ -129,7 +129,7 @@ MERCURY_HOST_DEVICE double start_of_newton(double c2, double c1, double c0) {
 // `s` = S, row after row.
 //
 // N has no trace, so its characteristic polynomial is l^4 + c2 l^2 + c1 l + c0, and its largest root is at most
-// sqrt(-3/2 c2). From there Newton's steps fall towards it, and never below. All columns of adj(N - l 1) are multiples
+// sqrt(-3/2 c2). From there Newton's steps fall toward it, and never below. All columns of adj(N - l 1) are multiples
 // of the eigenvector (Theobald 2005, "Rapid calculation of RMSDs using a quaternion-based characteristic polynomial").
 // They vanish where the second largest root comes near, as for a line; rotations then take their place.
 MERCURY_HOST_DEVICE Rotation rotation_of(const double (&s)[9]) {

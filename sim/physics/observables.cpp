@@ -35,6 +35,20 @@ float contraction(const Material& material, double time) {
   return -material.amplitude * std::min(sine, highest_sine(material));
 }
 
+std::array<double, 3> mean_over_masses(const Robot& robot, std::span<const Vec3> values) {
+  std::array<double, 3> sum{};
+  double total = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto mass = static_cast<double>(mass_of(robot, i));
+    total += mass;
+    sum[0] += mass * static_cast<double>(values[i].x);
+    sum[1] += mass * static_cast<double>(values[i].y);
+    sum[2] += mass * static_cast<double>(values[i].z);
+  }
+  for (double& each : sum) each /= total;
+  return sum;
+}
+
 std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,
                                 std::span<const Vec3> positions) {
   std::vector<Vec3> forces(robot.masses.size());
@@ -50,6 +64,10 @@ std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow>
     forces[spring.b] -= on_a;
   }
   return forces;
+}
+
+Vec3 mass_force(const Environment& environment, float weight, Vec3 velocity) {
+  return GeneralModel(environment).on_mass(velocity, weight);
 }
 
 FaceForce face_force(const Environment& environment, const Face& face, std::span<const Vec3> positions,

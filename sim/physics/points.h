@@ -10,6 +10,7 @@
 #pragma once
 
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "mercury/environment.h"
@@ -34,6 +35,10 @@ InertiaRange inertia_range(std::span<const PointProperties> points);
 // Whether the robot says what its masses are, or that some are fixed. The step then needs a model with real_bodies
 // (environments.h).
 inline bool has_own_points(const Robot& robot) { return !robot.mass.empty() || !robot.fixed.empty(); }
+// Whether point_properties() are other than the default.
+inline bool has_own_points(const Robot& robot, const Environment& environment) {
+  return has_own_points(robot) || std::holds_alternative<ResistiveDrag>(environment.water);
+}
 
 // The velocity of each mass at the start [m/s]; fixed masses have none.
 std::vector<Vec3> start_velocities(const Robot& robot);

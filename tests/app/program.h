@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the real program as a child process, and gives each test a folder of its own.
+// Runs the real program as a child process.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -20,6 +20,7 @@
 
 #include "app/base/child_process.h"
 #include "mercury/host_memory.h"
+#include "tests/folder.h"
 #include "tests/nap.h"
 
 namespace mercury::test {
@@ -83,49 +84,12 @@ inline Outcome succeeded(const Outcome& outcome, const std::source_location& whe
   return outcome;
 }
 
-// A folder that is there for one test, removed after it.
-class FolderTest : public testing::Test {
+// The programs and children of a test that get no memory end with other results than expected.
+class FolderTest : public TestWithFolder {
  protected:
-  FolderTest() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(info->test_suite_name()) + "." + info->name();
-    for (char& letter : name)
-      if (letter == '/') letter = '-';
-    folder_ = std::filesystem::temp_directory_path() / ("mercury-" + name + "-" + std::to_string(getpid()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
   ~FolderTest() override {
-    std::filesystem::remove_all(folder_);
-    // Programs and children that get no memory end with other results than expected.
     if (HasFailure()) std::cerr << "The machine has " << available_host_memory() / 1'000'000 << " MB of memory left.\n";
   }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  void write(const std::string& name, const std::string& text, bool executable = false) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    if (executable)
-      std::filesystem::permissions(path(name), std::filesystem::perms::owner_exec, std::filesystem::perm_options::add);
-  }
-
-  std::string read(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-
-  // Names of what is in the folder, sorted.
-  std::vector<std::string> listing(const std::string& below = "") const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_ / below))
-      names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  std::filesystem::path folder_;
 };
 
 // The first stream of a video as ffprobe describes it; frames are counted by decoding them ("nb_read_frames").

@@ -28,18 +28,6 @@ EvolutionSettings settings_of(std::string_view algorithm, std::uint64_t seed = 1
   return settings;
 }
 
-std::vector<Generation> run(Evolution& evolution, Assessor& assessor) {
-  std::vector<Generation> generations;
-  while (std::optional<Generation> generation = evolution.advance(assessor)) generations.push_back(*generation);
-  return generations;
-}
-
-std::vector<Generation> run(const EvolutionSettings& settings, const GenomeSpace& space = VectorSpace()) {
-  VectorAssessor assessor(settings.objectives.size());
-  Evolution evolution(settings, space);
-  return run(evolution, assessor);
-}
-
 double best_score(std::string_view algorithm, std::uint64_t seed) {
   const VectorSpace space;
   VectorAssessor assessor;
@@ -173,22 +161,7 @@ TEST_P(Pipelined, IsBetterThanRandomSearchAtAsManyTrials) {
 }
 
 // As files hold it: those who live after the last generation and after the one before.
-TEST_P(Pipelined, AnEvolutionThatIsRestoredGoesOnBitForBit) {
-  const VectorSpace space;
-  const std::vector<Generation> whole = run(settings());
-  VectorAssessor assessor;
-  std::vector<Individual> living, before, born;
-  for (std::size_t number = 0; number < whole.size(); ++number) {
-    Evolution evolution(settings(), space);
-    if (number > 0) evolution.restore(static_cast<int>(number) - 1, living, born, before);
-    before = living;
-    const std::optional<Generation> generation = evolution.advance(assessor);
-    ASSERT_TRUE(generation);
-    EXPECT_EQ(*generation, whole[number]);
-    living = evolution.living();
-    born.insert(born.end(), generation->born.begin(), generation->born.end());
-  }
-}
+TEST_P(Pipelined, AnEvolutionThatIsRestoredGoesOnBitForBit) { expect_the_same_when_restored(settings()); }
 
 // An assessor that refuses to go on, once per generation.
 class Interrupting : public VectorAssessor {

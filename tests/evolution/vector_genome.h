@@ -2,6 +2,8 @@
 // A search whose optimum is known: genomes are vectors of numbers, and the best one is given. No robot is stepped.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,6 +17,7 @@
 
 #include "mercury/assessor.h"
 #include "mercury/error.h"
+#include "mercury/evolution.h"
 #include "mercury/genome.h"
 #include "mercury/quantity.h"
 #include "mercury/random.h"
@@ -143,5 +146,35 @@ class VectorAssessor : public Assessor {
   const std::uint64_t failing_;
   std::size_t count_ = 0;
 };
+
+// All generations.
+inline std::vector<Generation> run(Evolution& evolution, Assessor& assessor) {
+  std::vector<Generation> generations;
+  while (std::optional<Generation> generation = evolution.advance(assessor)) generations.push_back(*generation);
+  return generations;
+}
+inline std::vector<Generation> run(const EvolutionSettings& settings, const GenomeSpace& space = VectorSpace()) {
+  VectorAssessor assessor(settings.objectives.size());
+  Evolution evolution(settings, space);
+  return run(evolution, assessor);
+}
+
+// Makes each generation by an evolution of its own, restored from what files hold.
+inline void expect_the_same_when_restored(const EvolutionSettings& settings) {
+  const VectorSpace space;
+  const std::vector<Generation> whole = run(settings);
+  VectorAssessor assessor;
+  std::vector<Individual> living, before, born;
+  for (std::size_t number = 0; number < whole.size(); ++number) {
+    Evolution evolution(settings, space);
+    if (number > 0) evolution.restore(static_cast<int>(number) - 1, living, born, before);
+    before = living;
+    const std::optional<Generation> generation = evolution.advance(assessor);
+    ASSERT_TRUE(generation);
+    EXPECT_EQ(*generation, whole[number]);
+    living = evolution.living();
+    born.insert(born.end(), generation->born.begin(), generation->born.end());
+  }
+}
 
 }  // namespace mercury

@@ -122,8 +122,9 @@ def applied(text, lines, path):
 class Copy:
     """The sources, changed, with the commands of the build."""
 
-    def __init__(self, build, folder):
+    def __init__(self, build, folder, found):
         self.build, self.folder, self.objects = build, folder, folder / "objects"
+        self.found, self.changed = found, set()  # the examples, those whose changes are made
         only_sources = lambda at, names: [name for name in names if not (Path(at) / name).is_dir()
                                           and Path(name).suffix not in (".h", ".cpp")]
         for part in ("sim", "robots", "evolution", "render", "app"):
@@ -133,8 +134,10 @@ class Copy:
         launcher = re.search(r"^CMAKE_CXX_COMPILER_LAUNCHER:\w+=(.+)", (build / "CMakeCache.txt").read_text(), re.M)
         self.launcher = launcher[1].split(";") if launcher else []
 
-    def change(self, blocks):
+    def change(self, example):
         """Makes the changes of an example; its sources."""
+        self.changed.add(example)
+        blocks = self.found[example]
         for path, kind, lines in blocks:
             file = self.folder / path
             assert file.exists() == (kind == "diff"), f"CONTRIBUTING.md: {path}: a diff is for files that exist, cpp for others"
@@ -149,7 +152,8 @@ class Copy:
         words = shlex.split(of_target[0]["command"])
         words = words[:words.index("-o")]
         own = lambda word: word.startswith(f"-I{ROOT}") and not word.startswith(f"-I{self.build}")
-        return [word.replace(str(ROOT), str(self.folder)) if own(word) else word for word in words] + ["-O1"]
+        words = [word.replace(str(ROOT), str(self.folder)) if own(word) else word for word in words] + ["-O1"]
+        return [words[0], f"-I{self.folder}", *words[1:]]  # before what the build made
 
     def compile(self, sources, flags):
         """Objects of sources of the copy."""
@@ -186,14 +190,17 @@ def expect(text, *parts):
         assert part in text, f'"{part}" is missing in: {text}'
 
 
-def test_what_is_added(copy, found):
+def test_what_is_added(copy):
     """Color quantity, generator, genome, importer, panel, command."""
     targets = {"app/scene": "app_scene", "app/commands": "app_commands", "app/window/panels": "app_window_panels",
                "robots/importers": "importers", "robots/bar": "robots", "robots": "robots"}
     sources = []
     for heading in ("A color quantity", "A generator of robots", "A genome", "An importer", "A panel of the window",
                     "A command"):
-        sources += [source for source in copy.change(found[heading]) if source not in sources]
+        sources += [source for source in copy.change(heading) if source not in sources]
+    run(["cmake", f"-DFOLDER={copy.folder}/app/commands", f"-DOUTPUT={copy.folder}/app/commands/command_table.h", "-P",
+         ROOT / "cmake/CommandTable.cmake"], copy.folder)
+    sources.append("app/commands/program.cpp")
     # Sources of a target together, as the build compiles them.
     objects = []
     for target in sorted({targets[str(Path(source).parent)] for source in sources}):
@@ -222,10 +229,10 @@ def test_what_is_added(copy, found):
         raise AssertionError("a bar of 51 voxels was made")
 
 
-def test_what_changes_headers(copy, found):
+def test_what_changes_headers(copy):
     """Parameters and environments."""
     for heading in ("A parameter of an environment", "An environment", "A parameter of a trial, an algorithm or an evolution"):
-        copy.change(found[heading])
+        copy.change(heading)
     compiler = [*itertools.takewhile(lambda word: not word.startswith("-"), copy.flags("sim")), "-std=c++20", "-O0",
                 f"-I{copy.folder}", *(f"-I{copy.folder}/{part}/include" for part in ("sim", "robots", "evolution"))]
     names = [str(path.relative_to(copy.folder)) for pattern in ("*", "physics/*", "cpu/*", "cpu/grouping/*", "cpu/layout/*")
@@ -257,9 +264,10 @@ def main():
     if not kept:
         shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True, exist_ok=True)
-    copy = Copy(build, folder)
-    test_what_is_added(copy, found)
-    test_what_changes_headers(copy, found)
+    copy = Copy(build, folder, found)
+    test_what_is_added(copy)
+    test_what_changes_headers(copy)
+    assert copy.changed == set(found), f"CONTRIBUTING.md: not tested: {set(found) - copy.changed}"
     if not kept:
         shutil.rmtree(folder)
     print(f"{sum(map(len, found.values()))} blocks of {len(found)} examples work")

@@ -134,7 +134,7 @@ class IncludeRules(unittest.TestCase):
     def test_comments_do_not_count(self):
         self.assertEqual(problems({"sim/a.h": '// #include "app/a.h"\n/*\n#include <fstream>\n__CUDACC__ */\n'}), [])
 
-    def test_the_drawing_shows_the_present_includes(self):
+    def test_the_drawing_shows_the_current_includes(self):
         sys.path.insert(0, str(ROOT / "docs/drawings"))
         import includes
         self.assertEqual((ROOT / "docs/pictures/includes.svg").read_text(encoding="utf-8"),

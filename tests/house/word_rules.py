@@ -33,6 +33,7 @@ WORDS = [
     ("one after the other", "one after another"),
     (r"(the|its|their) present (device|step|state|values?|time|camera|place|positions?|rest|frame|moment|scene|keys?|ones?)", "current"),
     ("at present", "now, currently"),
+    ("(also|again) behind", "after"),
     ("save (that|where|when|for)", "except"),
     ("nought|naught", "0"),
     # British spelling
@@ -44,6 +45,7 @@ WORDS = [
     (r"licences?", "license"),
     (r"(initial|normal|optim|minim|maxim|visual|serial|synchron|vector|random|organ|recogn|real|summar)is(e|ed|es|ing|ation|ations)", "-ize"),
     (r"cancell(ed|ing)|travell(ed|ing|er)|modell(ed|ing)|labell(ed|ing)", "one l: canceled, traveled, modeled, labeled"),
+    ("(to|up|down|in|out|back|for|after)wards", "without the s: toward, afterward"),
     # Hardware
     (r"graphics cards?|NVIDIA cards?", "GPU"),
     ("cards?", "GPU; the window has cards", r"^(README\.md|(sim|bench|evolution)/|docs/(?!window\.md))"),

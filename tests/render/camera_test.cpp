@@ -141,7 +141,7 @@ TEST(Bounds, IgnoresPointsThatAreNotFinite) {
   const float nan = std::nanf("");
   const Bounds bounds = bounds_of(std::vector<float>{0, 0, 0, nan, 5, 5, 1, 2, 3});
   EXPECT_EQ(bounds.high, Vector3(1, 2, 3));
-  EXPECT_TRUE(bounds_of({}).empty());
+  EXPECT_TRUE(bounds_of(std::span<const float>()).empty());
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST(Colormap, ClampsAndAcceptsOddScales) {
   EXPECT_EQ(color_at(Colormap::turbo, 7.0f, 0, 1), color_at(Colormap::turbo, 1));
   EXPECT_EQ(color_at(Colormap::turbo, -7.0f, 0, 1), color_at(Colormap::turbo, 0));
   EXPECT_EQ(color_at(Colormap::turbo, 3.0f, 3, 3), color_at(Colormap::turbo, 0.5f));
-  EXPECT_EQ(color_at(Colormap::turbo, 1.0f, 3, 1), color_at(Colormap::turbo, 1));  // high below low runs backwards
+  EXPECT_EQ(color_at(Colormap::turbo, 1.0f, 3, 1), color_at(Colormap::turbo, 1));  // high below low runs backward
   EXPECT_EQ(color_at(Colormap::turbo, std::nanf("")), rgb(0x808080));
 }
 

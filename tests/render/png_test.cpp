@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/png.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,15 +9,12 @@
 #include <fstream>
 #include <string_view>
 
+#include "tests/folder.h"
+
 namespace mercury::render {
 namespace {
 
-class Png : public testing::Test {
- protected:
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "mercury_png_test";
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-};
+class Png : public test::TestWithFolder {};
 
 TEST_F(Png, ReadsWhatItWrote) {
   Image image{3, 2, PixelFormat::rgb, {}};

@@ -67,7 +67,7 @@ TEST_F(SoftShadow, OnASkinIsSmooth) {
   std::vector<float> positions = below.corners;
   positions.insert(positions.end(), above.corners.begin(), above.corners.end());
   std::array<Placement, 2> placements;
-  placements[1].offset = {-0.35f, -0.2f, 1.2f};  // towards the light, at the left in the picture
+  placements[1].offset = {-0.35f, -0.2f, 1.2f};  // toward the light, at the left in the picture
   Scene scene;
   scene.surroundings = Surroundings::none;
   scene.positions = positions;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "mercury/error.h"
+#include "mercury/fnv.h"
 #include "mercury/inspect.h"
 #include "mercury/origin.h"
 #include "mercury/random.h"
@@ -178,16 +179,15 @@ TEST(CppnRobots, AreSoundAndGrowAgainFromTheirOrigin) {
 TEST(CppnRobots, HaveTheSameBitsOnEveryMachine) {
   // FNV-1a over the cells of random robots and of their mutants; the four operations and square roots alone lead to
   // them.
-  std::uint64_t hash = 14695981039346656037u;
+  Fnv1a hash;
   for (std::uint64_t index = 0; index < 40; ++index) {
     const CppnGenome genome = random_cppn_genome({}, 1, index);
     for (const CppnGenome& one : {genome, mutate(genome, 1, index)}) {
-      for (const MaterialId cell : paint(one).cells) hash = (hash ^ cell) * 1099511628211u;
-      for (const CppnEdge& edge : one.network.edges)
-        hash = (hash ^ std::bit_cast<std::uint32_t>(edge.weight)) * 1099511628211u;
+      for (const MaterialId cell : paint(one).cells) hash.step(cell);
+      for (const CppnEdge& edge : one.network.edges) hash.step(std::bit_cast<std::uint32_t>(edge.weight));
     }
   }
-  EXPECT_EQ(hash, 393581272255519242u);
+  EXPECT_EQ(hash.value(), 393581272255519242u);
 }
 
 TEST(CppnRobots, RandomOnesAreFilledAsAskedAndMostlyMuscle) {
@@ -292,7 +292,7 @@ TEST(CppnEvolution, ManyGenerationsStayValidWithoutCycles) {
     const CppnGenome child = crossover(mutate(a, 3, generation), b, generation);
     b = mutate(a, 3, generation + 1000);
     a = child;
-    ASSERT_NO_THROW(validate(a)) << generation;  // each edge leads upwards
+    ASSERT_NO_THROW(validate(a)) << generation;  // each edge leads upward
     ASSERT_TRUE(has_body(body_of(a)));
   }
   EXPECT_LE(a.network.nodes.size(), max_cppn_nodes);

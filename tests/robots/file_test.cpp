@@ -16,6 +16,7 @@
 #include "mercury/random_voxel.h"
 #include "robots/file/document.h"
 #include "robots/file/whole_file.h"
+#include "tests/folder.h"
 #include "tests/refusal.h"
 #include "tests/size_limit.h"
 
@@ -24,36 +25,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RobotFiles : public testing::Test {
+class RobotFiles : public test::TestWithFolder {
  protected:
-  RobotFiles() {
-    std::string name = (fs::temp_directory_path() / "mercury-robots-XXXXXX").string();
-    folder = ::mkdtemp(name.data());
-  }
-  ~RobotFiles() override { fs::remove_all(folder); }
-
-  void put(const fs::path& name, const std::string& content) { std::ofstream(folder / name) << content; }
   // The message without the folder's name.
   std::string message_of(auto&& action) {
-    try {
-      action();
-    } catch (const std::exception& error) {
-      std::string message = error.what();
-      const std::string prefix = folder.string() + "/";
-      for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix))
-        message.erase(at, prefix.size());
-      return message;
-    }
-    return "no error";
+    std::string message = refusal<std::exception>(action);
+    const std::string prefix = folder_.string() + "/";
+    for (auto at = message.find(prefix); at != std::string::npos; at = message.find(prefix))
+      message.erase(at, prefix.size());
+    return message;
   }
-  std::vector<std::string> names_in_folder() {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-
-  fs::path folder;
 };
 
 Robot robot_with_hard_values() {
@@ -75,8 +56,8 @@ Robot robot_with_hard_values() {
 TEST_F(RobotFiles, EveryValueComesBackBitForBit) {
   for (const char* name : {"a.json", "a.cbor"}) {
     const Robot robot = robot_with_hard_values();
-    save_robot(folder / name, robot);
-    const Robot loaded = load_robot(folder / name);
+    save_robot(folder_ / name, robot);
+    const Robot loaded = load_robot(folder_ / name);
     EXPECT_EQ(loaded, robot) << name;
     EXPECT_TRUE(std::signbit(loaded.masses[0].y)) << name;
   }
@@ -262,21 +243,21 @@ TEST_F(RobotFiles, MembersThatJsonCannotHoldAreLeftOut) {
 }
 
 TEST_F(RobotFiles, ARobotWithoutANameIsNamedByItsFile) {
-  put("ray.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})");
-  EXPECT_EQ(load_robot(folder / "ray.json").name, "ray");
+  write("ray.json", R"({"format":"mercury-robot","version":1,"masses":[[0,0,0]],"springs":[],"faces":[]})");
+  EXPECT_EQ(load_robot(folder_ / "ray.json").name, "ray");
 }
 
 TEST_F(RobotFiles, FoldersAreReadByName) {
   const Robot robot{.masses = {{0, 0, 0}}};
-  fs::create_directory(folder / "b");
-  fs::create_directory(folder / "b" / "inner.json");
+  fs::create_directory(folder_ / "b");
+  fs::create_directory(folder_ / "b" / "inner.json");
   for (const char* name : {"b/2.json", "b/10.cbor", "b/1.json", "z.cbor"}) {
     Robot named = robot;
     named.name = name;
-    save_robot(folder / name, named);
+    save_robot(folder_ / name, named);
   }
-  put("b/readme.txt", "no robot");
-  const std::vector<fs::path> paths{folder / "z.cbor", folder / "b"};
+  write("b/readme.txt", "no robot");
+  const std::vector<fs::path> paths{folder_ / "z.cbor", folder_ / "b"};
   std::vector<std::string> names;
   for (const Robot& loaded : load_robots(paths)) names.push_back(loaded.name);
   EXPECT_THAT(names, testing::ElementsAre("z.cbor", "b/1.json", "b/10.cbor", "b/2.json"));
@@ -284,22 +265,24 @@ TEST_F(RobotFiles, FoldersAreReadByName) {
 
 TEST_F(RobotFiles, ExtensionsMayBeInCapitals) {
   const Robot robot{.name = "a", .masses = {{0, 0, 0}}};
-  for (const char* name : {"a.JSON", "b.Cbor", "c.json"}) save_robot(folder / name, robot);
+  for (const char* name : {"a.JSON", "b.Cbor", "c.json"}) save_robot(folder_ / name, robot);
   EXPECT_EQ(robot_format_of("b.Cbor"), RobotFormat::cbor);
-  EXPECT_THAT(robot_files(std::vector{folder}),
-              testing::ElementsAre(folder / "a.JSON", folder / "b.Cbor", folder / "c.json"));
-  for (const fs::path& file : robot_files(std::vector{folder})) EXPECT_EQ(load_robot(file), robot) << file;
+  EXPECT_EQ(find_robot_format("b.Txt"), std::nullopt);
+  EXPECT_EQ(extension_of("B/Robots.1/A.Tar.Gz"), ".gz");
+  EXPECT_THAT(robot_files(std::vector{folder_}),
+              testing::ElementsAre(folder_ / "a.JSON", folder_ / "b.Cbor", folder_ / "c.json"));
+  for (const fs::path& file : robot_files(std::vector{folder_})) EXPECT_EQ(load_robot(file), robot) << file;
 }
 
 TEST_F(RobotFiles, FoldersInsideFoldersAreReadOnRequest) {
-  for (const char* name : {"a", "a/b", "a/empty", "c"}) fs::create_directory(folder / name);
-  for (const char* name : {"z.json", "a/2.json", "a/b/1.cbor", "c/0.json"}) put(name, "");
-  fs::create_directory_symlink(folder, folder / "c" / "circle");
-  const std::vector<fs::path> all{folder};
-  EXPECT_THAT(robot_files(all), testing::ElementsAre(folder / "z.json"));
-  EXPECT_THAT(robot_files(all, true),
-              testing::ElementsAre(folder / "z.json", folder / "a/2.json", folder / "a/b/1.cbor", folder / "c/0.json"));
-  const auto refusal = message_of([&] { robot_files(std::vector{folder / "a" / "empty"}, true); });
+  for (const char* name : {"a", "a/b", "a/empty", "c"}) fs::create_directory(folder_ / name);
+  for (const char* name : {"z.json", "a/2.json", "a/b/1.cbor", "c/0.json"}) write(name, "");
+  fs::create_directory_symlink(folder_, folder_ / "c" / "circle");
+  const std::vector<fs::path> all{folder_};
+  EXPECT_THAT(robot_files(all), testing::ElementsAre(folder_ / "z.json"));
+  EXPECT_THAT(robot_files(all, true), testing::ElementsAre(folder_ / "z.json", folder_ / "a/2.json",
+                                                           folder_ / "a/b/1.cbor", folder_ / "c/0.json"));
+  const auto refusal = message_of([&] { robot_files(std::vector{folder_ / "a" / "empty"}, true); });
   EXPECT_EQ(refusal, "a/empty: the folder and those in it hold no robot, neither *.json nor *.cbor");
 }
 
@@ -348,52 +331,52 @@ TEST_F(RobotFiles, DocumentsBehindABadOneAreRead) {
 }
 
 TEST_F(RobotFiles, WhatCannotBeReadIsNamed) {
-  const auto load = [&](const char* name) { return message_of([&] { load_robots(std::vector{folder / name}); }); };
-  fs::create_directory(folder / "empty");
+  const auto load = [&](const char* name) { return message_of([&] { load_robots(std::vector{folder_ / name}); }); };
+  fs::create_directory(folder_ / "empty");
   EXPECT_EQ(load("empty"), "empty: the folder holds no robot, neither *.json nor *.cbor");
   EXPECT_EQ(load("missing.json"), "missing.json: No such file or directory");
   EXPECT_EQ(load("missing"), "missing: No such file or directory");
-  put("eel.txt", "");
-  put("eel", "");
+  write("eel.txt", "");
+  write("eel", "");
   EXPECT_EQ(load("eel.txt"), "eel.txt: extension .txt is not a robot's; give .json or .cbor");
   EXPECT_EQ(load("eel"), "eel: a robot file needs an extension; give .json or .cbor");
-  ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo((folder_ / "pipe.json").c_str(), 0600), 0);
   EXPECT_EQ(load("pipe.json"), "pipe.json: not a regular file");
 }
 
 TEST_F(RobotFiles, FilesAreWrittenWholeOrNotAtAll) {
   const Robot robot = random_voxel_robot({}, 1);
-  save_robot(folder / "a.json", robot);
-  const std::string before = read_whole_file(folder / "a.json");
+  save_robot(folder_ / "a.json", robot);
+  const std::string before = read_whole_file(folder_ / "a.json");
 
   std::string message;
   {
     const SizeLimit limited(1000);
-    message = message_of([&] { save_robot(folder / "a.json", random_voxel_robot({}, 2)); });
+    message = message_of([&] { save_robot(folder_ / "a.json", random_voxel_robot({}, 2)); });
   }
 
   EXPECT_EQ(message, "a.json: the file grew beyond the size allowed here (ulimit -f)");
-  EXPECT_EQ(read_whole_file(folder / "a.json"), before);
-  EXPECT_THAT(names_in_folder(), testing::ElementsAre("a.json"));
-  EXPECT_EQ(message_of([&] { save_robot(folder / "no" / "b.json", robot); }), "no/b.json: No such file or directory");
-  fs::create_directory(folder / "c.json");
-  put("c.json/x", "");
-  EXPECT_EQ(message_of([&] { save_robot(folder / "c.json", robot); }), "c.json: Is a directory");
-  EXPECT_THAT(names_in_folder(), testing::ElementsAre("a.json", "c.json"));
+  EXPECT_EQ(read_whole_file(folder_ / "a.json"), before);
+  EXPECT_THAT(listing(), testing::ElementsAre("a.json"));
+  EXPECT_EQ(message_of([&] { save_robot(folder_ / "no" / "b.json", robot); }), "no/b.json: No such file or directory");
+  fs::create_directory(folder_ / "c.json");
+  write("c.json/x", "");
+  EXPECT_EQ(message_of([&] { save_robot(folder_ / "c.json", robot); }), "c.json: Is a directory");
+  EXPECT_THAT(listing(), testing::ElementsAre("a.json", "c.json"));
 }
 
 TEST_F(RobotFiles, ALinkIsFollowed) {
-  fs::create_directory(folder / "real");
-  fs::create_symlink("real/eel.json", folder / "link.json");
+  fs::create_directory(folder_ / "real");
+  fs::create_symlink("real/eel.json", folder_ / "link.json");
   const Robot robot{.name = "eel", .masses = {{0, 0, 0}}};
-  save_robot(folder / "link.json", robot);
-  save_robot(folder / "link.json", robot);
-  EXPECT_TRUE(fs::is_symlink(folder / "link.json"));
-  EXPECT_EQ(load_robot(folder / "real" / "eel.json"), robot);
+  save_robot(folder_ / "link.json", robot);
+  save_robot(folder_ / "link.json", robot);
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.json"));
+  EXPECT_EQ(load_robot(folder_ / "real" / "eel.json"), robot);
 }
 
 TEST_F(RobotFiles, APipeTakesWhatIsWrittenAndStaysAPipe) {
-  const fs::path pipe = folder / "pipe";
+  const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   auto reading = std::async(std::launch::async, [&] {
     std::ifstream file(pipe);
@@ -402,12 +385,12 @@ TEST_F(RobotFiles, APipeTakesWhatIsWrittenAndStaysAPipe) {
   write_whole_file(pipe, "some text");
   EXPECT_EQ(reading.get(), "some text");
   EXPECT_TRUE(fs::is_fifo(pipe));
-  EXPECT_THAT(names_in_folder(), testing::ElementsAre("pipe"));
+  EXPECT_THAT(listing(), testing::ElementsAre("pipe"));
 }
 
 TEST_F(RobotFiles, WhatCannotBeSavedLeavesNoFile) {
   Robot robot{.name = "a", .masses = {{0, 0, 0}}};
-  const auto save = [&](const char* name) { return message_of([&] { save_robot(folder / name, robot); }); };
+  const auto save = [&](const char* name) { return message_of([&] { save_robot(folder_ / name, robot); }); };
   EXPECT_EQ(save("a.obj"), "a.obj: extension .obj is not a robot's; give .json or .cbor");
   robot.origin = "{\"kind\": ";
   EXPECT_EQ(save("a.json"), "a.json: /origin: line 1, column 9: not valid JSON: unexpected end of input");
@@ -416,16 +399,16 @@ TEST_F(RobotFiles, WhatCannotBeSavedLeavesNoFile) {
   robot.origin = "{\"a\":" + std::string(63, '[') + std::string(63, ']') + "}";
   EXPECT_EQ(save("a.cbor"), "a.cbor: /origin: nested deeper than 63 levels");
   robot.origin = "{\"a\":" + std::string(61, '[') + std::string(61, ']') + "}";
-  EXPECT_EQ(save("deep.cbor"), "no error");
-  EXPECT_EQ(load_robot(folder / "deep.cbor"), robot);
-  fs::remove(folder / "deep.cbor");
+  EXPECT_EQ(save("deep.cbor"), "");
+  EXPECT_EQ(load_robot(folder_ / "deep.cbor"), robot);
+  fs::remove(folder_ / "deep.cbor");
   robot.origin.clear();
   robot.name = "\xff";
   EXPECT_EQ(save("a.json"), "a.json: a text is not valid UTF-8");
   EXPECT_EQ(save("a.cbor"), "a.cbor: a text is not valid UTF-8");
   robot = {.springs = {{0, 1, 1, 1}}};
   EXPECT_EQ(save("a.json"), "a.json: /masses: a robot needs at least one mass");
-  EXPECT_TRUE(names_in_folder().empty());
+  EXPECT_TRUE(listing().empty());
 }
 
 }  // namespace

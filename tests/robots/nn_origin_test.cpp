@@ -10,6 +10,7 @@
 
 #include "mercury/error.h"
 #include "mercury/random.h"
+#include "tests/refusal.h"
 #include "tests/robots/nn_bodies.h"
 
 namespace mercury {
@@ -60,11 +61,9 @@ TEST(NnOrigin, OriginsThatCannotBeUsedAreRefusedWithTheirPlace) {
   const auto read = [](const std::string& origin) -> std::string {
     Robot robot;
     robot.origin = origin;
-    try {
-      return nn_genome_of(robot) ? "genome" : "none";
-    } catch (const InputError& error) {
-      return error.what();
-    }
+    std::string found;
+    const std::string why = refusal([&] { found = nn_genome_of(robot) ? "genome" : "none"; });
+    return why + found;
   };
   EXPECT_EQ(read(""), "none");
   EXPECT_EQ(read(R"({"kind":"voxel"})"), "none");

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "mercury/fnv.h"
 #include "mercury/random.h"
 #include "tests/robots/nn_bodies.h"
 
@@ -72,16 +73,15 @@ TEST(NnRobot, NeighborsInSpaceAreNearInMemory) {
 
 // FNV-1a over all bits of a body.
 std::uint64_t hash_of(const Robot& robot) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  const auto add = [&](std::uint32_t value) {
-    for (int byte = 0; byte < 4; ++byte) hash = (hash ^ (value >> 8 * byte & 0xff)) * 0x100000001b3u;
-  };
-  for (const Vec3& x : robot.masses)
-    for (const float c : {x.x, x.y, x.z}) add(std::bit_cast<std::uint32_t>(c));
-  for (const Spring& s : robot.springs)
-    add(s.a), add(s.b), add(s.material), add(std::bit_cast<std::uint32_t>(s.rest_length));
-  for (const Face& f : robot.faces) add(f.a), add(f.b), add(f.c);
-  return hash;
+  Fnv1a hash;
+  for (const Vec3& x : robot.masses) hash.add(x);
+  for (const Spring& s : robot.springs) {
+    for (const std::uint32_t number : {s.a, s.b, std::uint16_t{s.material}}) hash.add(number);
+    hash.add(s.rest_length);
+  }
+  for (const Face& f : robot.faces)
+    for (const std::uint32_t corner : {f.a, f.b, f.c}) hash.add(corner);
+  return hash.value();
 }
 
 // These hashes do not say what is right; they hold for every compiler, optimization and machine.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 
+#include "mercury/fnv.h"
 #include "mercury/inspect.h"
 #include "mercury/random.h"
 #include "robots/portable_math.h"
@@ -106,12 +107,11 @@ INSTANTIATE_TEST_SUITE_P(Shells, EveryForm,
 
 TEST(Shells, HaveTheSameBitsOnEveryMachine) {
   // FNV-1a over the masses; sums, products, quotients and square roots alone lead to them.
-  std::uint64_t hash = 14695981039346656037u;
+  Fnv1a hash;
   for (std::uint64_t index = 0; index < 8; ++index)
     for (const Vec3 mass : random_shell_robot({}, 1, index).masses)
-      for (const float coordinate : {mass.x, mass.y, mass.z})
-        hash = (hash ^ std::bit_cast<std::uint32_t>(coordinate)) * 1099511628211u;
-  EXPECT_EQ(hash, 7418501369885212733u);
+      for (const float coordinate : {mass.x, mass.y, mass.z}) hash.step(std::bit_cast<std::uint32_t>(coordinate));
+  EXPECT_EQ(hash.value(), 7418501369885212733u);
 }
 
 TEST(Shells, WaveIsSineAndCosine) {

@@ -5,10 +5,8 @@
 #include <random>
 
 #include "bench/cpu_lattice.h"
-#include "bench/cpu_plain_loop.h"
 #include "bodies.h"
-#include "kernel_cases.h"
-#include "sim/cpu/backend.h"
+#include "kernel_batch.h"
 
 namespace mercury {
 namespace {
@@ -55,57 +53,16 @@ class CpuKernel : public testing::TestWithParam<KernelCase> {
  protected:
   Vec3 flow;
   float drag_tangential = 0;
-  Configuration configuration() const {
+  KernelCase kernel_case() const {
     KernelCase of = GetParam();
     of.flow = flow;
     of.drag_tangential = drag_tangential;
-    return of.configuration();
+    return of;
   }
-
-  struct Result {
-    State state;
-    std::int64_t exploded_step;
-    std::uint32_t bad_mass;
-  };
-  Result by_kernel(const Robot& robot, const State& start, std::span<const Perturbation> perturbations,
-                   std::int64_t steps) const {
-    const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
-    const Robot* const pointer = &robot;
-    const Configuration settings = configuration();
-    backend->load({&pointer, 1}, settings);
-    backend->write(0, start.positions, start.velocities);
-    backend->set_perturbations(perturbations);
-    Clock clock{.dt = settings.dt};
-    for (const std::int64_t call : {std::int64_t{1}, std::int64_t{40}, steps - 41}) {
-      backend->step(clock, call);
-      clock.step += call;
-    }
-    Result result{{std::vector<Vec3>(robot.masses.size()), std::vector<Vec3>(robot.masses.size())}, -1, 0};
-    backend->read(0, result.state.positions, result.state.velocities);
-    result.exploded_step = backend->status(0).exploded_step;
-    result.bad_mass = backend->status(0).bad_mass;
-    return result;
-  }
-  Result by_plain_loop(const Robot& robot, const State& start, std::span<const Perturbation> perturbations,
-                       std::int64_t steps) const {
-    bench::PlainLoop loop(robot, configuration());
-    loop.set_state(start);
-    loop.set_perturbations(perturbations);
-    loop.step(steps);
-    return {loop.state(), loop.exploded_step(), loop.bad_mass()};
-  }
-
   void expect_same(const Robot& robot, const State& start, std::span<const Perturbation> perturbations,
                    std::int64_t steps, const std::string& which) const {
-    const Result got = by_kernel(robot, start, perturbations, steps),
-                 wanted = by_plain_loop(robot, start, perturbations, steps);
-    EXPECT_EQ(got.exploded_step, wanted.exploded_step) << which;
-    EXPECT_EQ(got.bad_mass, wanted.bad_mass) << which;
-    std::size_t different = 0;
-    for (std::size_t i = 0; i < robot.masses.size(); ++i)
-      if (got.state.positions[i] != wanted.state.positions[i] || got.state.velocities[i] != wanted.state.velocities[i])
-        ++different;
-    EXPECT_EQ(different, 0u) << which << ": masses that differ, of " << robot.masses.size();
+    SCOPED_TRACE(which);
+    test::expect_the_plain_loop(kernel_case(), {&robot, 1}, {&start, 1}, {1, 40, steps - 41}, perturbations);
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, CpuKernel, testing::ValuesIn(test::every_kernel_case()), test::name_of_kernel_case);
@@ -174,30 +131,8 @@ class CpuKernelInLockstep : public CpuKernel {
     }
   }
 
-  // Steps all robots in one batch, in calls of 3, 45, 200 and 52 steps, and compares each with the plain loop.
   void expect_the_plain_loop(std::span<const Perturbation> perturbations = {}) const {
-    const auto backend = cpu::make_backend({.threads = 1}, GetParam().kernel);
-    std::vector<const Robot*> pointers;
-    for (const Robot& robot : robots) pointers.push_back(&robot);
-    backend->load(pointers, configuration());
-    for (std::size_t i = 0; i < robots.size(); ++i) backend->write(i, starts[i].positions, starts[i].velocities);
-    backend->set_perturbations(perturbations);
-    Clock clock{.dt = configuration().dt};
-    for (const std::int64_t call : {3, 45, 200, 52}) {
-      backend->step(clock, call);
-      clock.step += call;
-    }
-    for (std::size_t i = 0; i < robots.size(); ++i) {
-      std::vector<Perturbation> own;
-      for (const Perturbation& perturbation : perturbations)
-        if (perturbation.robot == i) own.push_back(perturbation);
-      const Result wanted = by_plain_loop(robots[i], starts[i], own, clock.step);
-      State got{std::vector<Vec3>(original.masses.size()), std::vector<Vec3>(original.masses.size())};
-      backend->read(i, got.positions, got.velocities);
-      EXPECT_EQ(backend->status(i).exploded_step, wanted.exploded_step) << i;
-      EXPECT_EQ(backend->status(i).bad_mass, wanted.bad_mass) << i;
-      EXPECT_TRUE(got.positions == wanted.state.positions && got.velocities == wanted.state.velocities) << i;
-    }
+    test::expect_the_plain_loop(kernel_case(), robots, starts, {3, 45, 200, 52}, perturbations);
   }
 
   const Robot original = entangled(bodies::random_voxels({.x = 2, .y = 2, .z = 2}, 3));

@@ -75,7 +75,7 @@ TEST_P(Parts, SwitchesOfContactsThatAreOffKeepTheModelOfThePreset) {
     EXPECT_EQ(after_a_second(without, solver), after_a_second(ocean, solver));
 }
 
-// Two loose masses swim towards each other. Those of one spring set the contact distance: half its length.
+// Two loose masses swim toward each other. Those of one spring set the contact distance: half its length.
 Robot two_that_meet() {
   Robot robot;
   robot.materials = bodies::one_material(tissue_like);

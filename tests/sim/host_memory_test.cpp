@@ -7,52 +7,49 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "sim/host_memory.h"
+#include "tests/folder.h"
 
 namespace mercury {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ControlGroups : public testing::Test {
+class ControlGroups : public test::TestWithFolder {
  protected:
-  ControlGroups() { fs::create_directories(root_); }
-  ~ControlGroups() override { fs::remove_all(root_); }
   void put(const fs::path& file, const std::string& text) const {
-    fs::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file) << text;
+    fs::create_directories((folder_ / file).parent_path());
+    write(file, text);
   }
-  const fs::path root_ = fs::temp_directory_path() / ("mercury-groups-" + std::to_string(::getpid()));
 };
 
 TEST_F(ControlGroups, NoGroupIsNoLimit) {
-  EXPECT_EQ(left_in_control_groups(root_, ""), unlimited_memory);
-  EXPECT_EQ(left_in_control_groups(root_, "0::/user.slice\n4:memory:/a\nnonsense\n"), unlimited_memory);
+  EXPECT_EQ(left_in_control_groups(folder_, ""), unlimited_memory);
+  EXPECT_EQ(left_in_control_groups(folder_, "0::/user.slice\n4:memory:/a\nnonsense\n"), unlimited_memory);
 }
 
 TEST_F(ControlGroups, OfVersion2TheTightestAroundTheProcessCounts) {
   const std::string membership = "0::/job/step\n";
   put("job/step/memory.max", "max\n");
   put("job/step/memory.current", "100\n");
-  EXPECT_EQ(left_in_control_groups(root_, membership), unlimited_memory);
+  EXPECT_EQ(left_in_control_groups(folder_, membership), unlimited_memory);
   put("job/memory.max", "1000\n");
   put("job/memory.current", "400\n");
-  EXPECT_EQ(left_in_control_groups(root_, membership), 600u);
+  EXPECT_EQ(left_in_control_groups(folder_, membership), 600u);
   put("job/memory.stat", "anon 150\ninactive_file 250\nactive_file 9\n");  // Linux drops these files when it must
-  EXPECT_EQ(left_in_control_groups(root_, membership), 850u);
+  EXPECT_EQ(left_in_control_groups(folder_, membership), 850u);
   put("memory.max", "300\n");
   put("memory.current", "400\n");
-  EXPECT_EQ(left_in_control_groups(root_, membership), 0u);
+  EXPECT_EQ(left_in_control_groups(folder_, membership), 0u);
 }
 
 TEST_F(ControlGroups, OfVersion1TheMemoryControllerCounts) {
   put("memory/docker/1f/memory.limit_in_bytes", "5000\n");
   put("memory/docker/1f/memory.usage_in_bytes", "2000\n");
   put("memory/docker/1f/memory.stat", "inactive_file 1\ntotal_inactive_file 500\n");
-  EXPECT_EQ(left_in_control_groups(root_, "5:cpu,memory:/docker/1f\n0::/\n"), 3500u);
-  EXPECT_EQ(left_in_control_groups(root_, "5:cpu:/docker/1f\n"), unlimited_memory);
+  EXPECT_EQ(left_in_control_groups(folder_, "5:cpu,memory:/docker/1f\n0::/\n"), 3500u);
+  EXPECT_EQ(left_in_control_groups(folder_, "5:cpu:/docker/1f\n"), unlimited_memory);
 }
 
 // The limit is the smaller one of the two sums: what the process has, and what it may still take.

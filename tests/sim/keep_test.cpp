@@ -6,6 +6,7 @@
 
 #include "backend.h"
 #include "bodies.h"
+#include "mixed_robots.h"
 
 namespace mercury {
 namespace {
@@ -13,15 +14,8 @@ namespace {
 class Keep : public EveryPair {};
 INSTANTIATE_TEST_SUITE_P(All, Keep, every_pair, EveryPair::name);
 
-std::vector<Robot> four() {
-  std::vector<Robot> robots;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed)
-    robots.push_back(bodies::random_voxels({.x = static_cast<int>(seed), .y = 2, .z = 2}, seed));
-  return robots;
-}
-
 TEST_P(Keep, RobotsThatStayMoveAsIfAllHadStayed) {
-  const std::vector<Robot> robots = four();
+  const std::vector<Robot> robots = test::growing_robots(4);
   Simulation all(configuration(), robots), fewer(configuration(), robots);
   fewer.step(100);
   fewer.keep(std::array<std::size_t, 2>{3, 1});
@@ -40,7 +34,7 @@ class KeepOn : public BackendTest {};
 INSTANTIATE_TEST_SUITE_P(All, KeepOn, every_device, BackendTest::name);
 
 TEST_P(KeepOn, TunedMaterialsMoveWithTheirRobot) {
-  Simulation simulation({.device = device()}, four());
+  Simulation simulation({.device = device()}, test::growing_robots(4));
   const Material soft{.stiffness = 7};
   simulation.set_material(2, 5, soft);
   simulation.keep(std::array<std::size_t, 2>{2, 0});
@@ -49,7 +43,7 @@ TEST_P(KeepOn, TunedMaterialsMoveWithTheirRobot) {
 }
 
 TEST_P(KeepOn, AnExplosionIsKept) {
-  Simulation simulation({.environment = empty_space(), .device = device()}, four());
+  Simulation simulation({.environment = empty_space(), .device = device()}, test::growing_robots(4));
   State far = simulation.state(1);
   far.positions[0].x = 2e6f;
   simulation.set_state(1, far.positions, far.velocities);
@@ -63,16 +57,16 @@ TEST_P(KeepOn, AnExplosionIsKept) {
 }
 
 TEST_P(KeepOn, AllRobotsCanBeRemoved) {
-  Simulation simulation({.device = device()}, four());
+  Simulation simulation({.device = device()}, test::growing_robots(4));
   simulation.keep({});
   simulation.step(10);
   EXPECT_EQ(simulation.size(), 0u);
   EXPECT_EQ(simulation.mass_count(), 0u);
-  EXPECT_EQ(simulation.add(four()[0]), 0u);
+  EXPECT_EQ(simulation.add(test::growing_robots(4)[0]), 0u);
 }
 
 TEST_P(KeepOn, AnIndexMustExistAndAppearOnce) {
-  Simulation simulation({.device = device()}, four());
+  Simulation simulation({.device = device()}, test::growing_robots(4));
   EXPECT_THROW(simulation.keep(std::array<std::size_t, 1>{4}), std::out_of_range);
   EXPECT_THROW(simulation.keep(std::array<std::size_t, 2>{1, 1}), std::invalid_argument);
   EXPECT_EQ(simulation.size(), 4u);

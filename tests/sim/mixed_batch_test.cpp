@@ -6,54 +6,17 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <memory>
 
-#include "bench/cpu_plain_loop.h"
 #include "bodies.h"
-#include "kernel_cases.h"
+#include "kernel_batch.h"
 #include "mixed_robots.h"
-#include "sim/cpu/backend.h"
 
 namespace mercury {
 namespace {
 
+using Batch = test::KernelBatch;
+using test::expect_same;
 using test::KernelCase;
-
-// A backend with robots and its clock.
-class Batch {
- public:
-  Batch(const KernelCase& of, std::span<const Robot> robots, std::int64_t threads = 1)
-      : robots_(robots),
-        backend_(cpu::make_backend({.threads = static_cast<int>(threads)}, of.kernel)), clock_{
-                                                                                            .dt =
-                                                                                                of.configuration().dt} {
-    std::vector<const Robot*> pointers;
-    for (const Robot& robot : robots) pointers.push_back(&robot);
-    backend_->load(pointers, of.configuration());
-  }
-
-  void write(std::size_t robot, const State& state) { backend_->write(robot, state.positions, state.velocities); }
-  void step(std::int64_t steps) {
-    backend_->step(clock_, steps);
-    clock_.step += steps;
-  }
-  State state(std::size_t robot) const {
-    State state{std::vector<Vec3>(robots_[robot].masses.size()), std::vector<Vec3>(robots_[robot].masses.size())};
-    backend_->read(robot, state.positions, state.velocities);
-    return state;
-  }
-  Backend& backend() { return *backend_; }
-  std::int64_t steps() const { return clock_.step; }
-
- private:
-  std::span<const Robot> robots_;
-  std::unique_ptr<Backend> backend_;
-  Clock clock_;
-};
-
-void expect_same(const State& got, const State& wanted, std::size_t robot) {
-  EXPECT_TRUE(got.positions == wanted.positions && got.velocities == wanted.velocities) << "robot " << robot;
-}
 
 class MixedBatch : public testing::TestWithParam<KernelCase> {
  protected:
@@ -64,28 +27,12 @@ class MixedBatch : public testing::TestWithParam<KernelCase> {
     }
   }
 
-  // Steps all robots in one batch, in calls of 1 to 45 steps, and compares each with the plain loop.
   void expect_the_plain_loop(std::span<const Perturbation> perturbations = {}, Vec3 flow = {},
                              float drag_tangential = 0) const {
     KernelCase of = GetParam();
     of.flow = flow;
     of.drag_tangential = drag_tangential;
-    Batch batch(of, robots);
-    for (std::size_t i = 0; i < robots.size(); ++i) batch.write(i, starts[i]);
-    batch.backend().set_perturbations(perturbations);
-    for (const std::int64_t call : {1, 2, 45, 7, 40, 1, 34}) batch.step(call);
-    for (std::size_t i = 0; i < robots.size(); ++i) {
-      bench::PlainLoop loop(robots[i], of.configuration());
-      loop.set_state(starts[i]);
-      std::vector<Perturbation> own;
-      std::ranges::copy_if(perturbations, std::back_inserter(own),
-                           [&](const Perturbation& perturbation) { return perturbation.robot == i; });
-      loop.set_perturbations(own);
-      loop.step(batch.steps());
-      expect_same(batch.state(i), loop.state(), i);
-      EXPECT_EQ(batch.backend().status(i).exploded_step, loop.exploded_step()) << i;
-      EXPECT_EQ(batch.backend().status(i).bad_mass, loop.bad_mass()) << i;
-    }
+    test::expect_the_plain_loop(of, robots, starts, {1, 2, 45, 7, 40, 1, 34}, perturbations);
   }
 
   std::vector<Robot> robots = test::mixed_robots(GetParam().kernel.lanes);

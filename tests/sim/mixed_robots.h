@@ -35,4 +35,12 @@ inline std::vector<Robot> mixed_robots(std::size_t lanes) {
   return robots;
 }
 
+// That many robots, of 1, 2, 3, ... x 2 x 2 voxels.
+inline std::vector<Robot> growing_robots(std::size_t count) {
+  std::vector<Robot> robots;
+  for (std::uint64_t seed = 1; seed <= count; ++seed)
+    robots.push_back(bodies::random_voxels({.x = static_cast<int>(seed), .y = 2, .z = 2}, seed));
+  return robots;
+}
+
 }  // namespace mercury::test

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -53,6 +54,19 @@ TEST(Observables, AClockGivesTheSameAsItsTime) {
   const MaterialNow by_time = materials_at(table, Ocean{}, time_of(clock)).at(1);
   EXPECT_NEAR(by_clock.length_factor, by_time.length_factor, 1e-6);
   EXPECT_NEAR(by_clock.length_rate, by_time.length_rate, 1e-6);
+}
+
+TEST(Observables, AMassIsHeavyAndDraggedByWaterThatActsOnMasses) {
+  const Environment simple = OceanSimple{.point_drag = 3, .flow = {1, 0, 0}, .gravity = {0, 0, -2}};
+  EXPECT_EQ(mass_force(simple, 0.5f, {0, 4, 0}), (Vec3{3, -12, -1}));
+  EXPECT_EQ(mass_force(Ocean{.flow = {1, 0, 0}}, 0.5f, {0, 4, 0}), Vec3{});
+}
+
+TEST(Observables, AMeanOverMassesIsWeighted) {
+  Robot robot{.name = "pair", .masses = {{0, 0, 0}, {4, 0, 8}}};
+  EXPECT_EQ(mean_over_masses(robot, robot.masses), (std::array<double, 3>{2, 0, 4}));
+  robot.mass = {3, 1};
+  EXPECT_EQ(mean_over_masses(robot, robot.masses), (std::array<double, 3>{1, 0, 2}));
 }
 
 TEST(Observables, ASpringOfTwoMasses) {

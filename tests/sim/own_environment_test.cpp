@@ -8,17 +8,11 @@
 
 #include "backend.h"
 #include "bodies.h"
+#include "mixed_robots.h"
 #include "tests/refusal.h"
 
 namespace mercury {
 namespace {
-
-std::vector<Robot> three() {
-  std::vector<Robot> robots;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed)
-    robots.push_back(bodies::random_voxels({.x = static_cast<int>(seed), .y = 2, .z = 2}, seed));
-  return robots;
-}
 
 // The same parts with other values.
 Environment varied(Environment environment) {
@@ -50,7 +44,7 @@ class OwnEnvironment : public EveryPair {
 INSTANTIATE_TEST_SUITE_P(All, OwnEnvironment, every_pair, EveryPair::name);
 
 TEST_P(OwnEnvironment, ARobotMovesAsInABatchThatLivesThereAndTheOthersAsBefore) {
-  const std::vector<Robot> robots = three();
+  const std::vector<Robot> robots = test::growing_robots(3);
   const Environment other = varied(configuration().environment);
   Configuration there = configuration();
   there.environment = other;
@@ -62,7 +56,7 @@ TEST_P(OwnEnvironment, ARobotMovesAsInABatchThatLivesThereAndTheOthersAsBefore) 
 }
 
 TEST_P(OwnEnvironment, ARobotDoesNotFeelThoseOfOthers) {
-  const std::vector<Robot> robots = three();
+  const std::vector<Robot> robots = test::growing_robots(3);
   const Environment other = varied(configuration().environment);
   Simulation a = with_own(other, robots), b(configuration(), robots);
   b.set_environments(std::array<std::size_t, 3>{0, 1, 2}, std::array{varied(other), other, varied(other)});
@@ -74,7 +68,7 @@ TEST_P(OwnEnvironment, ARobotDoesNotFeelThoseOfOthers) {
 }
 
 TEST_P(OwnEnvironment, ItLastsWhileRobotsComeAndGoAndEndsWithConfigure) {
-  const std::vector<Robot> robots = three();
+  const std::vector<Robot> robots = test::growing_robots(3);
   const Environment other = varied(configuration().environment);
   Simulation changed = with_own(other, robots), same = with_own(other, robots);
   changed.step(40);
@@ -188,7 +182,7 @@ TEST_P(OwnEnvironmentOn, RefusesWhatAllRobotsShare) {
 TEST(OwnEnvironmentOfPlainBackends, AreSplitAmongParts) {
   std::vector<std::unique_ptr<Backend>> parts;
   for (int i = 0; i < 2; ++i) parts.push_back(make_cpu_backend({.kind = DeviceKind::cpu, .threads = 1}));
-  const std::vector<Robot> robots = three();
+  const std::vector<Robot> robots = test::growing_robots(3);
   const Configuration configuration{.device = {.kind = DeviceKind::cpu}};
   Simulation split(configuration, robots, make_split_backend(std::move(parts))), whole(configuration, robots);
   const std::array<std::size_t, 2> which{2, 0};

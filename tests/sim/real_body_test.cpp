@@ -260,7 +260,7 @@ TEST_P(RealBody, ABarVibratesMoreSlowlyWithTheWaterThatItMoves) {
     }
     for (Vec3& v : velocities) v.z -= static_cast<float>(mean);
     simulation.set_state(0, robot.masses, velocities);
-    // Times at which the ends pass the middle upwards.
+    // Times at which the ends pass the middle upward.
     std::vector<double> crossings;
     double last = 0;
     for (int step = 0; step < 40000 && crossings.size() < 9; ++step) {

@@ -44,16 +44,9 @@ TEST_P(Save, AnotherSimulationGoesOnFromThere) {
 class SaveOn : public BackendTest {};
 INSTANTIATE_TEST_SUITE_P(All, SaveOn, every_device, BackendTest::name);
 
-std::vector<Robot> three() {
-  std::vector<Robot> robots;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed)
-    robots.push_back(bodies::random_voxels({.x = static_cast<int>(seed), .y = 2, .z = 2}, seed));
-  return robots;
-}
-
 TEST_P(SaveOn, PhasesGoOnAfterAChangeOfTheTimeStep) {
   Configuration configuration{.device = device()};
-  Simulation simulation(configuration, three());
+  Simulation simulation(configuration, test::growing_robots(3));
   simulation.step(100);
   configuration.dt = 0.0007;
   simulation.configure(configuration);
@@ -69,7 +62,7 @@ TEST_P(SaveOn, PhasesGoOnAfterAChangeOfTheTimeStep) {
 
 // Robot 1 explodes between the two states.
 TEST_P(SaveOn, AnExplosionIsUndoneAndDoneAgain) {
-  Simulation simulation({.environment = empty_space(), .device = device()}, three());
+  Simulation simulation({.environment = empty_space(), .device = device()}, test::growing_robots(3));
   State fast = simulation.state(1);
   fast.velocities[0].x = 1e5f;
   simulation.set_state(1, fast);
@@ -99,7 +92,7 @@ TEST_P(SaveOn, AnExplosionIsUndoneAndDoneAgain) {
 }
 
 TEST_P(SaveOn, AStateThatDoesNotFitIsRefusedAndChangesNothing) {
-  Simulation simulation({.device = device()}, three());
+  Simulation simulation({.device = device()}, test::growing_robots(3));
   simulation.step(10);
   const std::vector<std::uint64_t> before = simulation.hashes();
   const BatchState good = simulation.save();

@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(All, Springs, every_device, BackendTest::name);
 constexpr float stiffness = 50;  // [N/m]
 constexpr Material passive{stiffness, 0, 0, 0};
 
-// Mean time between passages of the pair's length upwards through its rest length [s], over `periods` passages.
+// Mean time between passages of the pair's length upward through its rest length [s], over `periods` passages.
 double measured_period(Simulation& simulation, int periods) {
   const double dt = simulation.configuration().dt;
   double first = 0, last = 0, before = 0;

@@ -17,6 +17,7 @@
 #include "app/window/toolkit/widgets.h"
 #include "mercury/error.h"
 #include "mercury/host_memory.h"
+#include "mercury/robot_file.h"
 #include "mercury/samples.h"
 
 namespace mercury::window {
@@ -76,7 +77,7 @@ void FileDialog::ask(FileRequest request, std::function<void(const FileChoice&)>
   error_.clear();
   set_text(request_.name);
   // Several formats may share an extension: the first of them.
-  const auto found = std::ranges::find(request_.extensions, fs::path(text_).extension().string());
+  const auto found = std::ranges::find(request_.extensions, extension_of(text_));
   format_ = found == request_.extensions.end() ? 0 : static_cast<int>(found - request_.extensions.begin());
   open_ = just_opened_ = true;
 }
@@ -203,8 +204,7 @@ void FileDialog::accept_typed() {
     return;
   }
   const std::vector<std::string>& known = request_.extensions;
-  if (request_.kind == Kind::save && !known.empty() &&
-      std::find(known.begin(), known.end(), path.extension()) == known.end())
+  if (request_.kind == Kind::save && !known.empty() && std::ranges::find(known, extension_of(path)) == known.end())
     path += known[static_cast<std::size_t>(request_.formats.empty() ? 0 : format_)];
   finish({std::move(path)});
 }

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "mercury/robot_file.h"
+
 namespace mercury::window {
 namespace {
 
@@ -97,8 +99,7 @@ std::size_t FolderListing::file_count() const {
 bool FolderListing::is_shown(const FolderItem& item) const {
   if (!filter_.empty() && lower(item.name).find(filter_) == std::string::npos) return false;
   if (item.folder || extensions_.empty()) return true;
-  return std::find(extensions_.begin(), extensions_.end(), lower(fs::path(item.name).extension().string())) !=
-         extensions_.end();
+  return std::ranges::find(extensions_, extension_of(item.name)) != extensions_.end();
 }
 
 // Fills shown_ from all_ and keeps the marks.

@@ -131,7 +131,7 @@ void RobotFolderReader::list() {
     if (path.filename().string().starts_with(".")) continue;
     if (entries->is_directory(unknown))
       folders_.push_back(path);
-    else if (path.extension() == ".json" || path.extension() == ".cbor")
+    else if (find_robot_format(path))
       files_.push_back(path);
   }
   std::sort(folders_.begin(), folders_.end());

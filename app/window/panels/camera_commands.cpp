@@ -29,7 +29,7 @@ struct End {
   int axis = 0;
   bool negative = false;
   ImVec2 at{0, 0};
-  float depth = 0;  // towards the eye, -1 to 1
+  float depth = 0;  // toward the eye, -1 to 1
 };
 
 std::array<End, 6> ends_of(const render::Camera& camera, ImVec2 middle, float reach) {

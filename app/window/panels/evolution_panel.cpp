@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -19,6 +18,7 @@
 #include "app/window/toolkit/plot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
+#include "mercury/number_text.h"
 #include "mercury/quantity.h"
 
 namespace mercury::window {
@@ -116,9 +116,8 @@ void draw_button(PanelContext& context, float width) {
 // Goes on with a run that is finished.
 void ask_for_generations(PanelContext& context, int generation) {
   const auto go_on = [&context, generation](const std::string& text) {
-    int more = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), more);
-    if (error != std::errc() || end != text.data() + text.size() || more < 1 || more > 1'000'000)
+    const int more = parse_number<int>(text).value_or(0);
+    if (more < 1 || more > 1'000'000)
       context.toasts.show(Tone::warning, "\"" + text + "\" is not accepted; give 1 to 1000000 generations");
     else
       context.run.resume(context.scene.document().configuration.device, generation + more);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <charconv>
 #include <optional>
 
 #include "app/export/export_format.h"
@@ -13,6 +12,7 @@
 #include "app/live/scene_files.h"
 #include "app/live/scene_robots.h"
 #include "app/live/scene_selection.h"
+#include "mercury/number_text.h"
 
 namespace mercury::window {
 namespace {
@@ -170,10 +170,8 @@ void begin_export(PanelContext& context, const fs::path& path, const std::functi
 }
 
 std::optional<double> seconds_from(const std::string& text) {
-  double seconds = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-  if (error != std::errc{} || end != text.data() + text.size() || !(seconds > 0)) return std::nullopt;
-  return seconds;
+  const std::optional<double> seconds = parse_number<double>(text);
+  return seconds && *seconds > 0 ? seconds : std::nullopt;
 }
 
 }  // namespace

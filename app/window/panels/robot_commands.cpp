@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <unordered_set>
 #include <variant>
 
@@ -15,6 +14,7 @@
 #include "app/live/scene_files.h"
 #include "app/live/scene_robots.h"
 #include "app/live/scene_selection.h"
+#include "mercury/number_text.h"
 
 namespace mercury::window {
 namespace {
@@ -132,9 +132,8 @@ void ask_for_best(PanelContext& context, std::vector<RobotId> order) {
             : "How many robots to keep, of those that went farthest at equal age? The others are removed (undo brings "
               "them back).",
       std::to_string((order.size() + 1) / 2), "Keep", [&context, order](const std::string& text) {
-        std::size_t count = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-        if (error != std::errc() || end != text.data() + text.size() || count == 0 || count > order.size()) {
+        const std::size_t count = parse_number<std::size_t>(text).value_or(0);
+        if (count == 0 || count > order.size()) {
           context.toasts.show(Tone::warning, fmt::format("\"{}\" is not accepted; give 1 to {}", text, order.size()));
           return;
         }

@@ -18,6 +18,7 @@
 #include "app/window/toolkit/screenshot.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/toolkit/widgets.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury::window {
 
@@ -144,16 +145,14 @@ void VideoRecorder::toggle(PanelContext& context) {
   if (settings.hide_panels) context.preferences.panels = true;
 }
 
-double VideoRecorder::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time_).count();
-}
+double VideoRecorder::seconds() const { return wall_now() - start_time_; }
 
 void VideoRecorder::start(PanelContext& context, WindowSize pixels) {
   start_requested_ = ending_ = false;
   const std::filesystem::path file = new_video_file(context, settings);
   screen_ = std::make_unique<ScreenRecording>(file.string(), PictureSize{pixels.width, pixels.height},
                                               settings.frames_per_second);
-  start_time_ = std::chrono::steady_clock::now();
+  start_time_ = wall_now();
   if (settings.hide_panels) context.preferences.panels = false;
   context.toasts.show(Tone::info, "recording (V to stop)");
   context.log.write("recording", {{"file", file.string()}});

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 
@@ -59,7 +58,7 @@ class VideoRecorder {
   bool group_is_picture_ = false;
   bool start_requested_ = false;  // starts in the next frame
   bool ending_ = false;
-  std::chrono::steady_clock::time_point start_time_;
+  double start_time_ = 0;  // wall time [s]
 };
 
 // The folder for videos and screenshots: the last one saved to, or the working directory.

@@ -15,9 +15,9 @@ std::string_view embedded_file(std::string_view name) {
 std::vector<Robot> sample_robots(std::string_view environment) {
   std::vector<Robot> robots;
   for (const EmbeddedFile& file : embedded_files()) {
-    const bool is_json = file.name.ends_with(".json");
-    if (!is_json && !file.name.ends_with(".cbor")) continue;
-    Robot robot = parse_robot(file.contents, is_json ? RobotFormat::json : RobotFormat::cbor);
+    const std::optional<RobotFormat> format = find_robot_format(file.name);
+    if (!format) continue;
+    Robot robot = parse_robot(file.contents, *format);
     if (environment.empty() || environment_of(robot) == environment) robots.push_back(std::move(robot));
   }
   return robots;

@@ -49,7 +49,7 @@ class KeyMap {
 std::string load_keys(KeyMap& keys, const std::filesystem::path& file);
 
 // Writes a file of comments that lists all commands and their keys, unless the file exists. Returns whether there is
-// such a file afterwards.
+// such a file afterward.
 bool write_keys_template(const std::filesystem::path& file);
 
 // A tooltip that names the current keys of a command: "reset to the start (key R)"; without keys, the text alone.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +14,7 @@
 #include "app/live/scene_selection.h"
 #include "app/window/toolkit/theme.h"
 #include "app/window/viewport/marks.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury::window {
 namespace {
@@ -186,9 +186,9 @@ void MouseController::hover(const ViewportArea& area, const render::Camera& came
   }
   rest_time_ += static_cast<double>(io.DeltaTime);
   if (rest_time_ < mark_delay || ImGui::GetTime() < next_pick_) return;
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wall_now();
   hovered_ = scene_.mouse().pick(ray_at(area, camera, io.MousePos));
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = wall_now() - begin;
   next_pick_ = ImGui::GetTime() + std::max(pick_period, seconds / pick_share);
 }
 

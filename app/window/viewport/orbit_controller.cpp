@@ -14,13 +14,6 @@ constexpr float turn_speed = 3.6f;   // angle of a drag over the view's height [
 constexpr float margin = 1.1f;       // around framed robots
 constexpr float steepest = 1.3f;     // elevation to which the camera returns after it looked down [rad]
 
-render::Bounds all_of(std::span<const render::Bounds> boxes) {
-  render::Bounds all;
-  for (const render::Bounds& box : boxes)
-    if (!box.empty()) all.extend(box);
-  return all;
-}
-
 }  // namespace
 
 void OrbitController::set_mode(CameraMode mode) {
@@ -76,7 +69,7 @@ void OrbitController::zoom(float factor) {
 }
 
 void OrbitController::frame(std::span<const render::Bounds> robots, float aspect) {
-  if (all_of(robots).empty()) return;
+  if (bounds_of(robots).empty()) return;
   aim_ = orbit_;
   aim_.frame(robots, aspect, margin, free);
   if (mode_ != CameraMode::still && mode_ != CameraMode::follow) release();
@@ -85,7 +78,7 @@ void OrbitController::frame(std::span<const render::Bounds> robots, float aspect
 
 void OrbitController::start(std::span<const render::Bounds> robots, float aspect) {
   field_of_view = orbit_.field_of_view;
-  if (!all_of(robots).empty()) orbit_.frame(robots, aspect, margin, free);
+  if (!bounds_of(robots).empty()) orbit_.frame(robots, aspect, margin, free);
   glide_ = 0;
 }
 
@@ -165,7 +158,7 @@ render::Camera OrbitController::at(std::span<const render::Bounds> robots, float
   constexpr double lag = 0.5;
   orbit_.field_of_view = field_of_view;
   render::Orbit wanted = orbit_;
-  const render::Bounds all = all_of(robots);
+  const render::Bounds all = bounds_of(robots);
   switch (mode_) {
     case CameraMode::still:
       break;

@@ -2,7 +2,6 @@
 #include "app/window/viewport/thumbnails.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -14,6 +13,7 @@
 #include "app/scene/group_layout.h"
 #include "app/window/toolkit/widgets.h"
 #include "mercury/generator.h"
+#include "mercury/stopwatch.h"
 
 namespace mercury::window {
 
@@ -49,7 +49,7 @@ ImTextureID Thumbnails::find(const std::string& name, const Source& robot) {
 }
 
 void Thumbnails::work(render::Theme theme, double seconds) {
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wall_now();
   if (std::exchange(parts_->theme, theme) != theme) parts_->thumbnails.clear();
   for (const auto& [name, source] : std::exchange(parts_->wanted, {})) {
     if (parts_->thumbnails.contains(name)) continue;
@@ -58,7 +58,7 @@ void Thumbnails::work(render::Theme theme, double seconds) {
     Parts::Thumbnail& thumbnail = parts_->thumbnails[name];
     thumbnail.used = ++parts_->looks;
     if (!robot->masses.empty()) thumbnail.frame = parts_->draw(*robot);
-    if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) break;
+    if (wall_now() - begin > seconds) break;
   }
   while (parts_->thumbnails.size() > most) parts_->drop_oldest();
 }

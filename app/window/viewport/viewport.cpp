@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mercury/stopwatch.h"
+
 namespace mercury::window {
 namespace {
 
@@ -49,7 +51,7 @@ void Viewport::adapt(bool moving) {
 
 void Viewport::draw(const render::Scene& scene, const render::Camera& camera, bool moving) {
   adapt(moving);
-  begun_ = std::chrono::steady_clock::now();
+  begun_ = wall_now();
   const int width = std::max(16, static_cast<int>(std::lround(share_ * static_cast<float>(width_))));
   const int height = std::max(16, static_cast<int>(std::lround(share_ * static_cast<float>(height_))));
   if (width != renderer_.width() || height != renderer_.height()) renderer_.resize(width, height);
@@ -61,7 +63,7 @@ void Viewport::draw(const render::Scene& scene, const render::Camera& camera, bo
 void Viewport::finish() {
   if (!std::exchange(drawing_, false)) return;
   glFinish();
-  draw_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+  draw_seconds_ = wall_now() - begun_;
 }
 
 void Viewport::present(int framebuffer_height) const {

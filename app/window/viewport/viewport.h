@@ -8,8 +8,6 @@
 
 #include <imgui.h>
 
-#include <chrono>
-
 #include "render/renderer.h"
 
 namespace mercury::window {
@@ -65,7 +63,7 @@ class Viewport {
   bool software_;
   int x_ = 0, y_ = 0, width_ = 64, height_ = 64;
   float share_ = 1, moving_share_ = 1;
-  std::chrono::steady_clock::time_point begun_;
+  double begun_ = 0;  // wall time [s]
   bool drawing_ = false;
   double draw_seconds_ = 0;  // of the last frame, from draw() to the end of finish()
 };

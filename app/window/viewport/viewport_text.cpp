@@ -107,14 +107,8 @@ Box draw_caption(const std::string& caption, const ViewportArea& area, const Vie
 
 // The scale bar: a round length, to scale at the distance of the camera's target.
 void draw_scale_bar(const ViewportArea& area, const render::Camera& camera) {
-  const float depth = (camera.target - camera.eye).norm();
-  const float pixels_per_meter = area.height() / (2 * depth * std::tan(camera.field_of_view / 2));
-  const float meters = render::round_length(0.22f * area.width() / pixels_per_meter),
-              across = meters * pixels_per_meter;
+  const auto [across, name] = render::scale_bar(camera, area.width(), area.height(), 0.22f);
   const float text = ImGui::GetFontSize();
-  const std::string name = meters < 0.01f ? fmt::format("{:g} mm", 1000 * meters)
-                           : meters < 1   ? fmt::format("{:g} cm", 100 * meters)
-                                          : fmt::format("{:g} m", meters);
   const ImVec2 end{area.high.x - 1.4f * text, area.high.y - 1.2f * text};
   backing({end.x - across - 0.5f * text, end.y - 1.7f * text}, {end.x + 0.5f * text, end.y + 0.5f * text});
   ImDrawList& list = *ImGui::GetBackgroundDrawList();

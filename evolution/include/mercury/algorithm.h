@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -134,6 +135,11 @@ std::span<const AlgorithmDescription> algorithms();
 const AlgorithmDescription& algorithm_named(std::string_view name);
 // The same for these settings: a custom algorithm with axes has a map.
 const AlgorithmDescription& algorithm_of(const AlgorithmSettings& settings);
+// An axis of this quantity with its usual ends; none if there is no such quantity.
+std::optional<MapAxis> usual_axis(std::string_view quantity);
+// Chooses the usual algorithm for the axes and that many objectives, unless one is named, and the usual axes where it
+// needs some and there are none. Throws ParameterError("algorithm", ...) for an unknown name.
+void complete_algorithm(AlgorithmSettings& settings, bool is_named, std::size_t objectives);
 // Throws ParameterError("algorithm", ...) for an unknown name, or ("population", ...), ("axes", ...) and so on for
 // settings out of range.
 std::unique_ptr<Algorithm> make_algorithm(const AlgorithmSettings& settings);

@@ -148,7 +148,7 @@ void add_jitter(const Robot& robot, const TrialSettings& settings, std::uint64_t
                 std::span<Vec3> positions);
 
 // Where the masses are at the start of a trial, from where they are at rest: turned, put around the target, and with
-// jitter, as the settings say. With ground, the robot is set down afterwards.
+// jitter, as the settings say. With ground, the robot is set down afterward.
 void begin_trial(const Robot& robot, const TrialSettings& settings, const Environment& environment, std::uint64_t seed,
                  std::size_t trial, std::span<Vec3> positions);
 // Whether begin_trial() changes anything.

@@ -11,7 +11,7 @@ namespace mercury {
 
 struct BodyProperties {
   double mass = 0;  // of all points [kg]
-  // Mass per volume within the skin [kg/m3]. None without a closed skin that shows outwards.
+  // Mass per volume within the skin [kg/m3]. None without a closed skin that shows outward.
   std::optional<double> density;
   // Young's modulus of an isotropic network of these springs [Pa]: E = sum of k L0^2 / (6 V), with the volume V within
   // the skin. It assumes that springs point in all directions alike and follow the body's strain, so it is an estimate:

@@ -93,14 +93,15 @@ Genes genes_named(std::string_view name);  // words in any order, "both" among t
 struct GenesKind;  // robots/genes.h
 
 struct Generator {
-  std::string kind;         // "voxel": names the generator in programs, and in the "kind" of its robots' origins
-  std::string word;         // "painted": in names of functions, random_painted() of Python
-  std::string title;        // "Voxel robots", the heading above its parameters
-  std::string noun;         // "a voxel robot"
-  std::string help;         // "Random voxel robots", in some words
-  std::string note;         // further sentences for help texts; may be empty
-  std::string environment;  // where its robots belong: "ocean", "ocean-simple", "land"; empty = anywhere
-  bool smooth = false;      // the skin stands for a curved surface, to be shaded smoothly
+  std::string kind;          // "voxel": names the generator in programs, and in the "kind" of its robots' origins
+  std::string word;          // "painted": in names of functions, random_painted() of Python
+  std::string title;         // "Voxel robots", the heading above its parameters
+  std::string noun;          // "a voxel robot"
+  std::string help;          // "Random voxel robots", in some words
+  std::string note;          // further sentences for help texts; may be empty
+  std::string environment;   // where its robots belong: "ocean", "ocean-simple", "land"; empty = anywhere
+  bool smooth = false;       // the skin stands for a curved surface, to be shaded smoothly
+  bool may_be_tiny = false;  // some of its robots are a few springs, so that searches ask for more masses
   std::vector<GeneratorParameter> parameters;
   // A robot worth trying, for help texts: its name, seed, and values as a user writes them.
   struct Example {

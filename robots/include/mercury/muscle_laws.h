@@ -30,7 +30,7 @@ std::vector<Material> base_materials_of(const Robot& robot);
 std::vector<bool> base_materials_in_use(const Robot& robot);
 
 // The robot with these base materials; those of pairs are computed again. A robot whose materials are the defaults
-// afterwards has no table of its own. Throws InputError unless there are as many as base_materials_of() gives, and for
+// afterward has no table of its own. Throws InputError unless there are as many as base_materials_of() gives, and for
 // a material that is not valid.
 Robot with_base_materials(Robot robot, std::span<const Material> bases);
 

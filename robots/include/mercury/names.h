@@ -14,6 +14,9 @@ std::string list_of(const std::vector<std::string>& names, const char* last = ",
 // Returns "; did you mean --seconds?", or an empty string when no name is near.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
+// The text in quotes, as TOML has it.
+std::string toml_text(std::string_view text);
+
 // The text within HTML or XML: markup and quotes as entities, without control characters but tabs and line ends.
 std::string markup_text(std::string_view text);
 

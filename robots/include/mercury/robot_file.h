@@ -16,8 +16,12 @@ namespace mercury {
 
 enum class RobotFormat { json, cbor };
 
-// The format by the file's extension, in small letters or capitals. Throws InputError for an extension other than .json
-// and .cbor.
+// A file's extension in small letters, ".json", since it may be in capitals.
+std::string extension_of(const std::filesystem::path& path);
+
+// The format by the file's extension; none unless that is .json or .cbor.
+std::optional<RobotFormat> find_robot_format(const std::filesystem::path& path);
+// The same. Throws InputError for another extension.
 RobotFormat robot_format_of(const std::filesystem::path& path);
 
 // The robot in a document, validated. A document without a name gives a robot without a name.

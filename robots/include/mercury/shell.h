@@ -43,7 +43,7 @@ struct ShellGenome {
   double height = 1.2;       // half the height by half the diameter, 0.2 to 3
   double opening = 0.5;      // of a bell's mouth, a tube's ends, a ring's hole: 0 narrow, 1 wide
   double squareness = 0;     // of the profile, -0.1 to 0.15
-  double flare = 0;          // how far the rim turns outwards, by the radius, 0 to 0.5
+  double flare = 0;          // how far the rim turns outward, by the radius, 0 to 0.5
   double lobe_depth = 0;     // of the lobes, by the radius, 0 to 0.3
   double lappets = 0;        // how far lobes hang down at a rim, by the radius, 0 to 0.4
   double twist = 0;          // of the lobes from end to end of the profile [turns], -0.5 to 0.5

@@ -10,7 +10,7 @@
 //
 // Its cells are hexahedra, not cubes, so that real bodies (real_body.h) get springs and masses by the size of each.
 // Muscles run along both skins, in `segments` from nose to tail. Those of one skin shorten where those of the other
-// lengthen, and the wave runs backwards.
+// lengthen, and the wave runs backward.
 #pragma once
 
 #include <array>

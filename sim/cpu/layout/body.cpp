@@ -98,7 +98,7 @@ void update_spring_parameters(Body& body, const Configuration& of_batch) {
     body.backs = masses_behind(robot, body.face_pairs);
     if (body.steps_alone) body.faces = schedule_faces(body.face_pairs, body.backs, body.slots);
   }
-  const bool real = has_own_points(robot) || std::holds_alternative<ResistiveDrag>(environment.water);
+  const bool real = has_own_points(robot, environment);
   body.points = real ? point_properties(robot, environment) : std::vector<PointProperties>();
   const InertiaRange inertia = inertia_range(body.points);
   body.contact_distance = contact_distance(robot, body.measures, environment);

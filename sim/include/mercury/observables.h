@@ -9,6 +9,7 @@
 //       |<---- L0 ------>|            L0 = Spring::rest_length
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -95,9 +96,16 @@ inline float muscle_power(const Spring& spring, const MaterialNow& material, flo
   return muscle_power(material.stiffness, stretch, spring.rest_length, material.length_rate);
 }
 
+// The mean of a value per mass, weighted with the masses, in double precision: of positions the center of mass [m].
+std::array<double, 3> mean_over_masses(const Robot& robot, std::span<const Vec3> values);
+
 // The elastic forces of all springs on each mass [N], one per mass. `materials` by id.
 std::vector<Vec3> spring_forces(const Robot& robot, std::span<const MaterialNow> materials,
                                 std::span<const Vec3> positions);
+
+// The force of the environment on a mass itself [N], apart from that on faces: its weight, and the drag of water that
+// acts on each mass. `weight` without the water that it displaces [kg].
+Vec3 mass_force(const Environment& environment, float weight, Vec3 velocity);
 
 // The force of the water on a face, in two parts that add up to it.
 struct FaceForce {

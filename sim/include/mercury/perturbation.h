@@ -9,7 +9,7 @@
 
 namespace mercury {
 
-// Pulls one mass towards a point by a spring of rest length 0: F = stiffness (target - x). The window pulls robots with
+// Pulls one mass toward a point by a spring of rest length 0: F = stiffness (target - x). The window pulls robots with
 // the mouse this way.
 struct Perturbation {
   std::size_t robot = 0;   // index in the simulation

@@ -79,7 +79,7 @@ void add_actuator(Robot& robot, const std::string& name, std::span<const std::ui
 // Distance of two masses at rest [m], the default of Spring::rest_length.
 float rest_distance(const Robot& robot, std::uint16_t a, std::uint16_t b);
 
-// The volume within the skin at rest [m3]: negative if its faces show inwards, 0 without a skin.
+// The volume within the skin at rest [m3]: negative if its faces show inward, 0 without a skin.
 double skin_volume(const Robot& robot);
 
 // Two robots have the same topology if their springs join the same masses and their faces have the same corners, in the

@@ -189,7 +189,7 @@ class Simulation {
   // Of the noise in a robot's senses, together with the seed of its brain; 0 at first.
   void set_noise_seed(std::size_t robot, std::uint64_t seed);
 
-  // One element per mass, otherwise throws std::invalid_argument. The robot has not exploded afterwards.
+  // One element per mass, otherwise throws std::invalid_argument. The robot has not exploded afterward.
   void set_state(std::size_t robot, std::span<const Vec3> positions, std::span<const Vec3> velocities);
   // Restores an explosion as well, and its brain's state if that is known. Throws as set_brain_state().
   void set_state(std::size_t robot, const State& state);

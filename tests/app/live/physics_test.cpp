@@ -92,12 +92,15 @@ TEST_F(RecordedPhysics, WhatComesWithARecordingThatCannotBeShownTakesEffect) {
   PhysicsThread physics(in_environment(), messages);
   const auto robots = some_robots(2);
   physics.set_scene(robots, in_environment());
-  physics.step(5);
-  physics.wait_until_done();
-  physics.set_recording(robots, in_environment(), 0, std::make_shared<TrajectoryReader>(path("other.h5")));
+  physics.set_speed(unlimited_speed);
+  physics.play();
+  while (physics.newest()->steps < 10) test::nap();  // commands wait for the end of a slice of steps
+  const std::vector<LivePerturbation> pull{{.robot = 1, .mass = 0, .target = {1, 0, 0}, .stiffness = 20}};
   physics.set_view({.color = &color_quantity("strain")});
   physics.set_speed(3);
   physics.play();
+  physics.set_recording(robots, in_environment(), 0, std::make_shared<TrajectoryReader>(path("other.h5")));
+  physics.set_perturbations(pull);
   physics.wait_until_done();
   const auto snapshot = physics.newest();
   EXPECT_EQ(messages.take().size(), 1u);
@@ -105,6 +108,8 @@ TEST_F(RecordedPhysics, WhatComesWithARecordingThatCannotBeShownTakesEffect) {
   EXPECT_FALSE(snapshot->timeline.recording);
   EXPECT_EQ(snapshot->speed, 3);
   EXPECT_EQ(snapshot->color->key, "strain");
+  EXPECT_EQ(snapshot->perturbations, pull);
+  physics.set_perturbations({});
   physics.set_scene({}, in_environment());
   physics.set_scene(robots, in_environment());
   physics.reset();

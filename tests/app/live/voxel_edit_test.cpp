@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/picking.h"
 #include "app/live/population.h"
 #include "app/live/scene_robots.h"
 #include "mercury/error.h"
@@ -22,7 +23,7 @@ Robot block(int x, int y, int z) {
 }
 
 // The face whose outside lies in this direction.
-VoxelSide side_towards(const Robot& robot, Vec3 direction) {
+VoxelSide side_toward(const Robot& robot, Vec3 direction) {
   for (std::size_t face = 0; face < robot.faces.size(); ++face) {
     const VoxelSide side = voxel_side_of(robot, face).value();
     const Vec3 step{static_cast<float>(side.beside[0] - side.voxel[0]),
@@ -54,7 +55,7 @@ TEST(VoxelEdit, EveryFaceHasAVoxelBehindItAndAirBeforeIt) {
 
 TEST(VoxelEdit, AVoxelBesideTheGridAddsFourMassesAndMovesNone) {
   const Robot before = block(3, 2, 2);
-  const Robot after = with_voxel(before, side_towards(before, {1, 0, 0}), {.tool = VoxelTool::add, .material = 5});
+  const Robot after = with_voxel(before, side_toward(before, {1, 0, 0}), {.tool = VoxelTool::add, .material = 5});
   EXPECT_EQ(after.masses.size(), before.masses.size() + 4);
   for (const Vec3 mass : before.masses) EXPECT_TRUE(has_mass_at(after, mass));
   EXPECT_EQ(after.name, "block");
@@ -66,7 +67,7 @@ TEST(VoxelEdit, AVoxelBesideTheGridAddsFourMassesAndMovesNone) {
 TEST(VoxelEdit, MirroredVoxelsAppearOnBothSides) {
   const Robot before = block(3, 2, 2);
   const Robot after =
-      with_voxel(before, side_towards(before, {1, 0, 0}), {.tool = VoxelTool::add, .material = 5, .mirror = Mirror::x});
+      with_voxel(before, side_toward(before, {1, 0, 0}), {.tool = VoxelTool::add, .material = 5, .mirror = Mirror::x});
   EXPECT_EQ(after.masses.size(), before.masses.size() + 8);
   for (const Vec3 mass : after.masses) EXPECT_TRUE(has_mass_at(after, {-mass.x, mass.y, mass.z}));
 }
@@ -75,7 +76,7 @@ TEST(VoxelEdit, EditedRobotsKeepTheirMassesAndFixedPoints) {
   Robot before = block(2, 2, 2);
   before.mass.assign(before.masses.size(), 0.5f);
   before.fixed = {3};
-  const Robot after = with_voxel(before, side_towards(before, {0, 0, 1}), {.tool = VoxelTool::add, .material = 3});
+  const Robot after = with_voxel(before, side_toward(before, {0, 0, 1}), {.tool = VoxelTool::add, .material = 3});
   EXPECT_EQ(after.mass, std::vector<float>(after.masses.size(), 0.5f));
   ASSERT_EQ(after.fixed.size(), 1u);
   EXPECT_EQ(after.masses[after.fixed[0]], before.masses[3]);
@@ -83,7 +84,7 @@ TEST(VoxelEdit, EditedRobotsKeepTheirMassesAndFixedPoints) {
 
 TEST(VoxelEdit, TakingAwayWhatWasAddedGivesTheBodyBack) {
   const Robot before = block(2, 2, 2);
-  const Robot larger = with_voxel(before, side_towards(before, {0, 0, 1}), {.tool = VoxelTool::add, .material = 3});
+  const Robot larger = with_voxel(before, side_toward(before, {0, 0, 1}), {.tool = VoxelTool::add, .material = 3});
   std::size_t highest = 0;
   for (std::size_t face = 0; face < larger.faces.size(); ++face)
     if (voxel_side_of(larger, face)->voxel[2] > voxel_side_of(larger, highest)->voxel[2]) highest = face;
@@ -95,14 +96,14 @@ TEST(VoxelEdit, TakingAwayWhatWasAddedGivesTheBodyBack) {
 
 TEST(VoxelEdit, PaintChangesMaterialsAlone) {
   const Robot before = block(2, 2, 2);
-  const Robot after = with_voxel(before, side_towards(before, {0, 1, 0}), {.tool = VoxelTool::paint, .material = 22});
+  const Robot after = with_voxel(before, side_toward(before, {0, 1, 0}), {.tool = VoxelTool::paint, .material = 22});
   EXPECT_EQ(after.masses, before.masses);
   EXPECT_EQ(std::ranges::count(voxel_grid_of(after)->cells, MaterialId{22}), 1);
 }
 
 TEST(VoxelEdit, WhatCannotBeEditedIsRefusedWithAReason) {
   const Robot one = block(1, 1, 1);
-  const VoxelSide side = side_towards(one, {1, 0, 0});
+  const VoxelSide side = side_toward(one, {1, 0, 0});
   const auto problem = [&](const Robot& robot, const VoxelEdit& edit) {
     return refusal([&] { with_voxel(robot, side, edit); });
   };
@@ -117,7 +118,7 @@ TEST(VoxelEdit, WhatCannotBeEditedIsRefusedWithAReason) {
 
 TEST(CarriedState, MassesGoOnWhereTheyAreAndNewOnesMoveWithTheirNeighbors) {
   const Robot before = block(1, 1, 1);
-  const Robot after = with_voxel(before, side_towards(before, {1, 0, 0}), {.tool = VoxelTool::add, .material = 3});
+  const Robot after = with_voxel(before, side_toward(before, {1, 0, 0}), {.tool = VoxelTool::add, .material = 3});
   // The body has moved by (1, 2, 3) m and goes at 4 m/s.
   State state{.positions = before.masses, .velocities = std::vector<Vec3>(before.masses.size(), Vec3{4, 0, 0})};
   for (Vec3& position : state.positions) position += Vec3{1, 2, 3};

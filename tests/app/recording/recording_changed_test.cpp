@@ -12,6 +12,7 @@
 #include "mercury/error.h"
 #include "tests/app/program.h"
 #include "tests/app/recording/recording_bodies.h"
+#include "tests/refusal.h"
 
 #ifdef __SANITIZE_ADDRESS__
 constexpr bool sanitized = true;
@@ -74,7 +75,7 @@ class RecordingChanged : public FolderTest {
 
   // Reads everything. Returns the message of the error; empty = none.
   std::string refusal(const std::string& name) const {
-    try {
+    const std::string message = mercury::refusal([&] {
       TrajectoryReader reader(path(name));
       for (const RecordedRobot& recorded : reader.robots()) validate(recorded.robot);
       validate(reader.configuration());
@@ -85,11 +86,9 @@ class RecordingChanged : public FolderTest {
         reader.neurons(frame);
         reader.state(frame);
       }
-      return "";
-    } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
-      return error.what();
-    }
+    });
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
   }
 
   void expect_modest_memory() const {

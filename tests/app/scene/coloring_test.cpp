@@ -386,7 +386,7 @@ TEST_P(DrivenOn, MusclesGlowAsTheyAreDriven) {
   EXPECT_NEAR(glow(1), -1, 1e-5);
 }
 
-// Circles around what is sensed, and a line from beside the robot towards it, in the robot's own coordinates.
+// Circles around what is sensed, and a line from beside the robot toward it, in the robot's own coordinates.
 TEST(Senses, TargetAndLightAreMarked) {
   Robot seeker = pair();
   seeker.sensors = {{.kind = SensorKind::target_direction}, {.kind = SensorKind::light}};

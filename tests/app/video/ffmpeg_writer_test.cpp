@@ -326,7 +326,7 @@ TEST(FailureLine, IsTheLastLineWithAMessage) {
 TEST(VideoKind, FollowsFromTheName) {
   EXPECT_EQ(video_kind_of("a.mp4"), VideoKind::mp4);
   EXPECT_EQ(video_kind_of("x.y/a.webm"), VideoKind::webm);
-  EXPECT_EQ(video_kind_of("a.gif"), VideoKind::gif);
+  EXPECT_EQ(video_kind_of("A.GIF"), VideoKind::gif);
   EXPECT_EQ(video_kind_of("frames"), VideoKind::png_folder);
   EXPECT_EQ(video_kind_of("frames.d/"), VideoKind::png_folder);
   EXPECT_THROW(video_kind_of("a.avi"), InputError);

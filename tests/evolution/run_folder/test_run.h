@@ -21,6 +21,7 @@
 #include "mercury/run_folder.h"
 #include "mercury/voxel.h"
 #include "robots/file/whole_file.h"
+#include "tests/folder.h"
 #include "tests/refusal.h"
 
 namespace mercury {
@@ -179,18 +180,8 @@ inline void expect_same_run(const RunHistory& a, const RunHistory& b) {
   EXPECT_TRUE(std::ranges::equal(a.living(), b.living()));
 }
 
-// A folder that is there for one test, removed after it.
-class RunFolderTest : public testing::Test {
+class RunFolderTest : public test::TestWithFolder {
  protected:
-  RunFolderTest() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("mercury-" + std::string(info->test_suite_name()) + "." + info->name() + "-" + std::to_string(getpid()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~RunFolderTest() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   RunFolder create(const std::string& name, const RunSettings& settings = test_settings(), bool force = false) const {
     return RunFolder::create(path(name), settings, force, byte_space);
@@ -207,8 +198,6 @@ class RunFolderTest : public testing::Test {
     std::filesystem::remove(path(name));  // some file systems wait for the disk where a file is shortened
     std::ofstream(path(name), std::ios::binary) << content;
   }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace mercury

@@ -44,14 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Algorithms, IslandModel, testing::Values("ga", "afpo", 
 std::vector<Generation> run(const EvolutionSettings& settings, Assessor& assessor) {
   const VectorSpace space;
   Evolution evolution(settings, space);
-  std::vector<Generation> generations;
-  while (std::optional<Generation> generation = evolution.advance(assessor)) generations.push_back(*generation);
-  return generations;
-}
-
-std::vector<Generation> run(const EvolutionSettings& settings) {
-  VectorAssessor assessor;
-  return run(settings, assessor);
+  return run(evolution, assessor);
 }
 
 std::map<std::uint64_t, Individual> by_id(const std::vector<Generation>& generations) {
@@ -225,23 +218,10 @@ TEST_P(IslandModel, ComesNearerToTheOptimumThanRandomSearch) {
 
 // As files hold it, also where a generation is made before the one before is tried.
 TEST_P(IslandModel, ARunThatIsRestoredGoesOnBitForBit) {
-  const VectorSpace space;
   for (const bool pipelined : {false, true}) {
     EvolutionSettings settings = IslandModel::settings();
     settings.pipelined = pipelined;
-    const std::vector<Generation> whole = run(settings);
-    VectorAssessor assessor;
-    std::vector<Individual> living, before, born;
-    for (std::size_t number = 0; number < whole.size(); ++number) {
-      Evolution evolution(settings, space);
-      if (number > 0) evolution.restore(static_cast<int>(number) - 1, living, born, before);
-      before = living;
-      const std::optional<Generation> generation = evolution.advance(assessor);
-      ASSERT_TRUE(generation);
-      EXPECT_EQ(*generation, whole[number]);
-      living = evolution.living();
-      born.insert(born.end(), generation->born.begin(), generation->born.end());
-    }
+    expect_the_same_when_restored(settings);
   }
 }
 

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "robots/number_text.h"
+#include "mercury/number_text.h"
 
-#include <charconv>
 #include <cmath>
 
 namespace mercury {
+
+double shortest(float value) {
+  char text[40];
+  const char* const end = std::to_chars(text, text + sizeof text, value).ptr;
+  double number = value;
+  std::from_chars(text, end, number);
+  return static_cast<float>(number) == value ? number : static_cast<double>(value);
+}
 
 std::string shortest_text(double value) {
   if (std::isnan(value)) return "nan";
@@ -12,14 +19,7 @@ std::string shortest_text(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string shortest_text(float value) {
-  if (std::isnan(value)) return "nan";
-  char text[40];
-  char* const end = std::to_chars(text, text + sizeof text, value).ptr;
-  double number = 0;
-  std::from_chars(text, end, number);
-  return static_cast<float>(number) == value ? std::string(text, end) : shortest_text(static_cast<double>(value));
-}
+std::string shortest_text(float value) { return shortest_text(shortest(value)); }
 
 std::string fixed_text(double value, int digits) {
   char text[400];
