@@ -397,9 +397,8 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
     parts_->after_change();
   }
   parts_->clock.step += steps;
-  parallel_for(0, size(), [&](std::size_t i) {
-    for (std::size_t k = i; k < samples.size(); k += size()) parts_->add_explosion(samples[k], i, statuses[k]);
-  });
+  for (std::size_t first = 0; first < samples.size(); first += size())
+    for (std::size_t i = 0; i < size(); ++i) parts_->add_explosion(samples[first + i], i, statuses[first + i]);
   return samples;
 }
 

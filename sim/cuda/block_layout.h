@@ -30,7 +30,8 @@
 //    In the last case the blocks of a cluster step the robot in parts, if they can (parts.h); a block then has one
 //    part.
 // 4. Without contacts, robots of a block are apart: each waits for its own warps alone, by a named barrier. If they
-//    share a table, no one is ahead by a whole step (material_table.cuh). With contacts, all wait for each other.
+//    share a table, no one is ahead by a whole step (material_table.cuh). With contacts, all wait for each other;
+//    those that share no table have blocks of their own, if there is room.
 // 5. All sums are integers (springs.cuh), so neither the number of warps nor the other robots change a bit of the
 //    result.
 #pragma once
