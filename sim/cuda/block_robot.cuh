@@ -2,10 +2,21 @@
 // One robot of a block as one of its threads sees it: its tiles, its masses, and a walk over its springs.
 #pragma once
 
+#include <type_traits>
+
+#include "sim/cuda/early_start.cuh"
 #include "sim/cuda/thread_context.cuh"
 #include "sim/physics/fixed_point.h"
 
 namespace mercury::cuda {
+
+// How a warp walks over its springs, which decides how long it waits for the L2 cache.
+struct SpringWalk {
+  // ptxas likes to move a load to the end of a loop if only the next turn needs it. It moves none across
+  // keep_loads_above(), an instruction that costs more than it saves where it does not happen.
+  bool keeps_loads_above = false;
+  int groups_per_turn = 1;  // of the loop; two need no copies of records, but registers
+};
 
 template <Solver solver_, class Memory_, int record_words>
 class BlockRobot {
@@ -96,13 +107,6 @@ class BlockRobot {
   __device__ float load_valence(std::uint32_t slot) const {
     return __ldg(arguments_.batch.valences + first_slot_of_robot() + slot_in_robot(slot));
   }
-  // The reactions that this thread's slot in a tile receives per step.
-  __device__ std::uint32_t incoming_count(std::uint32_t tile) const {
-    return __ldg(arguments_.batch.incoming_counts + slot_in_batch(tile));
-  }
-  // What a sum that receives that many reactions starts with (springs.cuh).
-  __device__ static int bias_of(std::uint32_t incoming) { return -static_cast<int>(incoming) * rounding_magic_bits; }
-  __device__ int incoming_bias(std::uint32_t tile) const { return bias_of(incoming_count(tile)); }
 
   // Of this thread's mass in a tile.
   __device__ PointProperties point(std::uint32_t tile) const {
@@ -114,17 +118,22 @@ class BlockRobot {
     return arguments_.batch.point_masses ? __ldg(arguments_.batch.point_masses + slot_in_batch(tile)) : 1.0f;
   }
 
-  __device__ const std::uint32_t* row_start() const {
-    return arguments_.batch.row_start + chunk() * (arguments_.batch.tile_stride + 1);
+  // The first group of rows of a tile.
+  __device__ std::uint32_t first_group_of(std::uint32_t tile) const {
+    return __ldg(arguments_.batch.groups + chunk() * arguments_.batch.tile_stride + tile);
   }
-  __device__ const SpringRecord* springs() const {
-    return reinterpret_cast<const SpringRecord*>(arguments_.batch.springs) +
-           chunk() * arguments_.batch.row_stride * lanes;
+  // The rows of a slot.
+  __device__ SlotRows rows_of(std::uint32_t slot) const {
+    const SlotRows* rows = arguments_.batch.rows + chunk() * arguments_.batch.tile_stride * lanes + slot;
+    const int2 found = __ldg(reinterpret_cast<const int2*>(rows));
+    return {static_cast<std::uint32_t>(found.x), found.y};
   }
 
   // Units of fixed point per newton, or per meter of correction: a power of two. Rest lengths and the 1 of the
   // constraint ratio are multiplied by it instead of the stiffnesses, so that robots can share a material table.
   __device__ float scale() const { return solver == Solver::force ? header_.force_scale : header_.correction_scale; }
+
+  static constexpr bool has_length_table = record_words == 1;
 
   // What a spring record says. A dot product of bytes multiplies a field and adds an address in one instruction.
   __device__ Mass<Memory> partner_of(const SpringRecord& record) const {
@@ -139,12 +148,32 @@ class BlockRobot {
     else
       return scale() * __uint_as_float(record.y);
   }
+  struct AnyLengths {
+    const BlockRobot& robot;
+    __device__ float of(const SpringRecord& record) const { return robot.scaled_rest_length_of(record); }
+  };
+  // The same from registers, for robots of up to three rest lengths, as lattices are: one access to shared memory less
+  // per spring. 1 to 3 are the indices of lengths, as 0 is that of padding, which has any.
+  struct ThreeLengths {
+    float first, second, third;
+    __device__ float of(const SpringRecord& record) const {
+      const float odd = record.x & 0x200 ? third : first;
+      return record.x & 0x100 ? odd : second;
+    }
+  };
+  __device__ bool has_three_lengths() const { return OnChip::load(context_.lengths, 16) == 0; }
+  __device__ ThreeLengths three_lengths() const {
+    return {OnChip::load(context_.lengths, 4), OnChip::load(context_.lengths, 8), OnChip::load(context_.lengths, 12)};
+  }
   // The same without the units [m].
   __device__ float rest_length_of(const SpringRecord& record) const {
     if constexpr (record_words == 1)
       return scaled_rest_length_of(record) * (1 / scale());
     else
       return __uint_as_float(record.y);
+  }
+  __device__ static std::uint32_t partner_slot_of(const SpringRecord& record) {
+    return slot_at_offset(record.x >> 16, Memory::on_chip ? fields : 0);
   }
   __device__ static std::uint32_t material_of(const SpringRecord& record) { return record.x & 0xff; }
   __device__ SpringParameters<solver> parameters_of(const SpringRecord& record) const {
@@ -158,41 +187,62 @@ class BlockRobot {
   // d(L / L0) / dt [1/s] and L / L0, after MaterialTable::write_rates().
   __device__ float2 rate_and_length_factor_of(const SpringRecord& record) const { return table_entry_of(record); }
 
-  // Visits the springs that this thread's masses own. For each mass it calls
-  //   auto sum = begin(tile, mass, rows)                       with the number of rows of the tile,
-  //   add(integral_constant<int, count>, records, sum)         for its springs, up to four at once,
+  // Visits the springs that this thread's masses own, padding included. For each mass it calls
+  //   auto sum = begin(tile, mass, rows)        with the SlotRows of the mass,
+  //   load(record, sum)                         for up to four springs,
+  //   add(what these returned, sum)             with an array,
   //   end(mass, sum).
-  // The rows of all tiles follow one another: the records of the next rows are under way while `add` handles these.
-  template <class Begin, class Add, class End>
-  __device__ void walk_springs(const Begin& begin, const Add& add, const End& end) const {
+  // The groups of all tiles follow one another: the records of the next one are under way while these are computed.
+  template <SpringWalk walk, class Begin, class Load, class Add, class End>
+  __device__ void walk_springs(const Begin& begin, const Load& load, const Add& add, const End& end) const {
     if (first_tile_ == last_tile_) return;
-    const std::uint32_t* start = row_start();
-    std::uint32_t row = start[first_tile_];
-    const SpringRecord* next = springs() + std::size_t{row} * lanes + context_.lane;
+    const SpringRecord* from = group(0, context_.lane);
+    asm volatile("" : "+l"(from));  // or its parts would be added up for each group
+    std::uint32_t next = first_group_of(first_tile_);
     SpringRecord records[rows_at_once];
-    load_records(next, records);
+    load_records(from + std::size_t{next} * (lanes * rows_at_once), records);
     for (std::uint32_t tile = first_tile_; tile < last_tile_; ++tile) {
       const Mass<Memory> mass = own_mass(tile);
-      const std::uint32_t last = start[tile + 1];
-      auto sum = begin(tile, mass, last - row);
-      for (; row < last; row += rows_at_once) {
-        SpringRecord present[rows_at_once];
+      const SlotRows rows = rows_of(own_slot(tile));
+      auto sum = begin(tile, mass, rows);
+      const auto visit = [&]<std::uint32_t count>(std::integral_constant<std::uint32_t, count>) {
+        SpringRecord present[count];
 #pragma unroll
-        for (int i = 0; i < rows_at_once; ++i) present[i] = records[i];
-        const std::uint32_t left = last - row;
-        next += min(left, static_cast<std::uint32_t>(rows_at_once)) * lanes;
-        load_records(next, records);
-        if (left >= 4)
-          add(std::integral_constant<int, 4>{}, present, sum);
-        else if (left == 3)
-          add(std::integral_constant<int, 3>{}, present, sum);
-        else if (left == 2)
-          add(std::integral_constant<int, 2>{}, present, sum);
-        else
-          add(std::integral_constant<int, 1>{}, present, sum);
-      }
-      row = last;
+        for (std::uint32_t i = 0; i < count; ++i) present[i] = records[i];
+        ++next;
+        load_records(from + std::size_t{next} * (lanes * rows_at_once), records);
+        if constexpr (walk.keeps_loads_above) keep_loads_above();
+        decltype(load(present[0], sum)) loaded[count];
+#pragma unroll
+        for (std::uint32_t i = 0; i < count; ++i) loaded[i] = load(present[i], sum);
+        add(loaded, sum);
+      };
+      const std::uint32_t whole = next + rows.count / rows_at_once, left = rows.count % rows_at_once;
+#pragma unroll(walk.groups_per_turn)
+      while (next < whole) visit(std::integral_constant<std::uint32_t, rows_at_once>{});
+      if (left == 3)
+        visit(std::integral_constant<std::uint32_t, 3>{});
+      else if (left == 2)
+        visit(std::integral_constant<std::uint32_t, 2>{});
+      else if (left == 1)
+        visit(std::integral_constant<std::uint32_t, 1>{});
       end(mass, sum);
+    }
+  }
+
+  // Calls visit(record) for the springs that the mass of a slot owns, of any warp. There is no way out of the loop, so
+  // that loads need not wait for each other.
+  template <class Visit>
+  __device__ void for_each_spring_of(std::uint32_t slot, const Visit& visit) const {
+    const std::uint32_t rows = rows_of(slot).count;
+    const SpringRecord* from = group(first_group_of(slot / lanes), slot % lanes);
+#pragma unroll 1
+    for (std::uint32_t row = 0; row < rows; row += rows_at_once, from += lanes * rows_at_once) {
+      SpringRecord records[rows_at_once];
+      load_records(from, records);
+#pragma unroll
+      for (const SpringRecord& record : records)
+        if (material_of(record) != air) visit(record);
     }
   }
 
@@ -214,21 +264,30 @@ class BlockRobot {
   }
 
   __device__ float2 table_entry_of(const SpringRecord& record) const {
-    const std::uint32_t bytes_per_material = parameter_bytes << arguments_.launch.table_copy_bits;
-    return load_pair(__dp4a(record.x, bytes_per_material, context_.material_table));  // of the lowest byte
+    const std::uint32_t multiplier = arguments_.launch.bytes_per_material;  // of the lowest byte
+    return load_pair(__dp4a(record.x, multiplier, context_.material_table));
   }
 
+  // The records of a lane in a group of rows.
+  __device__ const SpringRecord* group(std::uint32_t number, std::uint32_t lane) const {
+    const std::size_t first = chunk() * arguments_.batch.group_stride + number;
+    return reinterpret_cast<const SpringRecord*>(arguments_.batch.springs) + (first * lanes + lane) * rows_at_once;
+  }
+  // A kernel that lets the next one start has done so at its begin, and this changes nothing.
+  __device__ static void keep_loads_above() { let_next_kernel_start(); }
   // Bypasses the L1 cache, which is left to data that is read again.
   __device__ static void load_records(const SpringRecord* from, SpringRecord (&records)[rows_at_once]) {
+    static_assert(rows_at_once == 4);
+    if constexpr (record_words == 1)
+      asm volatile("ld.global.nc.L1::no_allocate.v4.u32 {%0, %1, %2, %3}, [%4];"
+                   : "=r"(records[0].x), "=r"(records[1].x), "=r"(records[2].x), "=r"(records[3].x)
+                   : "l"(from));
+    else
 #pragma unroll
-    for (int i = 0; i < rows_at_once; ++i) {
-      if constexpr (record_words == 1)
-        asm volatile("ld.global.nc.L1::no_allocate.u32 %0, [%1];" : "=r"(records[i].x) : "l"(from + i * lanes));
-      else
-        asm volatile("ld.global.nc.L1::no_allocate.v2.u32 {%0, %1}, [%2];"
-                     : "=r"(records[i].x), "=r"(records[i].y)
-                     : "l"(from + i * lanes));
-    }
+      for (std::uint32_t i = 0; i < rows_at_once; i += 2)
+        asm volatile("ld.global.nc.L1::no_allocate.v4.u32 {%0, %1, %2, %3}, [%4];"
+                     : "=r"(records[i].x), "=r"(records[i].y), "=r"(records[i + 1].x), "=r"(records[i + 1].y)
+                     : "l"(from + i));
   }
 
   const StepArguments& arguments_;

@@ -6,6 +6,7 @@
 
 #include "sim/cuda/rest_lengths.h"
 #include "sim/physics/face_backs.h"
+#include "sim/physics/fixed_point.h"
 
 namespace mercury::cuda {
 namespace {
@@ -35,8 +36,8 @@ Chunks::Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory) :
   take(valences, sizes.slots());
   take(lengths, sizes.lengths());
   take(springs, sizes.springs());
-  take(row_start, sizes.row_starts());
-  take(incoming_counts, sizes.slots());
+  take(rows, sizes.slots());
+  take(groups, sizes.tiles);
   take(masses, sizes.slots());
 }
 
@@ -46,8 +47,7 @@ void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangem
   put(chunk(masses, k, sizes_.slots()), std::span<const std::uint16_t>(arrangement.order->masses()));
   fill_springs(k, robot, schedule);
   put(chunk(valences, k, sizes_.slots()), std::span<const std::uint32_t>(schedule.valences));
-  put(chunk(incoming_counts, k, sizes_.slots()), std::span<const std::uint32_t>(schedule.incoming_counts));
-  put(chunk(row_start, k, sizes_.row_starts()), std::span<const std::uint32_t>(schedule.row_start));
+  fill_rows(chunk(groups, k, sizes_.tiles), chunk(rows, k, sizes_.slots()), schedule);
   put(chunk(face_pairs, k, sizes_.face_pairs), std::span(arrangement.faces));
 }
 
@@ -55,6 +55,28 @@ void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& sch
   const RestLengths rest = sizes_.record_words == 1 ? rest_lengths(robot) : RestLengths{};
   if (sizes_.record_words == 1) put(chunk(lengths, k, max_lengths), std::span<const float>(rest.table));
   fill_records(chunk(springs, k, sizes_.springs()), robot, schedule, rest);
+}
+
+std::uint32_t groups_of(const Schedule& schedule) {
+  std::uint32_t groups = 0;
+  for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
+    groups += divide_up(schedule.rows_of(tile), rows_at_once);
+  return groups;
+}
+
+void fill_rows(std::span<std::uint32_t> groups, std::span<SlotRows> rows, const Schedule& schedule) {
+  std::ranges::fill(groups, 0u);
+  std::ranges::fill(rows, SlotRows{});
+  std::uint32_t group = 0;
+  for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile) {
+    const std::uint32_t count = schedule.rows_of(tile);
+    groups[tile] = group;
+    group += divide_up(count, rows_at_once);
+    for (std::uint32_t slot = tile * lanes; slot < (tile + 1) * lanes; ++slot) {
+      const std::uint32_t bias = (count - schedule.incoming_counts[slot]) * std::uint32_t{rounding_magic_bits};
+      rows[slot] = {count, static_cast<std::int32_t>(bias)};
+    }
+  }
 }
 
 void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Schedule& schedule,
@@ -67,16 +89,24 @@ void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Sc
     const MaterialId material = names.materials.empty() ? own : names.materials[own];
     keys[i] = static_cast<std::uint16_t>((rest.index.empty() ? 0 : rest.index[i] << 8) | material);
   }
-  auto to = records.begin();
-  for (const ScheduledSpring& entry : schedule.entries) {
+  const std::uint32_t words = rest.table.empty() ? 2 : 1;
+  const auto write = [&](const ScheduledSpring& entry, std::uint32_t* to) {
     const std::uint32_t spring = entry.spring == padding ? count
                                  : names.numbers.empty() ? entry.spring
                                                          : names.numbers[entry.spring];
-    *to++ = offset_of_slot(entry.partner, names.fields) << 16 | keys[spring];
-    if (rest.table.empty())
-      *to++ = spring == count ? 0 : std::bit_cast<std::uint32_t>(robot.springs[spring].rest_length);
-  }
-  std::fill(to, records.end(), 0u);
+    to[0] = offset_of_slot(entry.partner, names.fields) << 16 | keys[spring];
+    if (words == 2) to[1] = spring == count ? 0 : std::bit_cast<std::uint32_t>(robot.springs[spring].rest_length);
+  };
+  std::uint32_t* to = records.data();
+  for (std::uint32_t tile = 0; tile < schedule.tiles(); ++tile)
+    for (std::uint32_t row = schedule.row_start[tile]; row < schedule.row_start[tile + 1]; row += rows_at_once)
+      for (std::uint32_t lane = 0; lane < lanes; ++lane)
+        for (std::uint32_t i = row; i < row + rows_at_once; ++i, to += words)
+          if (i < schedule.row_start[tile + 1])
+            write(schedule.entries[std::size_t{i} * lanes + lane], to);
+          else
+            std::fill_n(to, words, 0u);
+  std::fill(to, records.data() + records.size(), 0u);
 }
 
 void fill_backs(std::span<std::uint32_t> backs, const Robot& robot, std::span<const std::uint16_t> mass_at,

@@ -14,17 +14,16 @@ namespace mercury::cuda {
 
 // What one robot's chunks hold: enough for the largest robot of the class.
 struct ChunkSizes {
-  std::uint32_t tiles = 0, rows = 0, face_pairs = 0;
+  std::uint32_t tiles = 0, groups = 0, face_pairs = 0;
   std::uint32_t record_words = 1;
 
   std::size_t slots() const { return std::size_t{tiles} * lanes; }
   std::size_t state() const { return slots() * state_fields; }
-  std::size_t springs() const { return std::size_t{rows} * lanes * record_words; }  // [words]
+  std::size_t springs() const { return groups * words_of_group(record_words); }  // [words]
   std::size_t lengths() const { return record_words == 1 ? max_lengths : 0; }
-  std::size_t row_starts() const { return std::size_t{tiles} + 1; }
   std::size_t bytes() const {  // of all chunks of one robot, a multiple of 8
-    const std::size_t words = state() + 2 * slots() + lengths() + springs() + row_starts();
-    return (4 * words + sizeof(FacePair) * face_pairs + 2 * slots() + 7) / 8 * 8;
+    const std::size_t words = state() + slots() + lengths() + springs() + tiles;
+    return (4 * words + sizeof(SlotRows) * slots() + sizeof(FacePair) * face_pairs + 2 * slots() + 7) / 8 * 8;
   }
 };
 
@@ -40,7 +39,8 @@ class Chunks {
   std::span<FacePair> face_pairs;
   std::span<std::uint16_t> masses;
   std::span<float> state, valences, lengths;
-  std::span<std::uint32_t> springs, row_start, incoming_counts;
+  std::span<std::uint32_t> springs, groups;
+  std::span<SlotRows> rows;
 
  private:
   void fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule);
@@ -54,7 +54,12 @@ struct RecordNames {
   std::span<const MaterialId> materials;   // [max_materials], the new id by the robot's; empty = the same
   std::uint32_t fields = 0;                // partners are addressed by offset_of_slot()
 };
-// Fills the spring records of a schedule, and clears what comes after them. `rest` is empty for records of two words.
+// Groups of rows that a schedule takes.
+std::uint32_t groups_of(const Schedule& schedule);
+// Fills the first groups of a schedule's tiles, and the rows of its slots.
+void fill_rows(std::span<std::uint32_t> groups, std::span<SlotRows> rows, const Schedule& schedule);
+// Fills the spring records of a schedule, and clears those of unused rows and all that come after. `rest` is empty for
+// records of two words.
 void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Schedule& schedule,
                   const RestLengths& rest, const RecordNames& names = {});
 

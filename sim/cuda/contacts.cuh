@@ -231,13 +231,11 @@ class ContactPass {
       atomicOr(joined_pairs(robot) + j / lanes * slots + i, 1u << j % lanes);
     };
     for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile)
-      for (std::uint32_t row = robot.row_start()[tile]; row < robot.row_start()[tile + 1]; ++row) {
-        const std::uint32_t key = robot.springs()[std::size_t{row} * lanes + robot.context().lane].x;
-        if ((key & 0xff) == air) continue;
-        const std::uint32_t i = robot.own_slot(tile), j = slot_at_offset(key >> 16, Robot::fields);
+      robot.for_each_spring_of(robot.own_slot(tile), [&](const auto& record) {
+        const std::uint32_t i = robot.own_slot(tile), j = robot.partner_slot_of(record);
         mark(i, j);
         mark(j, i);
-      }
+      });
   }
 
   // Calls visit(i, j) for every pair of slots i < j within `radius` that no spring joins. A warp compares the masses of
@@ -536,27 +534,17 @@ class ContactPass {
 
   // Whether slot i owns a spring to a ghost of slot j of the grid. A spring to another part has its owner here.
   __device__ static bool owns_to_ghost(const Robot& robot, std::uint32_t i, std::uint32_t j) {
-    const auto* spring = robot.springs() + i % lanes;
-    const std::uint32_t last = robot.row_start()[i / lanes + 1];
-    for (std::uint32_t row = robot.row_start()[i / lanes]; row < last; ++row) {
-      const std::uint32_t key = spring[std::size_t{row} * lanes].x;
-      if ((key & 0xff) != air && robot.slot_in_robot(slot_at_offset(key >> 16, Robot::fields)) == j) return true;
-    }
-    return false;
+    bool found = false;
+    robot.for_each_spring_of(
+        i, [&](const auto& record) { found |= robot.slot_in_robot(robot.partner_slot_of(record)) == j; });
+    return found;
   }
 
   // Whether slot i owns a spring to slot j.
   __device__ static bool owns(const Robot& robot, std::uint32_t i, std::uint32_t j) {
-    const std::uint32_t wanted = Robot::Memory::on_chip ? Robot::byte_offset(j) / 4 : j, tile = i / lanes;
-    const auto* spring = robot.springs() + i % lanes;
-    const std::uint32_t last = robot.row_start()[tile + 1];
+    const std::uint32_t wanted = Robot::Memory::on_chip ? Robot::byte_offset(j) / 4 : j;
     bool found = false;
-    // Without a way out of the loop, so that loads need not wait for each other.
-#pragma unroll 8
-    for (std::uint32_t row = robot.row_start()[tile]; row < last; ++row) {
-      const std::uint32_t key = spring[std::size_t{row} * lanes].x;
-      found |= key >> 16 == wanted && (key & 0xff) != air;
-    }
+    robot.for_each_spring_of(i, [&](const auto& record) { found |= record.x >> 16 == wanted; });
     return found;
   }
 

@@ -62,7 +62,7 @@ void DeviceParts::split(std::span<const Source> robots, std::uint32_t parts, con
   record_words_ = sizes.record_words;
   view_.per_robot = parts;
   view_.robot_tile_stride = sizes.tiles;
-  tile_stride_ = row_stride_ = face_stride_ = view_.export_stride = 0;
+  tile_stride_ = group_stride_ = face_stride_ = view_.export_stride = 0;
   first_of_topology_ = first_of_topology(robots_of(robots));
   split_.assign(robots.size(), {});
   parallel_for(0, robots.size(), [&](std::size_t i) {
@@ -74,7 +74,7 @@ void DeviceParts::split(std::span<const Source> robots, std::uint32_t parts, con
         stride = std::max(stride, static_cast<std::uint32_t>(to));
       };
       raise(tile_stride_, part.tiles());
-      raise(row_stride_, part.arrangement.schedule.rows());
+      raise(group_stride_, groups_of(part.arrangement.schedule));
       raise(face_stride_, part.arrangement.faces.size());
       raise(view_.export_stride, part.exports.size());
     }
@@ -82,10 +82,11 @@ void DeviceParts::split(std::span<const Source> robots, std::uint32_t parts, con
 
 void DeviceParts::upload_parts(cudaStream_t stream) {
   const std::size_t parts = sources_.size() * view_.per_robot, slots = std::size_t{tile_stride_} * lanes;
-  const std::size_t words = std::size_t{row_stride_} * lanes * record_words_;
+  const std::size_t words = group_stride_ * words_of_group(record_words_);
   std::vector<PartHeader> headers(parts);
-  std::vector<std::uint32_t> springs(parts * words + rows_at_once * lanes * 2), incoming(parts * slots);
-  std::vector<std::uint32_t> row_start(parts * (tile_stride_ + 1)), export_start(parts * (tile_stride_ + 1));
+  std::vector<std::uint32_t> springs(parts * words + words_of_group(2)), groups(parts * tile_stride_);
+  std::vector<SlotRows> rows(parts * slots);
+  std::vector<std::uint32_t> export_start(parts * (tile_stride_ + 1));
   std::vector<std::uint32_t> face_dithers(parts * face_stride_);
   std::vector<std::uint32_t> places(sources_.size() * view_.robot_tile_stride * lanes);
   std::vector<FacePair> faces(parts * face_stride_);
@@ -101,10 +102,9 @@ void DeviceParts::upload_parts(cudaStream_t stream) {
     const RestLengths rest = record_words_ == 1 ? rest_lengths(*source.robot) : RestLengths{};
     fill_records(std::span(springs).subspan(i * words, words), *source.robot, schedule, rest,
                  {part.springs, source.materials, fields_});
-    std::ranges::copy(schedule.incoming_counts, incoming.begin() + static_cast<std::ptrdiff_t>(i * slots));
-    const auto first_tile = static_cast<std::ptrdiff_t>(i * (tile_stride_ + 1));
-    std::ranges::copy(schedule.row_start, row_start.begin() + first_tile);
-    std::ranges::copy(part.export_start, export_start.begin() + first_tile);
+    fill_rows(std::span(groups).subspan(i * tile_stride_, tile_stride_), std::span(rows).subspan(i * slots, slots),
+              schedule);
+    std::ranges::copy(part.export_start, export_start.begin() + static_cast<std::ptrdiff_t>(i * (tile_stride_ + 1)));
     const auto first_face = static_cast<std::ptrdiff_t>(i * face_stride_);
     std::ranges::copy(part.face_dithers, face_dithers.begin() + first_face);
     std::ranges::transform(part.arrangement.faces, faces.begin() + first_face, [&](const FacePair& p) {
@@ -132,8 +132,8 @@ void DeviceParts::upload_parts(cudaStream_t stream) {
   };
   replace(headers_, headers);
   replace(springs_, springs);
-  replace(incoming_counts_, incoming);
-  replace(row_start_, row_start);
+  replace(groups_, groups);
+  replace(rows_, rows);
   replace(export_start_, export_start);
   replace(face_dithers_, face_dithers);
   replace(places_, places);
@@ -176,11 +176,11 @@ void DeviceParts::find_backs(const BatchView& robots, cudaStream_t stream) {
 
 BatchView DeviceParts::view(BatchView robots) const {
   robots.springs = springs_.data();
-  robots.row_start = row_start_.data();
+  robots.rows = rows_.data();
   robots.face_pairs = face_pairs_.data();
-  robots.incoming_counts = incoming_counts_.data();
+  robots.groups = groups_.data();
   robots.tile_stride = tile_stride_;
-  robots.row_stride = row_stride_;
+  robots.group_stride = group_stride_;
   robots.face_stride = face_stride_;
   if (face_backs_.size() > 0) robots.face_backs = face_backs_.data();
   robots.parts = view_;

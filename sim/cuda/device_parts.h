@@ -54,9 +54,10 @@ class DeviceParts {
   std::uint32_t fields_ = 0;  // of the tiles by which partners and corners are addressed; 0 = nothing is uploaded
 
   PartsView view_;
-  std::uint32_t tile_stride_ = 0, row_stride_ = 0, face_stride_ = 0;
+  std::uint32_t tile_stride_ = 0, group_stride_ = 0, face_stride_ = 0;
   DeviceArray<PartHeader> headers_;
-  DeviceArray<std::uint32_t> springs_, row_start_, incoming_counts_, face_dithers_, face_backs_, export_start_, places_;
+  DeviceArray<std::uint32_t> springs_, groups_, face_dithers_, face_backs_, export_start_, places_;
+  DeviceArray<SlotRows> rows_;
   DeviceArray<FacePair> face_pairs_;
   DeviceArray<std::uint16_t> slots_;
   DeviceArray<Export> exports_;

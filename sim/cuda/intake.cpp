@@ -164,7 +164,7 @@ class Intake {
     for (const std::uint32_t i : run.robots) {
       const Arrangement& arrangement = arrangement_of(i);
       sizes.tiles = std::max(sizes.tiles, arrangement.schedule.tiles());
-      sizes.rows = std::max(sizes.rows, arrangement.schedule.rows());
+      sizes.groups = std::max(sizes.groups, groups_of(arrangement.schedule));
       sizes.face_pairs = std::max(sizes.face_pairs, static_cast<std::uint32_t>(arrangement.faces.size()));
     }
     return sizes;

@@ -53,13 +53,14 @@ bool fit_tables(LaunchConfiguration& launch, const BatchView& robots, std::uint3
   const std::uint32_t whole = limits.shared_per_multiprocessor;
   const auto fits = [&](std::uint32_t bits, std::uint32_t most) {
     launch.table_copy_bits = bits;
+    launch.bytes_per_material = parameter_bytes << bits;
     launch.shared_bytes = block_layout(launch, tiles, fields).total;
     const std::size_t bytes = blocks * (launch.shared_bytes + limits.reserved_per_block);
     if (launch.shared_bytes > limits.shared_per_block || bytes > most) return false;
     if (launch.fits_cache) launch.shared_percent = std::min(100u, static_cast<std::uint32_t>(100 * bytes / whole) + 1);
     return true;
   };
-  if (writes_more_than_it_reads(launch, robots.row_stride)) return fits(0, whole);
+  if (writes_more_than_it_reads(launch, robots.group_stride * rows_at_once)) return fits(0, whole);
   // 8 copies and an eighth more to cache with are faster than 16 copies.
   if (launch.fits_cache && (fits(4, whole / 8 * 7) || fits(3, whole / 8 * 7))) return true;
   for (const std::uint32_t bits : {4u, 3u, 2u, 1u, 0u})

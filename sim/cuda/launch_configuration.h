@@ -33,6 +33,7 @@ struct LaunchConfiguration {
   bool first_warps_write = false;                      // the material table, else the last ones
   std::uint32_t parts = 1;                             // of a robot, each in a block of its own (parts.h)
   std::uint32_t table_copy_bits = 0;                   // 2^this many copies of the material table, at most 16
+  std::uint32_t bytes_per_material = 0;                // in all of these copies
   std::uint32_t table_chunks = max_materials / lanes;  // of 32 materials in a table
   bool shared_table = false;                           // all robots of the batch have the same materials
   bool on_chip = true;                                 // working memory in shared memory, else in the workspace
@@ -54,8 +55,6 @@ inline constexpr std::uint32_t resident_warps = 28;
 // Tiles that a warp computes in turn where there are more tiles than warps: enough to hide the cost of a barrier, few
 // enough to share the work evenly.
 inline constexpr std::uint32_t most_turns = 3;
-
-MERCURY_HOST_DEVICE constexpr std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
 
 // The fewest warps that finish a robot's tiles in as many turns as `share` warps would, but in no more than most_turns
 // if `max_warps` can do that. `share` = of a multiprocessor's warps, if all robots have as many; with many robots, 1.

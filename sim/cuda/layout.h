@@ -3,8 +3,11 @@
 // largest robot of the class (paper, II.D):
 //
 //   state        | robot 0: tile 0, tile 1, ...        | robot 1: tile 0, ...   | ...
-//   springs      | robot 0: row 0, row 1, ...          | robot 1: row 0, ...    | ...
+//   springs      | robot 0: group 0, group 1, ...      | robot 1: group 0, ...  | ...
 //   face_pairs   | robot 0: face tile 0, face tile 1.. | robot 1: ...           | ...
+//
+// A group is four rows of one tile, as a warp computes them. A lane has its records of a group side by side, and loads
+// them at once. The last group of a tile may have unused rows, whose records are 0: springs of air.
 //
 // Spring records stream through every step, so their size decides whether those of all robots in flight fit into the L2
 // cache. A record begins with a key:
@@ -48,6 +51,12 @@ struct RobotHeader {
   float highest_length_rate;            // [m/s]; 0 = no spring has a relaxation time
   float relaxation_time;                // tau of all springs [s]; negative = of each material
   double mass;                          // of all masses together [kg]
+};
+
+// How many rows a slot's tile has, and what the sum of the slot's own springs starts with (springs.cuh).
+struct alignas(8) SlotRows {
+  std::uint32_t count = 0;
+  std::int32_t bias = 0;
 };
 
 // Whether and when a robot exploded.
@@ -96,15 +105,14 @@ struct PartsView {
 struct BatchView {
   const RobotHeader* robots;
   DeviceStatus* statuses;
-  float* state;                    // [robot][tile][state_fields][32]
-  const std::uint32_t* springs;    // [robot][row][32][record_words]
-  const float* lengths;            // [robot][max_lengths], if record_words is 1 [m]
-  const std::uint32_t* row_start;  // [robot][tile + 1]
-  const FacePair* face_pairs;      // [robot][pair], with addresses of masses for their numbers
-  const float* valences;           // [robot][slot]
-  const std::uint16_t* masses;     // [robot][slot], the mass that stands there, by its number
-  // [robot][slot]: the reactions that a slot receives per step, one for each entry of the schedule whose partner it is.
-  const std::uint32_t* incoming_counts;
+  float* state;                  // [robot][tile][state_fields][32]
+  const std::uint32_t* springs;  // [robot][group][32][rows_at_once][record_words]
+  const float* lengths;          // [robot][max_lengths], if record_words is 1 [m]
+  const std::uint32_t* groups;   // [robot][tile], the first one of each
+  const SlotRows* rows;          // [robot][slot]
+  const FacePair* face_pairs;    // [robot][pair], with addresses of masses for their numbers
+  const float* valences;         // [robot][slot]
+  const std::uint16_t* masses;   // [robot][slot], the mass that stands there, by its number
   // [robot][pair]: slots of the masses behind the two faces, the second << 16; null = no water is one-sided
   const std::uint32_t* face_backs;
   const PointProperties* points;  // [robot][slot]; null = masses of 1 kg, none fixed
@@ -114,11 +122,11 @@ struct BatchView {
   MuscleSwing* swings;            // [robot][max_materials]
   const DevicePerturbation* perturbations;
   char* workspace;  // [robot], what does not fit on the chip: contact lists, working memory
-  std::uint32_t robot_count, tile_stride, row_stride, face_stride, perturbation_count;
+  std::uint32_t robot_count, tile_stride, group_stride, face_stride, perturbation_count;
   std::uint32_t workspace_stride;  // [bytes]
   std::uint32_t record_words;      // 1 or 2
-  // If robots are stepped in parts, springs, row_start, face_pairs, face_backs, incoming_counts and points have a chunk
-  // for each part, and the strides are those of a part. All else is of whole robots.
+  // If robots are stepped in parts, springs, groups, rows, face_pairs, face_backs and points have a chunk for each
+  // part, and the strides are those of a part. All else is of whole robots.
   PartsView parts;
 };
 

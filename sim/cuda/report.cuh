@@ -38,13 +38,12 @@ class RobotReporter {
 
   __device__ void measure_springs() const {
     Deformation deformation;
-    robot_.walk_springs(
-        [](std::uint32_t, const Mass<Memory>& mass, std::uint32_t) {
+    robot_.template walk_springs<SpringWalk{}>(
+        [](std::uint32_t, const Mass<Memory>& mass, const SlotRows&) {
           return Owner{mass.vector(field_x), 0, 0};
         },
-        [&](auto count, const SpringRecord* records, Owner& owner) {
-          measure<decltype(count)::value>(records, owner, deformation);
-        },
+        [&](const SpringRecord& record, const Owner& owner) { return load(record, owner); },
+        [&](const auto& springs, Owner& owner) { measure(springs, owner, deformation); },
         [](const Mass<Memory>& mass, const Owner& owner) {
           mass.set_value(field_energy, owner.twice_energy);
           mass.set_value(field_power, owner.power);
@@ -108,32 +107,28 @@ class RobotReporter {
   };
 
   struct LoadedSpring {
+    SpringRecord record;
     float rest_length;
     Vec3 d;
     float stiffness;
   };
+  __device__ LoadedSpring load(const SpringRecord& record, const Owner& owner) const {
+    return {record, robot_.rest_length_of(record), owner.x - robot_.partner_of(record).vector(field_x),
+            robot_.arguments().stiffness_scale * __ldg(&materials_[robot_.material_of(record)].stiffness)};
+  }
 
   template <int count>
-  __device__ void measure(const SpringRecord* records, Owner& owner, Deformation& deformation) const {
-    LoadedSpring springs[count];
+  __device__ void measure(const LoadedSpring (&springs)[count], Owner& owner, Deformation& deformation) const {
 #pragma unroll
-    for (int i = 0; i < count; ++i) {
-      springs[i].rest_length = robot_.rest_length_of(records[i]);
-      springs[i].d = owner.x - robot_.partner_of(records[i]).vector(field_x);
-      springs[i].stiffness =
-          robot_.arguments().stiffness_scale * __ldg(&materials_[robot_.material_of(records[i])].stiffness);
-    }
-#pragma unroll
-    for (int i = 0; i < count; ++i) {
-      const auto& [rest_length, d, stiffness] = springs[i];
+    for (const auto& [record, rest_length, d, stiffness] : springs) {
       // Loaded here, since all registers are in use.
-      const auto [length_rate, length_factor] = robot_.rate_and_length_factor_of(records[i]);
+      const auto [length_rate, length_factor] = robot_.rate_and_length_factor_of(record);
       const float squared = squared_length(d);
       const float distance = squared * inverse_sqrt(squared);
       const float too_long = stretch(distance, rest_length, length_factor);
       owner.twice_energy = multiply_add(spring_force(stiffness, too_long), too_long, owner.twice_energy);
       owner.power += muscle_power(stiffness, too_long, rest_length, length_rate);
-      if (robot_.material_of(records[i]) == air) continue;  // padding
+      if (robot_.material_of(record) == air) continue;  // padding
       const float relative = strain(distance, rest_length);
       deformation.largest_strain = fmaxf(deformation.largest_strain, fabsf(relative));
       deformation.strained += is_strained(relative) ? 1 : 0;

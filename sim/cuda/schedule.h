@@ -47,6 +47,7 @@ struct Schedule {
   std::vector<std::uint32_t> valences, incoming_counts;
   std::uint32_t tiles() const { return static_cast<std::uint32_t>(row_start.size() - 1); }
   std::uint32_t rows() const { return row_start.back(); }
+  std::uint32_t rows_of(std::uint32_t tile) const { return row_start[tile + 1] - row_start[tile]; }
 };
 
 // `springs` by their number; which end is the owner may change. Slots are below `masses`, or belong to ghosts, which

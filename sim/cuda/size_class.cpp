@@ -40,9 +40,9 @@ void SizeClass::for_each_array(const Visit& visit) {
   visit(state_, sizes_.state());
   visit(valences_, sizes_.slots());
   visit(masses_, sizes_.slots());
-  visit(incoming_counts_, sizes_.slots());
+  visit(rows_, sizes_.slots());
   visit(lengths_, sizes_.lengths());
-  visit(row_start_, sizes_.row_starts());
+  visit(groups_, sizes_.tiles);
   visit(springs_, sizes_.springs());
   visit(face_pairs_, sizes_.face_pairs);
 }
@@ -63,7 +63,7 @@ std::uint32_t SizeClass::append(std::size_t count) {
 
 void SizeClass::make_room(const ChunkSizes& sizes) {
   const auto fits = [](std::uint32_t needed, std::uint32_t present) { return needed <= present; };
-  if (size() <= capacity_ && fits(sizes.tiles, sizes_.tiles) && fits(sizes.rows, sizes_.rows) &&
+  if (size() <= capacity_ && fits(sizes.tiles, sizes_.tiles) && fits(sizes.groups, sizes_.groups) &&
       fits(sizes.face_pairs, sizes_.face_pairs))
     return;
   const ChunkSizes old_sizes = sizes_;
@@ -76,7 +76,7 @@ void SizeClass::make_room(const ChunkSizes& sizes) {
     if (needed > present) present = present == 0 ? needed : needed + needed / 16;
   };
   sizes_.tiles = std::max(sizes.tiles, sizes_.tiles);
-  enlarge(sizes.rows, sizes_.rows);
+  enlarge(sizes.groups, sizes_.groups);
   enlarge(sizes.face_pairs, sizes_.face_pairs);
   capacity_ = grown(size(), capacity_);
   try {
@@ -127,8 +127,8 @@ void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks) {
   copy(masses_, std::span<const std::uint16_t>(chunks.masses));
   copy(lengths_, std::span<const float>(chunks.lengths));
   copy(springs_, std::span<const std::uint32_t>(chunks.springs));
-  copy(row_start_, std::span<const std::uint32_t>(chunks.row_start));
-  copy(incoming_counts_, std::span<const std::uint32_t>(chunks.incoming_counts));
+  copy(groups_, std::span<const std::uint32_t>(chunks.groups));
+  copy(rows_, std::span<const SlotRows>(chunks.rows));
   copy(face_pairs_, std::span<const FacePair>(chunks.face_pairs));
 }
 
@@ -321,11 +321,11 @@ BatchView SizeClass::view() const {
           .state = state_.data(),
           .springs = springs_.data(),
           .lengths = lengths_.data(),
-          .row_start = row_start_.data(),
+          .groups = groups_.data(),
+          .rows = rows_.data(),
           .face_pairs = face_pairs_.data(),
           .valences = valences_.data(),
           .masses = masses_.data(),
-          .incoming_counts = incoming_counts_.data(),
           .face_backs = face_backs_.data(),
           .points = points_.data(),
           .point_masses = point_masses_.data(),
@@ -336,7 +336,7 @@ BatchView SizeClass::view() const {
           .workspace = workspace_.data(),
           .robot_count = size(),
           .tile_stride = sizes_.tiles,
-          .row_stride = sizes_.rows,
+          .group_stride = sizes_.groups,
           .face_stride = sizes_.face_pairs,
           .perturbation_count = static_cast<std::uint32_t>(perturbation_count_),
           .workspace_stride = static_cast<std::uint32_t>(workspace_stride_),

@@ -180,7 +180,8 @@ class SizeClass {
   ChunkedArray<RobotHeader> device_headers_;
   ChunkedArray<DeviceStatus> statuses_;
   ChunkedArray<float> state_, valences_, lengths_;
-  ChunkedArray<std::uint32_t> springs_{rows_at_once * lanes * 2}, row_start_, incoming_counts_;
+  ChunkedArray<std::uint32_t> springs_{words_of_group(2)}, groups_;
+  ChunkedArray<SlotRows> rows_;
   ChunkedArray<std::uint16_t> masses_;
   ChunkedArray<FacePair> face_pairs_;
   ChunkedArray<Material> device_materials_;

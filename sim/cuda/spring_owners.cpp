@@ -148,7 +148,7 @@ class OwnerSearch {
   // whose limits rise take springs of tiles whose limits fall, first of those that are little above a multiple. What is
   // too many in the end comes off single rows. A partly empty tile keeps its limit.
   void group_rows() {
-    constexpr auto group = static_cast<std::uint32_t>(rows_at_once);
+    constexpr std::uint32_t group = rows_at_once;
     std::vector<std::uint32_t> above(tiles_), order(tiles_);
     std::uint32_t too_many = 0;
     for (std::uint32_t tile = 0; tile < tiles_ - partly_empty_; ++tile) {

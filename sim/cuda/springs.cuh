@@ -6,18 +6,21 @@
 //
 //   fma(per_distance, d, 1.5 * 2^23)  =  a float with the bits  | 0x4b400000 + n |    n = the component, in units
 //
-//   owner's sum, in registers:          rows * 0x4b400000   - bits - bits - ...      one per row
-//   a slot's sum, in working memory:  - incoming * 0x4b400000 + bits + bits + ...    one per entry whose partner it is
+//   owner's sum, in registers:           rows * 0x4b400000 - bits - bits - ...    one per row
+//   reactions to it, in working memory:                      bits + bits + ...    one per entry whose partner it is
 //
 // 1. Integer sums do not depend on their order, so results are bit for bit the same for any number of warps and in
 //    any batch, and action and reaction cancel exactly.
 // 2. Rounding by an addition is part of the fma. A conversion instruction would take a slower unit of the chip.
 // 3. The bits of the rounding constant are not removed from each term. Their number is known beforehand: a lane
-//    subtracts one term per row, and a slot receives incoming_counts[slot] terms, padding included. So the sums start
-//    with the opposite of what the constants add up to. Sums wrap around, which changes nothing in the end.
+//    subtracts one term per row, and a slot receives Schedule::incoming_counts[slot] terms, padding included. So the
+//    owner's sum starts with the opposite of what all these constants add up to. Sums wrap around, which changes
+//    nothing in the end.
 // 4. The owner's sum is added to working memory once per tile; reactions are atomic additions without a result, which
 //    a warp does not wait for.
 #pragma once
+
+#include <type_traits>
 
 #include "sim/cuda/block_robot.cuh"
 #include "sim/physics/fixed_point.h"
@@ -28,7 +31,7 @@ namespace mercury::cuda {
 // Which springs have a relaxation time.
 enum class Viscosity { none, uniform, by_material };
 
-template <class Robot>
+template <class Robot, class EnvironmentModel>
 class SpringPass {
  public:
   __device__ explicit SpringPass(const Robot& robot) : robot_(robot) {}
@@ -37,24 +40,9 @@ class SpringPass {
   // padding included [m2].
   template <Viscosity viscosity>
   __device__ float add_all() const {
-    float longest = 0;
-    Damping damping{};
-    if constexpr (viscosity != Viscosity::none) {
-      const RobotHeader& header = robot_.stored_header();
-      damping = {header.highest_length_rate, damping_of(header.relaxation_time)};
-    }
-    robot_.walk_springs(
-        [&](std::uint32_t tile, const Mass<Memory>& mass, std::uint32_t rows) {
-          const int bias = static_cast<int>(rows) * rounding_magic_bits;
-          Owner owner{mass.vector(field_x), own_valence(tile, mass), bias, bias, bias, {}};
-          if constexpr (viscosity != Viscosity::none) owner.v = mass.vector(field_v);
-          return owner;
-        },
-        [&](auto count, const SpringRecord* records, Owner& owner) {
-          add_springs<decltype(count)::value, viscosity>(records, damping, owner, longest);
-        },
-        [](const Mass<Memory>& mass, const Owner& owner) { mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z); });
-    return longest;
+    if constexpr (Memory::on_chip && !Memory::in_parts && !EnvironmentModel::real_bodies && Robot::has_length_table)
+      if (robot_.has_three_lengths()) return add_all<viscosity>(robot_.three_lengths());
+    return add_all<viscosity>(typename Robot::AnyLengths{robot_});
   }
 
   // The longest |d|^2 of this lane's springs without padding [m2]. Slow, and not inline, so that it takes no registers
@@ -64,17 +52,16 @@ class SpringPass {
     const Robot robot(arguments, context);
     float longest = 0;
     for (std::uint32_t tile = robot.first_tile(); tile < robot.last_tile(); ++tile)
-      for (std::uint32_t row = robot.row_start()[tile]; row < robot.row_start()[tile + 1]; ++row) {
-        const auto record = robot.springs()[std::size_t{row} * lanes + robot.context().lane];
-        if (robot.material_of(record) == air) continue;
+      robot.for_each_spring_of(robot.own_slot(tile), [&](const SpringRecord& record) {
         longest = fmaxf(
             longest, squared_length(robot.own_mass(tile).vector(field_x) - robot.partner_of(record).vector(field_x)));
-      }
+      });
     return longest;
   }
 
  private:
   static constexpr Solver solver = Robot::solver;
+  static constexpr bool has_contacts = EnvironmentModel::has_contacts && Robot::Memory::finds_contacts;
   using Memory = typename Robot::Memory;
   using SpringRecord = typename Robot::SpringRecord;
 
@@ -107,22 +94,58 @@ class SpringPass {
     return {robot_.scale() * relaxation_time, viscous_factor(relaxation_time, robot_.arguments().constants.inverse_dt)};
   }
 
-  // `count` springs of one owner: first all loads, then the arithmetic and the additions.
-  template <int count, Viscosity viscosity>
-  __device__ void add_springs(const SpringRecord* records, const Damping& damping, Owner& owner, float& longest) const {
-    LoadedSpring springs[count];
-#pragma unroll
-    for (int i = 0; i < count; ++i) {
-      springs[i] = load(records[i], owner);
-      if constexpr (viscosity != Viscosity::none) springs[i].rate = owner.v - springs[i].partner.vector(field_v);
-      if constexpr (viscosity == Viscosity::by_material)
-        springs[i].relaxation_time = robot_.relaxation_time_of(records[i]);
+  template <Viscosity viscosity, class Lengths>
+  __device__ float add_all(const Lengths& lengths) const {
+    float longest = 0;
+    Damping damping{};
+    if constexpr (viscosity != Viscosity::none) {
+      const RobotHeader& header = robot_.stored_header();
+      damping = {header.highest_length_rate, damping_of(header.relaxation_time)};
     }
+    // Measured for each (docs/experiments.md).
+    constexpr SpringWalk walk{
+        .keeps_loads_above = solver == Solver::xpbd || EnvironmentModel::real_bodies || Memory::in_parts ||
+                             std::is_same_v<Lengths, typename Robot::AnyLengths>,
+        .groups_per_turn =
+            solver == Solver::xpbd || EnvironmentModel::real_bodies || Memory::in_parts || has_contacts ? 2 : 1};
+    robot_.template walk_springs<walk>(
+        [&](std::uint32_t tile, const Mass<Memory>& mass, const SlotRows& rows) {
+          Owner owner{mass.vector(field_x), own_valence(tile, mass), rows.bias, rows.bias, rows.bias, {}};
+          if constexpr (viscosity != Viscosity::none) owner.v = mass.vector(field_v);
+          return owner;
+        },
+        [&](const SpringRecord& record, const Owner& owner) { return load<viscosity>(record, lengths, owner); },
+        [&](const auto& springs, Owner& owner) { add_springs<viscosity>(springs, damping, owner, longest); },
+        [](const Mass<Memory>& mass, const Owner& owner) { mass.add_to_sum(owner.sum_x, owner.sum_y, owner.sum_z); });
+    return longest;
+  }
+
+  template <Viscosity viscosity, class Lengths>
+  __device__ LoadedSpring load(const SpringRecord& record, const Lengths& lengths, const Owner& owner) const {
+    LoadedSpring spring;
+    spring.partner = robot_.partner_of(record);
+    spring.scaled_rest_length = lengths.of(record);
+    spring.d = owner.x - spring.partner.vector(field_x);
+    spring.parameters = robot_.parameters_of(record);
+    if constexpr (solver == Solver::xpbd) spring.valence = owner.valence + partner_valence(record, spring.partner);
+    if constexpr (viscosity != Viscosity::none) spring.rate = owner.v - spring.partner.vector(field_v);
+    if constexpr (viscosity == Viscosity::by_material) spring.relaxation_time = robot_.relaxation_time_of(record);
+    return spring;
+  }
+
+  // Springs of one owner.
+  template <Viscosity viscosity, int count>
+  __device__ void add_springs(const LoadedSpring (&springs)[count], const Damping& damping, Owner& owner,
+                              float& longest) const {
+    float squares[count];
 #pragma unroll
     for (int i = 0; i < count; ++i) {
       const LoadedSpring& spring = springs[i];
-      const float squared = squared_length(spring.d);
-      longest = fmaxf(longest, squared);
+      const float squared = squares[i] = squared_length(spring.d);
+      if (i % 2 == 1)
+        longest = largest_of(longest, squares[i - 1], squared);
+      else if (i == count - 1)
+        longest = fmaxf(longest, squared);
       const float per_distance = units_per_distance<viscosity>(spring, damping, squared);
       const int x = bits_of(multiply_add(per_distance, spring.d.x, rounding_magic));
       const int y = bits_of(multiply_add(per_distance, spring.d.y, rounding_magic));
@@ -134,14 +157,9 @@ class SpringPass {
     }
   }
 
-  __device__ LoadedSpring load(const SpringRecord& record, const Owner& owner) const {
-    LoadedSpring spring;
-    spring.partner = robot_.partner_of(record);
-    spring.scaled_rest_length = robot_.scaled_rest_length_of(record);
-    spring.d = owner.x - spring.partner.vector(field_x);
-    spring.parameters = robot_.parameters_of(record);
-    if constexpr (solver == Solver::xpbd) spring.valence = owner.valence + partner_valence(record, spring.partner);
-    return spring;
+  // Of numbers that are not negative, in one instruction: such floats have the order of their bits.
+  __device__ static float largest_of(float a, float b, float c) {
+    return __int_as_float(__vimax3_s32(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
   }
 
   // Force or correction on the partner, per meter of d, in units.
@@ -175,7 +193,7 @@ class SpringPass {
     if constexpr (Memory::keeps_valence)
       return partner.value(field_valence);
     else
-      return robot_.load_valence(slot_at_offset(record.x >> 16, Robot::fields));
+      return robot_.load_valence(robot_.partner_slot_of(record));
   }
 
   const Robot& robot_;

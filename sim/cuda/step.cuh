@@ -13,6 +13,7 @@ template <Solver solver, class EnvironmentModel, class Memory, int record_words>
 class RobotStepper {
  public:
   using Robot = BlockRobot<solver, Memory, record_words>;
+  using Springs = SpringPass<Robot, EnvironmentModel>;
   static constexpr bool has_contacts = EnvironmentModel::has_contacts && Memory::finds_contacts;
   __device__ RobotStepper(const StepArguments& arguments, const EnvironmentModel& model,
                           const BlockContext<solver, Memory>& context)
@@ -97,11 +98,9 @@ class RobotStepper {
         if (!robot_.has_mass(tile)) continue;
         const Mass<Memory> mass = robot_.own_mass(tile);
         const Vec3 v = mass.vector(field_v);
-        // The bias of the reactions that are to come has been in the sum.
-        const int bias = robot_.incoming_bias(tile);
-        const Vec3 force = sum_of(mass, bias, inverse_scale);
+        const Vec3 force = sum_of(mass, inverse_scale);
         mass.set_vector(field_v, accelerated(v, acceleration(force, v, point_at(tile)), constants()));
-        mass.set_sum(bias);
+        mass.set_sum(0);
       }
     }
   }
@@ -114,9 +113,8 @@ class RobotStepper {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
       const Vec3 v = mass.vector(field_v);
-      const Vec3 predicted =
-          accelerated(v, acceleration(sum_of(mass, 0, inverse_scale), v, point_at(tile)), constants());
-      mass.set_sum(robot_.incoming_bias(tile));
+      const Vec3 predicted = accelerated(v, acceleration(sum_of(mass, inverse_scale), v, point_at(tile)), constants());
+      mass.set_sum(0);
       store(step, phase_prediction, tile, multiply_add(constants().dt, predicted, mass.vector(field_x)), predicted);
     }
   }
@@ -127,7 +125,7 @@ class RobotStepper {
     const float limit = robot_.header().squared_stretch_limit;
     const float longest = add_all_springs();
     // Padding counts in add_all() and may be long, so a failure is checked again without it.
-    if (longest > limit && SpringPass<Robot>::longest_spring(robot_.arguments(), robot_.context()) > limit)
+    if (longest > limit && Springs::longest_spring(robot_.arguments(), robot_.context()) > limit)
       report_failure(step, phase_springs, Failure::never);
   }
 
@@ -151,7 +149,7 @@ class RobotStepper {
   }
 
   // Loads early what end() needs first from device memory.
-  __device__ void prefetch_end() { next_ = in_device_memory(robot_.first_tile()); }
+  __device__ void prefetch_end() { next_point_ = point_at(robot_.first_tile()); }
 
   // After prefetch_end().
   __device__ void end(std::uint32_t step) {
@@ -164,21 +162,19 @@ class RobotStepper {
       if (!robot_.has_mass(tile)) break;  // this lane has none in the last tile
       const Mass<Memory> mass = robot_.own_mass(tile);
       Vec3 x = mass.vector(field_x), v = mass.vector(field_v);
-      const auto [point, incoming] = next_;
-      next_ = in_device_memory(tile + 1);
+      const PointProperties point = next_point_;
+      next_point_ = point_at(min(tile + 1, batch().tile_stride - 1));
       if constexpr (solver == Solver::force) {
-        const int bias = Robot::bias_of(incoming);
-        const Vec3 force = sum_of(mass, 0, 1 / robot_.header().force_scale);
+        const Vec3 force = sum_of(mass, 1 / robot_.header().force_scale);
         v = accelerated(v, sums_apart() ? point.inverse_inertia * force : acceleration(force, v, point), constants());
         x = multiply_add(constants().dt, v, x);
-        mass.set_sum(bias);
       } else {
-        Vec3 correction = sum_of(mass, 0, 1 / robot_.header().correction_scale);
+        Vec3 correction = sum_of(mass, 1 / robot_.header().correction_scale);
         if constexpr (EnvironmentModel::real_bodies) correction = point.inverse_inertia * correction;
         x = x + correction;
         v = multiply_add(constants().inverse_dt, correction, v);
-        mass.set_sum(0);
       }
+      mass.set_sum(0);
       if constexpr (EnvironmentModel::real_bodies)
         end_step(x, v, point.inverse_inertia, model_, end_constants());
       else
@@ -194,12 +190,10 @@ class RobotStepper {
   static constexpr std::uint32_t tiles_at_once = 4;
   __device__ void load_tiles(std::uint32_t first, std::uint32_t count) {
     float valences[tiles_at_once];
-    int sums[tiles_at_once];
 #pragma unroll
     for (std::uint32_t i = 0; i < tiles_at_once; ++i) {
       const std::uint32_t tile = min(first + i, first + count - 1);
       if (i < count) copy_state(tile);
-      sums[i] = solver == Solver::force ? robot_.incoming_bias(tile) : 0;
       if constexpr (solver == Solver::xpbd && Memory::keeps_valence)
         valences[i] = robot_.load_valence(robot_.own_slot(tile));
     }
@@ -207,7 +201,7 @@ class RobotStepper {
     for (std::uint32_t i = 0; i < tiles_at_once; ++i) {
       if (i >= count) break;
       const Mass<Memory> mass = robot_.own_mass(first + i);
-      mass.set_sum(sums[i]);
+      mass.set_sum(0);
       if constexpr (solver == Solver::xpbd && Memory::keeps_valence) mass.set_value(field_valence, valences[i]);
     }
   }
@@ -236,7 +230,7 @@ class RobotStepper {
 
   // The longest |d|^2 of this thread's springs, padding included [m2].
   __device__ float add_all_springs() const {
-    const SpringPass<Robot> springs(robot_);
+    const Springs springs(robot_);
     if constexpr (EnvironmentModel::real_bodies)
       if (robot_.arguments().launch.viscous)
         return robot_.stored_header().relaxation_time < 0 ? springs.template add_all<Viscosity::by_material>()
@@ -304,11 +298,9 @@ class RobotStepper {
       return robot_.header().force_scale;
   }
 
-  // The sum above `bias`.
-  __device__ static Vec3 sum_of(const Mass<Memory>& mass, int bias, float inverse_scale) {
-    return {static_cast<float>(mass.sum(0) - bias) * inverse_scale,
-            static_cast<float>(mass.sum(1) - bias) * inverse_scale,
-            static_cast<float>(mass.sum(2) - bias) * inverse_scale};
+  __device__ static Vec3 sum_of(const Mass<Memory>& mass, float inverse_scale) {
+    return {static_cast<float>(mass.sum(0)) * inverse_scale, static_cast<float>(mass.sum(1)) * inverse_scale,
+            static_cast<float>(mass.sum(2)) * inverse_scale};
   }
 
   __device__ void report_failure(std::uint32_t step, Phase phase, std::uint32_t mass) {
@@ -325,21 +317,9 @@ class RobotStepper {
     }
   }
 
-  // What end() needs of this thread's mass in a tile.
-  struct InDeviceMemory {
-    PointProperties point;
-    std::uint32_t incoming = 0;
-  };
-  __device__ InDeviceMemory in_device_memory(std::uint32_t tile) const {
-    tile = min(tile, batch().tile_stride - 1);  // it is loaded one tile ahead
-    InDeviceMemory found{point_at(tile)};
-    if constexpr (solver == Solver::force) found.incoming = robot_.incoming_count(tile);
-    return found;
-  }
-
   const Robot robot_;
   const EnvironmentModel& model_;
-  InDeviceMemory next_;
+  PointProperties next_point_;  // of the tile that end() comes to next
   // Kernels of real bodies have no register left for a pair, and would wait to store it elsewhere.
   FacePass<!EnvironmentModel::real_bodies> faces_;
   ContactPass<Robot> contacts_;

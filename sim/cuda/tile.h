@@ -33,9 +33,14 @@ namespace mercury::cuda {
 inline constexpr std::uint32_t lanes = 32;
 inline constexpr std::uint32_t field_bytes = lanes * 4;
 
-// Rows of springs that a warp loads and computes together. After the rows of the last robot come as many unused ones,
-// since a warp reads ahead.
-inline constexpr int rows_at_once = 4;
+// Rows of springs that a warp loads and computes together: a group (layout.h). After the groups of the last robot comes
+// an unused one, since a warp reads ahead.
+inline constexpr std::uint32_t rows_at_once = 4;
+constexpr std::size_t words_of_group(std::uint32_t record_words) {
+  return std::size_t{rows_at_once} * lanes * record_words;
+}
+
+MERCURY_HOST_DEVICE constexpr std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return (a + b - 1) / b; }
 
 enum Field : std::uint32_t { field_x = 0, field_v = 3, field_sum = 6, field_valence = 9 };
 
