@@ -106,8 +106,7 @@ class SpringPass {
     constexpr SpringWalk walk{
         .keeps_loads_above = solver == Solver::xpbd || EnvironmentModel::real_bodies || Memory::in_parts ||
                              std::is_same_v<Lengths, typename Robot::AnyLengths>,
-        .groups_per_turn =
-            solver == Solver::xpbd || EnvironmentModel::real_bodies || Memory::in_parts || has_contacts ? 2 : 1};
+        .groups_per_turn = solver == Solver::xpbd || EnvironmentModel::real_bodies || has_contacts ? 2 : 1};
     robot_.template walk_springs<walk>(
         [&](std::uint32_t tile, const Mass<Memory>& mass, const SlotRows& rows) {
           Owner owner{mass.vector(field_x), own_valence(tile, mass), rows.bias, rows.bias, rows.bias, {}};
