@@ -26,6 +26,12 @@ class OnChip {
   __device__ static void store(Address at, std::uint32_t offset, float value) {
     asm volatile("st.shared.f32 [%0], %1;" ::"r"(at + offset), "f"(value));
   }
+  // Returns the old value.
+  __device__ static int exchange(Address at, std::uint32_t offset, int value) {
+    int old;
+    asm volatile("atom.shared.exch.b32 %0, [%1], %2;" : "=r"(old) : "r"(at + offset), "r"(value));
+    return old;
+  }
   __device__ static void add(Address at, std::uint32_t offset, int value) {
     asm volatile("red.shared.add.s32 [%0], %1;" ::"r"(at + offset), "r"(value));
   }
@@ -118,6 +124,12 @@ class OffChip {
   __device__ static void store(Address at, std::uint32_t offset, float value) {
     *reinterpret_cast<volatile float*>(at + offset) = value;
   }
+  __device__ static int exchange(Address at, std::uint32_t offset, int value) {
+    volatile int& stored = *reinterpret_cast<volatile int*>(at + offset);
+    const int old = stored;
+    stored = value;
+    return old;
+  }
   __device__ static void add(Address at, std::uint32_t offset, int value) {
     atomicAdd(reinterpret_cast<int*>(at + offset), value);
   }
@@ -161,8 +173,10 @@ struct Mass {
   __device__ float value(std::uint32_t field) const { return Memory::load(at, field * field_bytes); }
   __device__ void set_value(std::uint32_t field, float value) const { Memory::store(at, field * field_bytes, value); }
 
-  // The sum of forces or corrections, in units of fixed point.
-  __device__ int sum(std::uint32_t axis) const { return __float_as_int(value(field_sum + axis)); }
+  // The sum of forces or corrections, in units of fixed point; it begins again at 0.
+  __device__ int take_sum(std::uint32_t axis) const {
+    return Memory::exchange(at, (field_sum + axis) * field_bytes, 0);
+  }
   __device__ void set_sum(int sum) const {
     for (std::uint32_t axis = 0; axis < 3; ++axis) set_value(field_sum + axis, __int_as_float(sum));
   }

@@ -40,7 +40,7 @@ class SpringPass {
   // padding included [m2].
   template <Viscosity viscosity>
   __device__ float add_all() const {
-    if constexpr (Memory::on_chip && !Memory::in_parts && !EnvironmentModel::real_bodies && Robot::has_length_table)
+    if constexpr (Memory::on_chip && !EnvironmentModel::real_bodies && Robot::has_length_table)
       if (robot_.has_three_lengths()) return add_all<viscosity>(robot_.three_lengths());
     return add_all<viscosity>(typename Robot::AnyLengths{robot_});
   }
@@ -106,7 +106,8 @@ class SpringPass {
     constexpr SpringWalk walk{
         .keeps_loads_above = solver == Solver::xpbd || EnvironmentModel::real_bodies || Memory::in_parts ||
                              std::is_same_v<Lengths, typename Robot::AnyLengths>,
-        .groups_per_turn = solver == Solver::xpbd || EnvironmentModel::real_bodies || has_contacts ? 2 : 1};
+        .groups_per_turn =
+            Memory::in_parts || solver == Solver::xpbd || EnvironmentModel::real_bodies || has_contacts ? 2 : 1};
     robot_.template walk_springs<walk>(
         [&](std::uint32_t tile, const Mass<Memory>& mass, const SlotRows& rows) {
           Owner owner{mass.vector(field_x), own_valence(tile, mass), rows.bias, rows.bias, rows.bias, {}};

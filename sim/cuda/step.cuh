@@ -100,7 +100,6 @@ class RobotStepper {
         const Vec3 v = mass.vector(field_v);
         const Vec3 force = sum_of(mass, inverse_scale);
         mass.set_vector(field_v, accelerated(v, acceleration(force, v, point_at(tile)), constants()));
-        mass.set_sum(0);
       }
     }
   }
@@ -114,7 +113,6 @@ class RobotStepper {
       const Mass<Memory> mass = robot_.own_mass(tile);
       const Vec3 v = mass.vector(field_v);
       const Vec3 predicted = accelerated(v, acceleration(sum_of(mass, inverse_scale), v, point_at(tile)), constants());
-      mass.set_sum(0);
       store(step, phase_prediction, tile, multiply_add(constants().dt, predicted, mass.vector(field_x)), predicted);
     }
   }
@@ -174,7 +172,6 @@ class RobotStepper {
         x = x + correction;
         v = multiply_add(constants().inverse_dt, correction, v);
       }
-      mass.set_sum(0);
       if constexpr (EnvironmentModel::real_bodies)
         end_step(x, v, point.inverse_inertia, model_, end_constants());
       else
@@ -299,8 +296,8 @@ class RobotStepper {
   }
 
   __device__ static Vec3 sum_of(const Mass<Memory>& mass, float inverse_scale) {
-    return {static_cast<float>(mass.sum(0)) * inverse_scale, static_cast<float>(mass.sum(1)) * inverse_scale,
-            static_cast<float>(mass.sum(2)) * inverse_scale};
+    return {static_cast<float>(mass.take_sum(0)) * inverse_scale, static_cast<float>(mass.take_sum(1)) * inverse_scale,
+            static_cast<float>(mass.take_sum(2)) * inverse_scale};
   }
 
   __device__ void report_failure(std::uint32_t step, Phase phase, std::uint32_t mass) {
