@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,7 +25,6 @@ namespace mercury {
 namespace {
 
 constexpr std::int64_t sample_every = 50;
-constexpr std::size_t samples_per_call = 65536;  // of all robots
 
 using Robots = std::vector<std::shared_ptr<const Robot>>;
 
@@ -62,11 +62,12 @@ void measure(const Configuration& configuration, const Robots& robots, std::int6
     hashes = now;
     return seconds;
   };
-  const auto at_once =
-      sample_every * static_cast<std::int64_t>(std::max<std::size_t>(1, samples_per_call / robots.size()));
   const auto sampled = [&] {
-    for (std::int64_t left = steps; left > 0; left -= at_once)
-      (void)simulation.step_and_sample(std::min(left, at_once), sample_every);
+    std::size_t seen = 0;
+    simulation.step_and_sample(steps, sample_every,
+                               [&](std::span<const Telemetry> samples) { seen += samples.size(); });
+    if (seen != robots.size() * static_cast<std::size_t>(steps / sample_every))
+      throw std::runtime_error("some samples are missing");
   };
   const auto one_by_one = [&] {
     for (std::int64_t left = steps; left > 0; left -= sample_every) {

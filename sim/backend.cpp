@@ -102,14 +102,16 @@ void Backend::put_at_rest(std::span<const Robot* const> robots, std::size_t firs
 
 bool Backend::measure_inversion(std::span<const BodyCells* const> /*cells*/) { return false; }
 
-void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
-                              std::span<RobotStatus> statuses) {
-  const std::size_t robots = samples.size() / static_cast<std::size_t>(steps / every);
+void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, const VisitReports& visit) {
+  std::vector<RobotStatus> present = statuses();
+  std::vector<Telemetry> telemetry(present.size());
   Clock now = clock;
-  for (std::size_t first = 0; first < samples.size(); first += robots) {
+  while (now.step < clock.step + steps) {
     step(now, every);
     now.step += every;
-    report(now, samples.subspan(first, robots), statuses.subspan(first, robots));
+    std::ranges::fill(telemetry, Telemetry{});
+    report(now, telemetry, present);
+    visit(telemetry, present);
   }
 }
 

@@ -15,7 +15,6 @@ namespace {
 
 // Of a call of step() [s]. On a GPU each call ends with some robots stepping alone, so calls are longer there.
 constexpr double cpu_call = 0.1, cuda_call = 0.3;
-constexpr std::size_t most_samples = 1u << 16;  // of all robots in a call
 
 double size_of(const Robot& robot) { return static_cast<double>(robot.springs.size() + robot.masses.size()); }
 
@@ -140,9 +139,11 @@ void PortionTrial::step(std::int64_t steps) {
 }
 
 void PortionTrial::step_and_observe(std::int64_t steps) {
-  std::vector<Telemetry> samples;
-  timed(steps, [&] { samples = simulation_.step_and_sample(steps, sample_every_); });
-  observe(samples, sample_every_);
+  timed(steps, [&] {
+    simulation_.step_and_sample(steps, sample_every_,
+                                [&](std::span<const Telemetry> samples) { observe(samples, sample_every_); });
+  });
+  observed_ = steps_done();
 }
 
 template <class Call>
@@ -162,23 +163,23 @@ void PortionTrial::timed(std::int64_t steps, Call call) {
 }
 
 std::int64_t PortionTrial::steps_per_call() const {
-  const std::size_t samples = std::max<std::size_t>(1, most_samples / simulation_.size());
-  const double most = request_.sample_every > 0 ? static_cast<double>(samples * request_.sample_every) : 1e15;
-  return static_cast<std::int64_t>(std::clamp(pace_.springs_and_masses / size_, 1.0, most));
+  return static_cast<std::int64_t>(std::clamp(pace_.springs_and_masses / size_, 1.0, 1e15));
 }
 
 double PortionTrial::seconds(std::int64_t steps) const {
   return simulation_.configuration().dt * static_cast<double>(steps);
 }
 
-void PortionTrial::observe_now() { observe(simulation_.telemetry(), steps_done() - observed_); }
+void PortionTrial::observe_now() {
+  observe(simulation_.telemetry(), steps_done() - observed_);
+  observed_ = steps_done();
+}
 
 void PortionTrial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
   const std::size_t robots = measures_.size();
   parallel_for(0, robots, [&](std::size_t i) {
     for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds(steps));
   });
-  observed_ = steps_done();
 }
 
 // Asks about every robot. A check between two samples is a sample for the robots that it removes, and none for the

@@ -72,7 +72,7 @@ struct TrialContext {
 // Work per call of step(), so that a call takes a tenth of a second on the CPU and a third on a GPU. It adapts to the
 // device from call to call, and a worker keeps it from trial to trial.
 struct StepPace {
-  explicit StepPace(bool on_gpu) : springs_and_masses(on_gpu ? 2e9 : 2e7) {}
+  explicit StepPace(bool on_gpu) : springs_and_masses(on_gpu ? 1e10 : 2e7) {}
   double springs_and_masses;
 };
 

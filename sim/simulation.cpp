@@ -378,28 +378,37 @@ void Simulation::step_in_stream(std::int64_t steps, void* cuda_stream) {
 }
 
 std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int64_t every) {
+  std::vector<Telemetry> all;
+  if (every > 0 && steps > 0) all.reserve(static_cast<std::size_t>(steps / every) * size());
+  step_and_sample(steps, every,
+                  [&](std::span<const Telemetry> samples) { all.insert(all.end(), samples.begin(), samples.end()); });
+  return all;
+}
+
+void Simulation::step_and_sample(std::int64_t steps, std::int64_t every,
+                                 const std::function<void(std::span<const Telemetry>)>& visit) {
   if (every <= 0 || steps < 0 || steps % every != 0)
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
-  std::vector<Telemetry> samples(static_cast<std::size_t>(steps / every) * size());
   // These may need the positions between samples.
-  if (parts_->reads_posture() || parts_->host_thinks() || parts_->pushes_within(steps)) {
-    for (std::size_t first = 0; first < samples.size(); first += size()) {
+  if (size() > 0 && (parts_->reads_posture() || parts_->host_thinks() || parts_->pushes_within(steps))) {
+    for (std::int64_t left = steps; left > 0; left -= every) {
       step(every);
-      std::ranges::copy(telemetry(), samples.begin() + static_cast<std::ptrdiff_t>(first));
+      visit(telemetry());
     }
-    if (samples.empty()) parts_->clock.step += steps;
-    return samples;
+    return;
   }
-  std::vector<RobotStatus> statuses(samples.size());
-  if (!samples.empty()) {
+  if (size() > 0 && steps > 0) {
     parts_->before_step();
-    parts_->backend->step_and_report(parts_->clock, steps, every, samples, statuses);
+    parts_->backend->step_and_report(parts_->clock, steps, every,
+                                     [&](std::span<Telemetry> samples, std::span<const RobotStatus> statuses) {
+                                       for (std::size_t first = 0; first < samples.size(); first += size())
+                                         for (std::size_t i = 0; i < size(); ++i)
+                                           parts_->add_explosion(samples[first + i], i, statuses[first + i]);
+                                       visit(samples);
+                                     });
     parts_->after_change();
   }
   parts_->clock.step += steps;
-  for (std::size_t first = 0; first < samples.size(); first += size())
-    for (std::size_t i = 0; i < size(); ++i) parts_->add_explosion(samples[first + i], i, statuses[first + i]);
-  return samples;
 }
 
 void Simulation::reset() {

@@ -263,24 +263,34 @@ class SplitBackend final : public Backend {
     });
   }
 
-  // Parts do not wait for each other between samples.
-  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
-                       std::span<RobotStatus> statuses) override {
-    const auto portions = static_cast<std::size_t>(steps / every);
-    for_each_part([&](std::size_t p) {
-      const std::size_t robots = shares_.size(p);
-      std::vector<Telemetry> share(portions * robots);
-      std::vector<RobotStatus> share_statuses(share.size());
-      parts_[p]->step_and_report(clock, steps, every, share, share_statuses);
-      for (std::size_t i = 0; i < portions; ++i) {
-        scatter<Telemetry>(p, std::span(share).subspan(i * robots, robots), samples.subspan(i * shares_.size()));
-        scatter<RobotStatus>(p, std::span(share_statuses).subspan(i * robots, robots),
-                             statuses.subspan(i * shares_.size()));
-      }
-    });
+  // Parts do not wait for each other between the samples that are visited together.
+  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, const VisitReports& visit) override {
+    const auto at_once = static_cast<std::int64_t>(std::max<std::size_t>(1, most_reports / shares_.size()));
+    std::vector<Telemetry> all;
+    std::vector<RobotStatus> all_statuses;
+    Clock now = clock;
+    for (std::int64_t left = steps / every; left > 0; left -= at_once) {
+      const std::int64_t reports = std::min(left, at_once);
+      all.assign(static_cast<std::size_t>(reports) * shares_.size(), {});
+      all_statuses.resize(all.size());
+      for_each_part([&](std::size_t p) {
+        std::size_t first = 0;  // of the part's next reports
+        parts_[p]->step_and_report(now, reports * every, every, [&](auto samples, auto statuses) {
+          const std::size_t robots = shares_.size(p);
+          for (std::size_t i = 0; i < samples.size(); i += robots, first += shares_.size()) {
+            scatter<Telemetry>(p, samples.subspan(i, robots), std::span(all).subspan(first));
+            scatter<RobotStatus>(p, statuses.subspan(i, robots), std::span(all_statuses).subspan(first));
+          }
+        });
+      });
+      visit(all, all_statuses);
+      now.step += reports * every;
+    }
   }
 
  private:
+  static constexpr std::size_t most_reports = std::size_t{1} << 16;  // of all robots, at a time
+
   Backend& part_of(std::size_t robot) const { return *parts_[shares_.place(robot).part]; }
   std::size_t index_in_part(std::size_t robot) const { return shares_.place(robot).index; }
 

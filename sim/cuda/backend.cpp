@@ -231,6 +231,9 @@ bool CudaBackend::measure_inversion(std::span<const BodyCells* const> cells) {
   begin_change();
   owned_->robot_cells = {};
   if (places_.empty() || cells.empty()) return true;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] && cells[i]->size() > most_cells_per_slot * class_of(i).robot(places_[i].number).masses.size())
+      return false;
   std::vector<std::uint32_t> first(cells.size() + 1);
   for (std::size_t i = 0; i < cells.size(); ++i)
     first[i + 1] = first[i] + (cells[i] ? static_cast<std::uint32_t>(cells[i]->size()) : 0);
@@ -239,8 +242,7 @@ bool CudaBackend::measure_inversion(std::span<const BodyCells* const> cells) {
   parallel_for(0, cells.size(), [&](std::size_t i) {
     const auto [size_class, number] = places_[i];
     RobotCells& robot = robots[first_report_[size_class] + number];
-    robot = {owned_->classes[size_class].robot_view(number).state, first[i], first[i + 1] - first[i],
-             std::numeric_limits<double>::quiet_NaN()};
+    robot = {first[i], first[i + 1] - first[i], std::numeric_limits<double>::quiet_NaN()};
     if (!cells[i]) return;
     robot.volume = robot.count > 0 ? cells[i]->volume() : 1;
     const SlotOrder& order = owned_->classes[size_class].order_of(number);

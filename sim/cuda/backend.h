@@ -17,6 +17,7 @@
 // 3. Functions that use arrays of the program and take no stream behave as if in the legacy default stream.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -60,8 +61,7 @@ class CudaBackend final : public Backend {
 
   // Time (backend_steps.cpp).
   void step(const Clock& clock, std::int64_t steps) override;
-  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, std::span<Telemetry> samples,
-                       std::span<RobotStatus> statuses) override;
+  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, const VisitReports& visit) override;
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override;
   void step_in_stream(const Clock& clock, std::int64_t steps, const PublishedArrays& arrays,
                       void* cuda_stream) override;
@@ -98,9 +98,14 @@ class CudaBackend final : public Backend {
     std::vector<DrivenMaterial> driven;    // what these drive
     DeviceBrains brains;                   // none think if it is empty
     MappedArray<DeviceTelemetry> reports;  // of the current state if report_valid_
-    MappedArray<DeviceTelemetry> samples;  // of step_and_report(): of two portions
-    Event reported[2]{Event(Event::sleepy), Event(Event::sleepy)};  // the ends of these
-    Stream reporting{true};                                         // waits for them
+    // Of step_and_report(): some portions, that one of them which the host reads, their ends, and a stream that waits
+    // for these.
+    MappedArray<DeviceTelemetry> samples;
+    std::vector<Telemetry> portion;
+    std::vector<RobotStatus> portion_statuses;
+    std::array<Event, 4> reported{Event(Event::sleepy), Event(Event::sleepy), Event(Event::sleepy),
+                                  Event(Event::sleepy)};
+    Stream reporting{true};
   };
 
   const SizeClasses& classes() const { return owned_->classes; }
@@ -144,8 +149,14 @@ class CudaBackend final : public Backend {
   // joins.
   void fork_launches(const Clock& clock, cudaStream_t stream) const;
   void join_launches(cudaStream_t stream) const;
-  // Queues launches of all classes. `report` = null or one element per robot, for after the last step.
-  void launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream,
+  // Reports of all robots to make: one after each `every` steps, of which there is a whole number, or, if that is 0,
+  // one without a step.
+  struct ReportPlan {
+    DeviceTelemetry* first = nullptr;  // [report][robot], or null
+    std::int64_t every = 0;
+  };
+  // Queues launches of all classes.
+  void launch(const Clock& clock, std::int64_t steps, const ReportPlan& plan, cudaStream_t stream,
               bool early = false) const;
   // fork_launches() and join_launches() in main(), with the time in between.
   void begin_launches(const Clock& clock) const;

@@ -10,12 +10,12 @@
 namespace mercury::cuda {
 namespace {
 
-// Keeps launches so short that the same GPU can serve a display.
-constexpr std::int64_t max_steps_per_launch = 2000;
+// Keeps launches so short that the same GPU can serve a display, and that classes of a mixed batch fill what others
+// leave idle at the ends of theirs.
+constexpr std::int64_t most_steps_alone = 2000, most_steps_beside_others = 500;
 
-// Reports that step_and_report() makes before it reads them, while the next ones are made: few enough to stay in the
-// cache, enough that launches are queued far ahead.
-constexpr std::size_t most_reports = std::size_t{1} << 15;
+// Reports of a portion of step_and_report(): few enough that those of all portions stay in the cache.
+constexpr std::size_t most_reports = std::size_t{1} << 13;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void CudaBackend::step(const Clock& clock, std::int64_t steps) {
   report_valid_ = false;
   actuate_after_caller(clock);
   begin_launches(clock);
-  launch(clock, steps, report, main().get());
+  launch(clock, steps, {.first = report, .every = steps}, main().get());
   end_launches();
   report_valid_ = report != nullptr && steps > 0;
 }
@@ -51,42 +51,52 @@ void CudaBackend::copy_reports(const ReportAt& report_at, std::span<Telemetry> t
   }
 }
 
-// The launches of all portions follow one another in the streams of their classes, without a pause: those of the next
-// portion are queued before the reports of the last one are read. (A kernel that reports on the way was 1 to 6 %
-// slower.)
+// The launches of all portions follow one another in the streams of their classes, without a pause: some are queued
+// before the reports of the first one are read.
 void CudaBackend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every,
-                                  std::span<Telemetry> samples, std::span<RobotStatus> statuses) {
+                                  const VisitReports& visit) {
   if (places_.empty()) return;
   use_device();
   report_valid_ = false;
   const std::size_t robots = places_.size(), all = static_cast<std::size_t>(steps / every);
-  const std::size_t portion = std::clamp(most_reports / robots, std::size_t{1}, all);
+  const std::size_t of_portion = std::clamp(most_reports / robots, std::size_t{1}, all),
+                    portions = (all + of_portion - 1) / of_portion, in_flight = owned_->reported.size();
   MappedArray<DeviceTelemetry>& reports = owned_->samples;
-  if (reports.size() < 2 * portion * robots) reports = MappedArray<DeviceTelemetry>(2 * portion * robots);
-  const auto place_of = [&](std::size_t sample) { return sample % (2 * portion) * robots; };
-  const auto read = [&](std::size_t first, std::size_t end) {
-    owned_->reported[first / portion % 2].synchronize();
-    parallel_for(first, end, [&](std::size_t k) {
-      copy_reports([&](std::size_t i) -> const DeviceTelemetry& { return reports[place_of(k) + i]; },
-                   samples.subspan(k * robots, robots), statuses.subspan(k * robots, robots));
-    });
-  };
-  Clock now = clock;
-  actuate_after_caller(clock);
-  begin_launches(clock);
-  for (std::size_t first = 0; first < all; first += portion) {
-    const std::size_t end = std::min(first + portion, all);
-    for (std::size_t k = first; k < end; ++k, now.step += every)
-      launch(now, every, reports.on_device() + place_of(k), main().get());
+  if (reports.size() < in_flight * of_portion * robots)
+    reports = MappedArray<DeviceTelemetry>(in_flight * of_portion * robots);
+  const auto first_of = [&](std::size_t portion) { return portion % in_flight * of_portion * robots; };
+  const auto size_of = [&](std::size_t portion) { return std::min(of_portion, all - portion * of_portion); };
+  const auto start = [&](std::size_t portion) {
+    Clock now = clock;
+    now.step += static_cast<std::int64_t>(portion * of_portion) * every;
+    launch(now, static_cast<std::int64_t>(size_of(portion)) * every,
+           {.first = reports.on_device() + first_of(portion), .every = every}, main().get());
     for (const std::uint32_t c : launch_order_) {
       const SizeClass& of_class = owned_->classes[c];
       of_class.done().record(of_class.stream().get());
       of_class.done().hold(owned_->reporting.get());
     }
-    owned_->reported[first / portion % 2].record(owned_->reporting.get());
-    if (first > 0) read(first - portion, first);
+    owned_->reported[portion % in_flight].record(owned_->reporting.get());
+  };
+  const auto read = [&](std::size_t portion) {
+    std::vector<Telemetry>& samples = owned_->portion;
+    std::vector<RobotStatus>& statuses = owned_->portion_statuses;
+    samples.assign(size_of(portion) * robots, {});
+    statuses.resize(samples.size());
+    owned_->reported[portion % in_flight].synchronize();
+    parallel_for(0, size_of(portion), [&](std::size_t k) {
+      const std::size_t first = first_of(portion) + k * robots;
+      copy_reports([&](std::size_t i) -> const DeviceTelemetry& { return reports[first + i]; },
+                   std::span(samples).subspan(k * robots, robots), std::span(statuses).subspan(k * robots, robots));
+    });
+    visit(samples, statuses);
+  };
+  actuate_after_caller(clock);
+  begin_launches(clock);
+  for (std::size_t portion = 0; portion < portions + in_flight - 1; ++portion) {
+    if (portion < portions) start(portion);
+    if (portion + 1 >= in_flight) read(portion + 1 - in_flight);
   }
-  read((all - 1) / portion * portion, all);
   end_launches();
 }
 
@@ -96,7 +106,7 @@ void CudaBackend::report(const Clock& clock, std::span<Telemetry> telemetry, std
   report_expected_ = true;
   if (!report_valid_) {
     begin_launches(clock);
-    launch(clock, 0, reports_on_device(), main().get());
+    launch(clock, 0, {.first = reports_on_device()}, main().get());
     join_launches(main().get());
     main().synchronize();
     report_valid_ = true;
@@ -114,7 +124,7 @@ void CudaBackend::step_in_stream(const Clock& clock, std::int64_t steps, const P
   const cudaStream_t stream = enter(cuda_stream);
   owned_->actuators.apply(clock, true, stream);
   fork_launches(clock, stream);
-  launch(clock, steps, nullptr, stream, true);
+  launch(clock, steps, {}, stream, true);
   join_launches(stream);
   publish_states(views(), places_.size(), arrays, stream);
   leave(stream);
@@ -156,7 +166,7 @@ void CudaBackend::begin_launches(const Clock& clock) const {
   fork_launches(clock, main().get());
 }
 
-void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry* report, cudaStream_t stream,
+void CudaBackend::launch(const Clock& clock, std::int64_t steps, const ReportPlan& plan, cudaStream_t stream,
                          bool early) const {
   for (const std::uint32_t c : launch_order_) {
     SizeClass& robots = owned_->classes[c];
@@ -166,29 +176,42 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, DeviceTelemetry
                             .stiffness_scale = stiffness_scale_of(configuration_.environment),
                             .launch = robots.launch(),
                             .thoughts = owned_->brains.thoughts(c, configuration_.environment, owned_->actuators)};
+    if (owned_->robot_cells.size() > 0) {
+      arguments.reports.robots = owned_->robot_cells.data() + first_report_[c];
+      arguments.reports.cells = owned_->cells.data();
+    }
+    arguments.reports.stride = static_cast<std::uint32_t>(places_.size());
     const StepModel model = model_for(robots);
     const cudaStream_t of_class = c == launch_order_.front() ? stream : robots.stream().get();
+    // A launch makes the steps of some reports, or some steps of one. Parts make no reports.
+    const std::int64_t most_steps = launch_order_.size() > 1 ? most_steps_beside_others : most_steps_alone;
+    std::int64_t at_once = most_steps;
+    if (plan.first && plan.every > 0)
+      at_once = robots.launch_in_parts() || plan.every > at_once ? plan.every : at_once - at_once % plan.every;
     std::int64_t done = 0;
     do {
+      const std::int64_t count = std::min({steps - done, at_once - done % at_once, most_steps});
       arguments.clock.step = clock.step + done;
-      arguments.steps = static_cast<std::uint32_t>(std::min(steps - done, max_steps_per_launch));
-      arguments.lists_kept = arguments.steps > 0 && robots.keeps_lists();
-      done += arguments.steps;
-      arguments.report = done == steps && report ? report + first_report_[c] : nullptr;
-      if (robots.launch_in_parts() && arguments.steps > 0) {
+      arguments.steps = static_cast<std::uint32_t>(count);
+      arguments.lists_kept = count > 0 && robots.keeps_lists();
+      const std::int64_t reported = plan.every > 0 ? done / plan.every : 0;
+      done += count;
+      const bool reports = plan.first && (plan.every == 0 || done % plan.every == 0);
+      arguments.reports.first =
+          reports ? plan.first + static_cast<std::size_t>(reported) * places_.size() + first_report_[c] : nullptr;
+      arguments.reports.every = static_cast<std::uint32_t>(std::min(plan.every, count));
+      if (robots.launch_in_parts() && count > 0) {
         StepArguments in_parts = arguments;
         in_parts.batch = robots.view_of_parts();
         in_parts.launch = *robots.launch_in_parts();
-        in_parts.report = nullptr;
+        in_parts.reports = {};
         launch_steps(configuration_.solver, model_in_parts(robots), in_parts, early, of_class);
-        if (!arguments.report) continue;
+        if (!reports) continue;
         arguments.clock.step += std::exchange(arguments.steps, 0);
+        arguments.reports.every = 0;
       }
       launch_steps(configuration_.solver, model, arguments, early, of_class);
     } while (done < steps);
-    if (report && owned_->robot_cells.size() > 0)
-      report_inversion(owned_->robot_cells.data() + first_report_[c], robots.size(), owned_->cells.data(),
-                       report + first_report_[c], of_class);
   }
 }
 

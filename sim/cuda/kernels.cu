@@ -5,7 +5,6 @@
 
 #include "sim/cuda/early_start.cuh"
 #include "sim/physics/actuation.h"
-#include "sim/physics/inversion.h"
 
 namespace mercury::cuda {
 namespace {
@@ -92,30 +91,6 @@ __global__ void __launch_bounds__(threads)
   if (threadIdx.x == 0) *robot.status = {-1, no_mass};
 }
 
-// One warp per robot. Volumes are added in the order of the cells, as on the host.
-__global__ void __launch_bounds__(many_threads)
-    inversion_kernel(const RobotCells* robots, std::size_t count, const DeviceCell* cells, DeviceTelemetry* reports) {
-  const std::size_t i = blockIdx.x * std::size_t{many_threads / lanes} + threadIdx.x / lanes;
-  if (i >= count) return;
-  const RobotCells robot = robots[i];
-  double inverted = 0;
-  for (std::uint32_t first = 0; first < robot.count; first += lanes) {
-    const DeviceCell* const these = cells + robot.first + first;
-    const std::uint32_t lane = threadIdx.x % lanes;
-    const auto corner = [&](int k) {
-      const float* const x = robot.state + offset_of_slot(these[lane].corners[k], state_fields);
-      return Double3(Vec3{x[0], x[lanes], x[2 * lanes]});
-    };
-    bool is_inverted = false;
-    if (first + lane < robot.count)
-      is_inverted =
-          these[lane].corners[4] == DeviceCell::no_corner ? is_inverted_tetrahedron(corner) : is_inverted_voxel(corner);
-    for (std::uint32_t left = __ballot_sync(0xffffffffu, is_inverted); left != 0; left &= left - 1)
-      inverted += static_cast<double>(these[__ffs(static_cast<int>(left)) - 1].volume);
-  }
-  if (threadIdx.x % lanes == 0) reports[i].inverted = static_cast<float>(inverted / robot.volume);
-}
-
 __global__ void readdress_kernel(std::uint32_t* records, std::size_t count, std::uint32_t record_words,
                                  std::uint32_t old_fields, std::uint32_t new_fields) {
   for (std::size_t i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x; i < count;
@@ -197,12 +172,6 @@ void put_masked_at_rest(const RobotView* robots, std::size_t count, const float*
   if (count == 0) return;
   rest_kernel<<<static_cast<unsigned>(count), threads, 0, stream>>>(robots, start, mask);
   check(cudaGetLastError(), "putting robots at rest");
-}
-
-void report_inversion(const RobotCells* robots, std::size_t count, const DeviceCell* cells, DeviceTelemetry* reports,
-                      cudaStream_t stream) {
-  inversion_kernel<<<blocks_for(count * lanes), many_threads, 0, stream>>>(robots, count, cells, reports);
-  check(cudaGetLastError(), "measuring how bodies are folded");
 }
 
 void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_fields,

@@ -9,7 +9,6 @@
 
 #include "mercury/backend.h"
 #include "sim/cuda/layout.h"
-#include "sim/cuda/telemetry.h"
 
 namespace mercury::cuda {
 
@@ -37,22 +36,6 @@ void publish_states(const RobotView* robots, std::size_t count, const PublishedA
 // velocities of all masses of the batch, [mass][6].
 void put_masked_at_rest(const RobotView* robots, std::size_t count, const float* start, const std::uint8_t* mask,
                         cudaStream_t stream);
-
-// A cell of a body (mercury/folding.h).
-struct DeviceCell {
-  static constexpr std::uint16_t no_corner = 0xffff;
-  std::uint16_t corners[8];  // slots; a tetrahedron has four, and then no_corner
-  float volume;              // at rest [m3]
-};
-// Where the state and the cells of a robot are. Valid until robots come or go.
-struct RobotCells {
-  const float* state;          // as in RobotView
-  std::uint32_t first, count;  // of the cells
-  double volume;               // of all of them [m3]; NaN = not measured
-};
-// Writes DeviceTelemetry::inverted of `count` robots.
-void report_inversion(const RobotCells* robots, std::size_t count, const DeviceCell* cells, DeviceTelemetry* reports,
-                      cudaStream_t stream);
 
 // Rewrites the partners of `count` records for tiles of another number of fields.
 void readdress_partners(std::uint32_t* records, std::size_t count, std::uint32_t record_words, std::uint32_t old_fields,

@@ -47,14 +47,10 @@ class MaterialTable {
       const Material material = materials_[id];
       const MuscleSwing swing = swings_[id];
       const MusclePhase phase = phases_[id];
-      const double stiffness = static_cast<double>(arguments.stiffness_scale) * static_cast<double>(material.stiffness);
-      float value = static_cast<float>(stiffness);
-      if constexpr (solver == Solver::xpbd)
-        value = static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
       // A muscle of frequency 0, as a brain drives it, keeps its length.
       const std::uint32_t moving = __ballot_sync(0xffffffffu, swing.amplitude != 0 && phase.per_step != 0);
       if (lane_ == 0) moving_[chunk] = moving;
-      spread(chunk, {value, factor_at(arguments, swing, phase, 0)});
+      spread(chunk, {coefficient_of(arguments, material), factor_at(arguments, swing, phase, 0)});
     }
     __syncwarp();
   }
@@ -140,14 +136,18 @@ class MaterialTable {
     }
   }
 
-  // Replaces the coefficients, which are not needed after the launch's last step, by the rates of the length factors at
-  // this many steps after the launch's first [1/s].
+  // Replaces the coefficients by the rates of the length factors at this many steps after the launch's first [1/s].
   __device__ void write_rates(const StepArguments& arguments, std::uint32_t step) {
     for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
       const std::uint32_t id = chunk * lanes + lane_;
       spread(chunk, coefficient, muscle_rate(materials_[id], phase_at(phases_[id], now)));
     }
+  }
+  // Puts them back.
+  __device__ void write_coefficients(const StepArguments& arguments) {
+    for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_)
+      spread(chunk, coefficient, coefficient_of(arguments, materials_[chunk * lanes + lane_]));
   }
 
  private:
@@ -162,6 +162,13 @@ class MaterialTable {
       return &Parameters::compliance;
   }();
 
+  __device__ static float coefficient_of(const StepArguments& arguments, const Material& material) {
+    const double stiffness = static_cast<double>(arguments.stiffness_scale) * static_cast<double>(material.stiffness);
+    if constexpr (solver == Solver::force)
+      return static_cast<float>(stiffness);
+    else
+      return static_cast<float>(1 / (stiffness * arguments.clock.dt * arguments.clock.dt));
+  }
   __device__ static float factor_at(const StepArguments& arguments, MuscleSwing swing, MusclePhase phase,
                                     std::uint32_t step) {
     const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;

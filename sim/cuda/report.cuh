@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Telemetry of a robot, computed from the masses in working memory after the last step of a launch.
+// Telemetry of a robot, computed from the masses in working memory between two steps or after the last one of a launch.
 //
 //   begin             each thread   zero, for a word of the staged report
 //   -- barrier --     also after MaterialTable::write_rates()
@@ -8,11 +8,15 @@
 //   -- barrier --
 //   reduce            each warp     some of the quantities, summed over all masses     -> the staged report
 //   -- barrier --
+//   mark_inverted     each warp     which of 32 cells are inside out, if asked for     -> fields of the masses
+//   -- barrier --
+//   sum_inverted      one warp      their volume                                       -> the staged report
+//   -- barrier --
 //   write             each thread   one word of the staged report                      -> host memory
 //
 // 1. The order of every sum of floats depends only on the robot, so telemetry is reproducible too. A maximum and a
 //    number of springs are the same in any order.
-// 2. The sums of fixed point are done with, so their fields hold the results of the first stages. The material table
+// 2. The sums of fixed point are done with, so their fields hold the results of these stages. The material table
 //    has the rates of the muscles where the steps had the coefficients; stiffnesses are read from device memory.
 // 3. The report lies in mapped host memory. Staging it first lets the threads write it in one transaction.
 #pragma once
@@ -22,6 +26,7 @@
 #include "mercury/observables.h"
 #include "sim/cuda/block_robot.cuh"
 #include "sim/cuda/telemetry.h"
+#include "sim/physics/inversion.h"
 #include "sim/physics/springs.h"
 
 namespace mercury::cuda {
@@ -80,6 +85,36 @@ class RobotReporter {
         stage(offsetof(DeviceTelemetry, center_of_mass) + 4 * quantity,
               __float_as_int(static_cast<float>(share * total)));
     }
+  }
+
+  __device__ void mark_inverted(const Reports& reports) const {
+    const RobotCells of_robot = reports.robots[robot_.context().robot];
+    for (std::uint32_t word = robot_.context().warp; word * lanes < of_robot.count; word += robot_.warps()) {
+      const std::uint32_t cell = word * lanes + robot_.context().lane;
+      bool inverted = false;
+      if (cell < of_robot.count) {
+        const DeviceCell& own = reports.cells[of_robot.first + cell];
+        const auto corner = [&](int k) { return Double3(robot_.mass_at(own.corners[k]).vector(field_x)); };
+        inverted =
+            own.corners[4] == DeviceCell::no_corner ? is_inverted_tetrahedron(corner) : is_inverted_voxel(corner);
+      }
+      const std::uint32_t bits = __ballot_sync(0xffffffffu, inverted);
+      if (robot_.context().lane == 0) inverted_cells(word).set_value(field_energy, __uint_as_float(bits));
+    }
+  }
+
+  // Volumes are added in the order of the cells, as on the host.
+  __device__ void sum_inverted(const Reports& reports) const {
+    if (robot_.context().warp != 0) return;
+    const RobotCells of_robot = reports.robots[robot_.context().robot];
+    double inverted = 0;
+    for (std::uint32_t word = 0; word * lanes < of_robot.count; ++word)
+      for (std::uint32_t left = __float_as_uint(inverted_cells(word).value(field_energy)); left != 0;
+           left &= left - 1) {
+        const std::uint32_t cell = word * lanes + static_cast<std::uint32_t>(__ffs(static_cast<int>(left)) - 1);
+        inverted += static_cast<double>(reports.cells[of_robot.first + cell].volume);
+      }
+    stage(offsetof(DeviceTelemetry, inverted), __float_as_int(static_cast<float>(inverted / of_robot.volume)));
   }
 
   __device__ void write(DeviceTelemetry& out) const {
@@ -164,6 +199,8 @@ class RobotReporter {
     return 0.5f * kilograms * multiply_add(v.x, v.x, multiply_add(v.y, v.y, v.z * v.z));
   }
 
+  // Has the bits of 32 cells in field_energy, when energies have been summed.
+  __device__ Mass<Memory> inverted_cells(std::uint32_t word) const { return robot_.mass_at(word); }
   // The word of the staged report at this offset [bytes]: word i lies in field_staged of slot i.
   __device__ Mass<Memory> staged(std::uint32_t offset) const { return {robot_.context().masses + offset}; }
   __device__ void stage(std::uint32_t offset, int word) const {
@@ -191,6 +228,12 @@ __device__ __noinline__ void report(const StepArguments& arguments, ThreadContex
   __syncthreads();
   reporter.reduce();
   __syncthreads();
+  if (arguments.reports.robots) {
+    reporter.mark_inverted(arguments.reports);
+    __syncthreads();
+    reporter.sum_inverted(arguments.reports);
+    __syncthreads();
+  }
   if (out) reporter.write(*out);
 }
 

@@ -40,8 +40,8 @@ struct BlockPart {
       : context(arguments, Robot::fields, thread_index()), materials(table_of(arguments, context)),
         stepper(arguments, ModelOfRobot<Given>::of(model, context.thread.robot), context) {}
 
-  // Threads without a robot, or with one that exploded earlier, skip the work but take part in all barriers.
-  __device__ bool active() const { return context.has_robot && stepper.alive(); }
+  // Threads without a robot, or with one that exploded before the launch, skip the work but take part in all barriers.
+  __device__ bool active() const { return context.has_robot && !context.record->failure.before_launch(); }
 
  private:
   // The compiler takes it for another one each time.
@@ -87,6 +87,25 @@ __device__ std::uint32_t think_if_due(const StepArguments& arguments, const Give
   return end;
 }
 
+// Reports all robots of the block after this number of steps, if that is due.
+template <class Part, class Given>
+__device__ void report_if_due(const StepArguments& arguments, const Given& model, std::uint32_t steps) {
+  if (!arguments.reports.follow(steps)) return;
+  Part part(arguments, model);
+  const auto& thread = part.context.thread;
+  if (part.active()) part.stepper.store_status();
+  if (arguments.launch.apart) __syncthreads();  // all robots' springs are done
+  part.materials.write_rates(arguments, steps);
+  const std::uint32_t table = arguments.launch.shared_table ? 0 : thread.robot;
+  report<typename Part::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
+                               part.context.has_robot ? arguments.reports.after(steps) + thread.robot : nullptr);
+  if (steps == arguments.steps) return;
+  __syncthreads();
+  part.stepper.clear_sums();
+  part.materials.write_coefficients(arguments);
+  __syncthreads();
+}
+
 // Registers are limited so that a multiprocessor holds 28 warps (launch_configuration.cpp).
 template <Solver solver, class Given, class Memory, int record_words>
 __global__ void __maxnreg__(72)
@@ -105,7 +124,8 @@ __global__ void __maxnreg__(72)
       if (launch.viscous) part.materials.fill_relaxation_times(part.context.relaxation_times);
     const ThreadContext<Memory>& thread = part.context.thread;
     if (thread.warp == 0 && thread.lane == 0) {
-      part.context.record->failure = {part.active() ? Failure::never : 0, Failure::never};
+      part.context.record->failure = {part.context.has_robot && part.stepper.alive() ? Failure::never : 0,
+                                      Failure::never};
       if (!Memory::in_parts && arguments.thoughts.thinkers) {
         SplitBarrier(shared_address(&part.context.record->thinking)).begin(launch.warps_per_robot);
         part.context.next_thought[part.context.number] =
@@ -123,10 +143,12 @@ __global__ void __maxnreg__(72)
       complete_brain<Memory>(arguments, part.context.brain, thread.robot);
   }
 
-  for (std::uint32_t step = 0; step < arguments.steps;) {
-    std::uint32_t end = arguments.steps;
+  for (std::uint32_t step = 0;;) {
+    if constexpr (!Memory::in_parts) report_if_due<Part>(arguments, model, step);
+    if (step == arguments.steps) break;
+    std::uint32_t end = arguments.reports.next(step, arguments.steps);
     if constexpr (!Memory::in_parts)
-      if (arguments.thoughts.thinkers) end = think_if_due<Part>(arguments, model, step);
+      if (arguments.thoughts.thinkers) end = min(end, think_if_due<Part>(arguments, model, step));
     float reach = __builtin_huge_valf();
     if constexpr (has_contacts)
       if (launch.contact_buckets > 0) reach = Part(arguments, model).stepper.update_contacts(step);
@@ -167,20 +189,11 @@ __global__ void __maxnreg__(72)
     }
   }
   Part part(arguments, model);
-  const ThreadContext<Memory>& thread = part.context.thread;
-  const bool active = part.active();
-  if (active) part.stepper.store_status();
   if constexpr (has_contacts)
     if (part.context.has_robot && arguments.steps > 0) part.stepper.keep_contacts();
-  if constexpr (!Memory::in_parts)
-    if (arguments.report) {
-      if (launch.apart) __syncthreads();  // all robots' springs are done
-      part.materials.write_rates(arguments, arguments.steps);
-      const std::uint32_t table = launch.shared_table ? 0 : thread.robot;
-      report<typename Part::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
-                                   part.context.has_robot ? arguments.report + thread.robot : nullptr);
-    }
-  if (active) part.stepper.store_state();
+  if (!part.active()) return;
+  part.stepper.store_status();
+  part.stepper.store_state();
 }
 
 // step_model_of() gives all others what is on the chip whole.

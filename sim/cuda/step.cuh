@@ -46,12 +46,17 @@ class RobotStepper {
     }
   }
 
-  // The robot's first thread stores when it exploded, if it did.
+  // The robot's first thread stores when it exploded, if it did in this launch.
   __device__ void store_status() const {
     if (robot_.thread() != 0 || !record_->failure.happened()) return;
     if (robot_.part() != 0) return;  // all parts have the same failure
     batch().statuses[robot_.context().robot] = {robot_.arguments().clock.step + record_->failure.step(),
                                                 record_->failure.bad_mass};
+  }
+
+  // After a report, which uses these fields.
+  __device__ void clear_sums() const {
+    for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) robot_.own_mass(tile).set_sum(0);
   }
 
   // All threads of the block must call these, since they have barriers or are followed by one.

@@ -24,7 +24,7 @@ struct StepArguments {
   std::uint32_t steps = 0;
   bool lists_kept = false;  // the lists of contacts that the last launch left are still of these robots
   LaunchConfiguration launch;
-  DeviceTelemetry* report = nullptr;  // [robot], filled after the last step, unless null
+  Reports reports;
   Thoughts thoughts;
 };
 

@@ -170,6 +170,7 @@ struct Failure {
     }
   }
   __device__ bool happened() const { return when != never; }
+  __device__ bool before_launch() const { return when == 0; }
   __device__ std::uint32_t step() const { return (when - 1) / 4; }
 };
 

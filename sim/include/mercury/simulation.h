@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -99,6 +100,10 @@ class Simulation {
   // The same with the telemetry after every `every` steps: [steps / every][robot], computed on the device. Throws
   // std::invalid_argument unless `every` > 0 divides `steps` >= 0.
   std::vector<Telemetry> step_and_sample(std::int64_t steps, std::int64_t every);
+  // The same with visit(samples), [sample][robot], for all samples in turn, one or more at a time. A GPU steps on
+  // meanwhile, so visit() must not call the simulation, or throw.
+  void step_and_sample(std::int64_t steps, std::int64_t every,
+                       const std::function<void(std::span<const Telemetry>)>& visit);
 
   // The same as step(), queued in a CUDA stream (a cudaStream_t) of cuda_device(), after what is there. What follows
   // in the stream comes after the steps. Returns at once. Robots that no CUDA device holds, or several, are stepped at
