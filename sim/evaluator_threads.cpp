@@ -194,9 +194,10 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Por
 
 void Evaluator::Parts::loaded(DeviceParts& device, const Simulation& simulation) {
   const std::size_t at_once = simulation.robots_at_once();
+  const std::vector<std::string> present = simulation.notes();  // which takes a while
   const std::lock_guard lock(mutex);
   if (at_once > 0) device.robots_at_once = at_once;
-  for (const std::string& note : simulation.notes())
+  for (const std::string& note : present)
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   update_demand();
   portion_waits.notify_all();

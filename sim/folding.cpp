@@ -92,21 +92,6 @@ class Grid {
 }  // namespace
 
 BodyCells::BodyCells(const Robot& robot, MeasuredFolding measured) : measured_(measured) {
-  std::vector<std::uint32_t> pairs;  // in both directions
-  for (const auto& [a, b, material, rest_length] : robot.springs) {
-    pairs.push_back(std::uint32_t{a} << 16 | b);
-    pairs.push_back(std::uint32_t{b} << 16 | a);
-    longest_ = std::max(longest_, rest_length);
-  }
-  std::ranges::sort(pairs);
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());  // clang 14 lacks ranges::unique
-  first_neighbor_.assign(robot.masses.size() + 1, 0);
-  for (const std::uint32_t pair : pairs) {
-    ++first_neighbor_[(pair >> 16) + 1];
-    neighbors_.push_back(static_cast<std::uint16_t>(pair & 0xffff));
-  }
-  for (std::size_t i = 0; i < robot.masses.size(); ++i) first_neighbor_[i + 1] += first_neighbor_[i];
-
   const Voxels voxels = voxels_of(robot);
   for (const Voxel& voxel : voxels.all) {
     voxels_.push_back(voxel.corners);
@@ -117,6 +102,22 @@ BodyCells::BodyCells(const Robot& robot, MeasuredFolding measured) : measured_(m
       const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(first + second);
       tetrahedra_.push_back({c[0], c[a], c[b], c[7]});
     }
+  }
+  if (voxels_.empty() || measured_ == MeasuredFolding::all) {
+    std::vector<std::uint32_t> pairs;  // in both directions
+    for (const auto& [a, b, material, rest_length] : robot.springs) {
+      pairs.push_back(std::uint32_t{a} << 16 | b);
+      pairs.push_back(std::uint32_t{b} << 16 | a);
+      longest_ = std::max(longest_, rest_length);
+    }
+    std::ranges::sort(pairs);
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());  // clang 14 lacks ranges::unique
+    first_neighbor_.assign(robot.masses.size() + 1, 0);
+    for (const std::uint32_t pair : pairs) {
+      ++first_neighbor_[(pair >> 16) + 1];
+      neighbors_.push_back(static_cast<std::uint16_t>(pair & 0xffff));
+    }
+    for (std::size_t i = 0; i < robot.masses.size(); ++i) first_neighbor_[i + 1] += first_neighbor_[i];
   }
   if (voxels_.empty()) find_tetrahedra(robot);
   for (const float volume : volumes_) volume_ += static_cast<double>(volume);

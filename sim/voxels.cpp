@@ -2,10 +2,13 @@
 #include "mercury/voxels.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <map>
-#include <unordered_map>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace mercury {
 namespace {
@@ -28,42 +31,82 @@ std::vector<Place> places_of(const Robot& robot, float edge) {
   return places;
 }
 
+// Distance of coordinates in the key of a place: places are below 1e6 in size.
+constexpr std::int64_t place_bits = 21, first_place = std::int64_t{1} << (place_bits - 1);
+std::uint64_t key_of(const Place& place) {
+  std::uint64_t key = 0;
+  for (const int along : place) key = key << place_bits | static_cast<std::uint64_t>(along + first_place);
+  return key;
+}
+
+// A hash table of numbers, of which many robots are asked for when they are loaded: open addressing, no memory per key.
+class Table {
+ public:
+  explicit Table(std::size_t most)
+      : entries_(std::bit_ceil(2 * most + 2)), shift_(64 - std::countr_zero(entries_.size())) {}
+
+  struct Entry {
+    std::uint64_t key = 0;
+    std::uint16_t value = 0;
+    bool present = false, marked = false;
+  };
+  // The entry of a key, or the one where it would stand.
+  Entry& at(std::uint64_t key) {
+    std::size_t i = (key * 0x9e3779b97f4a7c15u) >> shift_;
+    while (entries_[i].present && entries_[i].key != key) i = (i + 1) & (entries_.size() - 1);
+    return entries_[i];
+  }
+  // Returns false if the key has a value already, which stays.
+  bool insert(std::uint64_t key, std::uint16_t value) {
+    Entry& entry = at(key);
+    if (entry.present) return false;
+    entry = {key, value, true};
+    return true;
+  }
+
+ private:
+  std::vector<Entry> entries_;
+  int shift_;
+};
+
 }  // namespace
 
 Voxels voxels_of(const Robot& robot) {
   Voxels voxels;
   if (robot.springs.empty()) return voxels;
   voxels.edge = std::ranges::min(robot.springs, {}, &Spring::rest_length).rest_length;
-  std::unordered_map<std::uint32_t, MaterialId> materials;
-  for (const Spring& spring : robot.springs) materials.emplace(pair_of(spring.a, spring.b), spring.material);
-  voxels.shares_pairs = materials.size() != robot.springs.size();
+  Table joined(robot.springs.size());  // material by pair of masses
+  std::size_t pairs = 0;
+  for (const Spring& spring : robot.springs)
+    pairs += joined.insert(pair_of(spring.a, spring.b), spring.material) ? 1 : 0;
+  voxels.shares_pairs = pairs != robot.springs.size();
   const std::vector<Place> places = places_of(robot, voxels.edge);
-  std::map<Place, std::uint16_t> points;
+  Table masses(places.size());  // by place
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (!points.emplace(places[i], static_cast<std::uint16_t>(i)).second) return voxels;
-  std::vector<std::uint32_t> covered;
+    if (!masses.insert(key_of(places[i]), static_cast<std::uint16_t>(i))) return voxels;
+  std::size_t covered = 0;
   for (const Place& low : places) {
     Voxel voxel;
     bool complete = true;
     for (std::size_t corner = 0; corner < 8 && complete; ++corner) {
-      const auto found =
-          points.find({low[0] + (corner & 1 ? 1 : 0), low[1] + (corner & 2 ? 1 : 0), low[2] + (corner & 4 ? 1 : 0)});
-      complete = found != points.end();
-      if (complete) voxel.corners[corner] = found->second;
+      const Place place{low[0] + (corner & 1 ? 1 : 0), low[1] + (corner & 2 ? 1 : 0), low[2] + (corner & 4 ? 1 : 0)};
+      const Table::Entry& found = masses.at(key_of(place));
+      complete = found.present;
+      voxel.corners[corner] = found.value;
     }
-    if (!complete) continue;
-    for_each_pair_of_corners([&](std::size_t i, std::size_t j) {
-      complete = complete && materials.contains(pair_of(voxel.corners[i], voxel.corners[j]));
-    });
+    const auto spring_between = [&](std::size_t i, std::size_t j) -> Table::Entry& {
+      return joined.at(pair_of(voxel.corners[i], voxel.corners[j]));
+    };
+    if (complete)
+      for_each_pair_of_corners(
+          [&](std::size_t i, std::size_t j) { complete = complete && spring_between(i, j).present; });
     if (!complete) continue;
     for_each_pair_of_corners(
-        [&](std::size_t i, std::size_t j) { covered.push_back(pair_of(voxel.corners[i], voxel.corners[j])); });
-    voxel.material = materials.at(pair_of(voxel.corners[0], voxel.corners[7]));
+        [&](std::size_t i, std::size_t j) { covered += std::exchange(spring_between(i, j).marked, true) ? 0 : 1; });
+    voxel.material = static_cast<MaterialId>(spring_between(0, 7).value);
     voxels.all.push_back(voxel);
   }
-  std::ranges::sort(covered);
-  covered.erase(std::unique(covered.begin(), covered.end()), covered.end());  // clang 14 lacks ranges::unique
-  if (covered.size() != materials.size()) voxels.all.clear();
+  if (covered != pairs) voxels.all.clear();
   return voxels;
 }
 

@@ -5,7 +5,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "sim/physics/contact.h"
 #include "sim/physics/environments.h"
@@ -21,23 +24,34 @@ constexpr float elastic_reach = stretch_limit + 2;
 // The smallest distance at rest of two masses that no spring joins, or `radius` if that is smaller [m].
 float nearest_apart(const Robot& robot, float radius) {
   const auto key_of = [](std::uint32_t a, std::uint32_t b) { return std::min(a, b) << 16 | std::max(a, b); };
-  std::vector<std::uint32_t> joined;
-  joined.reserve(robot.springs.size());
-  for (const Spring& spring : robot.springs) joined.push_back(key_of(spring.a, spring.b));
-  std::ranges::sort(joined);
+  std::vector<std::uint32_t> joined;  // made when it is needed: most bodies have no masses that near
+  const auto is_joined = [&](std::uint32_t a, std::uint32_t b) {
+    if (joined.empty()) {
+      for (const Spring& spring : robot.springs) joined.push_back(key_of(spring.a, spring.b));
+      std::ranges::sort(joined);
+    }
+    return std::ranges::binary_search(joined, key_of(a, b));
+  };
   const auto points = static_cast<std::uint32_t>(robot.masses.size());
   const std::uint32_t mask = std::bit_ceil(points) - 1;
-  std::vector<std::vector<std::uint32_t>> buckets(mask + 1);
-  const auto cell = [&](std::uint32_t point) { return cell_of(robot.masses[point], 1 / radius); };
-  for (std::uint32_t i = 0; i < points; ++i) buckets[bucket_of(hash_of(cell(i)), mask)].push_back(i);
+  std::vector<Cell> cells;
+  for (const Vec3& x : robot.masses) cells.push_back(cell_of(x, 1 / radius));
+  // The masses of a bucket follow one another.
+  const auto bucket_at = [&](const Cell& cell) { return bucket_of(hash_of(cell), mask); };
+  std::vector<std::uint32_t> ends(mask + 2), sorted(points);
+  for (const Cell& cell : cells) ++ends[bucket_at(cell) + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  for (std::uint32_t i = points; i-- > 0;) sorted[--ends[bucket_at(cells[i]) + 1]] = i;
   float nearest = radius;
   for (std::uint32_t i = 0; i < points; ++i)
     for (int n = 0; n < half_neighborhood; ++n) {
-      const Cell other = cell(i) + neighbor(n);
-      for (const std::uint32_t j : buckets[bucket_of(hash_of(other), mask)]) {
-        if ((n == 0 && j <= i) || !(cell(j) == other)) continue;
+      const Cell other = cells[i] + neighbor(n);
+      const std::uint32_t bucket = bucket_at(other);
+      const std::uint32_t begin = ends[bucket + 1], end = bucket == mask ? points : ends[bucket + 2];
+      for (const std::uint32_t j : std::span(sorted).subspan(begin, end - begin)) {
+        if ((n == 0 && j <= i) || !(cells[j] == other)) continue;
         const float distance = length(robot.masses[j] - robot.masses[i]);
-        if (distance < nearest && !std::ranges::binary_search(joined, key_of(i, j))) nearest = distance;
+        if (distance < nearest && !is_joined(i, j)) nearest = distance;
       }
     }
   return nearest;
@@ -178,7 +192,31 @@ double exceeded_dt(const Robot& robot, const Configuration& configuration) {
   struct Vector {
     double x = 0, y = 0, z = 0;
   };
-  // Powers of the matrix, in coordinates scaled by the roots of the inertias, turn any start to the stiffest vibration.
+  // In coordinates scaled by the roots of the inertias.
+  struct Pull {
+    std::uint16_t a, b;
+    double at_a, at_b;
+    Vector along;  // of length 1
+    double stiffness, viscous, with_damping;
+  };
+  std::vector<Pull> pulls;
+  pulls.reserve(robot.springs.size());
+  for (const Spring& spring : robot.springs) {
+    const Vec3 along = robot.masses[spring.b] - robot.masses[spring.a];
+    const double squared_length = static_cast<double>(dot(along, along));
+    if (!(squared_length > 0)) continue;
+    const double share = 1 / std::sqrt(squared_length), k = stiffness(spring);
+    pulls.push_back({spring.a,
+                     spring.b,
+                     std::sqrt(inverse(spring.a)),
+                     std::sqrt(inverse(spring.b)),
+                     {share * static_cast<double>(along.x), share * static_cast<double>(along.y),
+                      share * static_cast<double>(along.z)},
+                     k,
+                     k * static_cast<double>(materials[spring.material].relaxation_time),
+                     with_damping(spring)});
+  }
+  // Powers of the matrix turn any start to the stiffest vibration.
   std::vector<Vector> u(robot.masses.size()), next(u.size());
   std::uint64_t number = 1;
   const auto random = [&] {
@@ -197,23 +235,16 @@ double exceeded_dt(const Robot& robot, const Configuration& configuration) {
     for (Vector& own : u) own = {norm * own.x, norm * own.y, norm * own.z};
     std::ranges::fill(next, Vector{});
     a = b = 0;
-    for (const Spring& spring : robot.springs) {
-      const Vec3 along = robot.masses[spring.b] - robot.masses[spring.a];
-      const double squared_length = static_cast<double>(dot(along, along));
-      if (!(squared_length > 0)) continue;
-      const double share = 1 / std::sqrt(squared_length);
-      const Vector n{share * static_cast<double>(along.x), share * static_cast<double>(along.y),
-                     share * static_cast<double>(along.z)};
-      const double at_a = std::sqrt(inverse(spring.a)), at_b = std::sqrt(inverse(spring.b));
+    for (const Pull& p : pulls) {
+      const Vector& n = p.along;
       const auto part = [&](const Vector& own) { return own.x * n.x + own.y * n.y + own.z * n.z; };
-      const double longer = at_b * part(u[spring.b]) - at_a * part(u[spring.a]);
-      const double k = stiffness(spring);
-      a += k * longer * longer;
-      b += k * static_cast<double>(materials[spring.material].relaxation_time) * longer * longer;
-      const double pull = with_damping(spring) * longer;
-      Vector &on_a = next[spring.a], &on_b = next[spring.b];
-      on_a = {on_a.x - at_a * pull * n.x, on_a.y - at_a * pull * n.y, on_a.z - at_a * pull * n.z};
-      on_b = {on_b.x + at_b * pull * n.x, on_b.y + at_b * pull * n.y, on_b.z + at_b * pull * n.z};
+      const double longer = p.at_b * part(u[p.b]) - p.at_a * part(u[p.a]);
+      a += p.stiffness * longer * longer;
+      b += p.viscous * longer * longer;
+      const double pull = p.with_damping * longer;
+      Vector &on_a = next[p.a], &on_b = next[p.b];
+      on_a = {on_a.x - p.at_a * pull * n.x, on_a.y - p.at_a * pull * n.y, on_a.z - p.at_a * pull * n.z};
+      on_b = {on_b.x + p.at_b * pull * n.x, on_b.y + p.at_b * pull * n.y, on_b.z + p.at_b * pull * n.z};
     }
     std::swap(u, next);
   }
