@@ -11,8 +11,9 @@
 #include <set>
 #include <span>
 #include <string>
-#include <unordered_map>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "mercury/error.h"
 #include "mercury/number_text.h"
@@ -48,17 +49,22 @@ void drop_cavities(Robot& robot) {
     while (shell[f] != f) f = shell[f] = shell[shell[f]];
     return f;
   };
-  std::unordered_map<std::uint32_t, std::vector<std::size_t>> faces_at;  // by edge
+  std::vector<std::pair<std::uint32_t, std::size_t>> sides;  // edge, face
   for (std::size_t f = 0; f < robot.faces.size(); ++f) {
     const auto [a, b, c] = robot.faces[f];
-    for (const std::uint32_t edge : {pair_of(a, b), pair_of(b, c), pair_of(c, a)}) faces_at[edge].push_back(f);
+    for (const std::uint32_t edge : {pair_of(a, b), pair_of(b, c), pair_of(c, a)}) sides.emplace_back(edge, f);
   }
+  std::ranges::sort(sides);
   // Where more than two faces meet, shells touch without being one.
-  for (const auto& [edge, faces] : faces_at)
-    if (faces.size() == 2) shell[root(faces[0])] = root(faces[1]);
+  for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
+    while (end < sides.size() && sides[end].first == sides[first].first) ++end;
+    if (end - first == 2) shell[root(sides[first].second)] = root(sides[first + 1].second);
+  }
+  bool is_one_shell = true;
+  for (std::size_t f = 0; f < shell.size(); ++f) is_one_shell = is_one_shell && root(f) == root(0);
+  if (is_one_shell) return;
   std::map<std::size_t, Robot> shells;
   for (std::size_t f = 0; f < robot.faces.size(); ++f) shells[root(f)].faces.push_back(robot.faces[f]);
-  if (shells.size() < 2) return;
   std::set<std::size_t> cavities;
   for (auto& [first, part] : shells) {
     part.masses = robot.masses;
@@ -108,28 +114,25 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
   // By the number of axes along which a spring runs: an edge, a diagonal across a side, one through the middle.
   constexpr std::array<double, 4> share{0, 0.15, 0.10, 0.15};
   constexpr std::array<const char*, 4> kind{"", "edge", "side", "middle"};
-  struct Spot {
+  // A spring of one voxel. Those of several that lie between the same masses become one per material.
+  struct Part {
     std::uint32_t pair;
     MaterialId material;
-    auto operator<=>(const Spot&) const = default;
-  };
-  struct Shared {
-    unsigned axes = 0;
-    int voxels = 0;
+    unsigned axes;
+    auto operator<=>(const Part&) const = default;
   };
   std::vector<MaterialId> of_voxels;
   for (const Voxel& voxel : voxels.all) of_voxels.push_back(voxel.material);
   const std::vector<Substance> substances = substances_of(robot, material, of_voxels);
-  std::map<Spot, Shared> spots;
+  std::vector<Part> parts;
   std::vector<double> density_at(robot.masses.size());  // of all voxels there
   for (const auto& [corners, id] : voxels.all) {
     for (const std::uint16_t corner : corners) density_at[corner] += substances[id].density;
     for_each_pair_of_corners([&, &corners = corners, id = id](std::size_t i, std::size_t j) {
-      Shared& shared = spots[{pair_of(corners[i], corners[j]), id}];
-      shared.axes = static_cast<unsigned>(std::popcount(i ^ j));
-      ++shared.voxels;
+      parts.push_back({pair_of(corners[i], corners[j]), id, static_cast<unsigned>(std::popcount(i ^ j))});
     });
   }
+  std::ranges::sort(parts);
   const double edge = static_cast<double>(voxels.edge);
   real.mass.clear();
   for (const double density : density_at) real.mass.push_back(static_cast<float>(density * edge * edge * edge / 8));
@@ -138,23 +141,25 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
   real.material_names.assign(1, "air");
   std::map<std::tuple<MaterialId, unsigned, int>, MaterialId> ids;
   real.springs.clear();
-  for (const auto& [spot, shared] : spots) {
-    const auto [entry, is_new] =
-        ids.try_emplace({spot.material, shared.axes, shared.voxels}, static_cast<MaterialId>(real.materials.size()));
+  for (auto part = parts.begin(); part != parts.end();) {
+    const auto [pair, id, axes] = *part;
+    const auto next = std::find_if(part, parts.end(), [&](const Part& other) { return other != *part; });
+    const auto shared = static_cast<int>(next - part);  // by as many voxels
+    part = next;
+    const auto [entry, is_new] = ids.try_emplace({id, axes, shared}, static_cast<MaterialId>(real.materials.size()));
     if (is_new) {
       if (real.materials.size() == max_materials)
         throw InputError("/materials", "the voxels have too many materials for one table of springs");
-      Material own = table[spot.material];
-      const Substance& substance = substances[spot.material];
-      own.stiffness = static_cast<float>(shared.voxels * share[shared.axes] * substance.modulus * edge);
+      Material own = table[id];
+      const Substance& substance = substances[id];
+      own.stiffness = static_cast<float>(shared * share[axes] * substance.modulus * edge);
       own.relaxation_time = static_cast<float>(substance.relaxation_time);
       real.materials.push_back(own);
-      real.material_names.push_back(name_of_material(robot, spot.material) + ", " + std::to_string(shared.voxels) +
-                                    " x " + kind[shared.axes]);
+      real.material_names.push_back(name_of_material(robot, id) + ", " + std::to_string(shared) + " x " + kind[axes]);
     }
-    const auto length = static_cast<float>(edge * std::sqrt(static_cast<double>(shared.axes)));
-    real.springs.push_back({static_cast<std::uint16_t>(spot.pair >> 16), static_cast<std::uint16_t>(spot.pair & 0xffff),
-                            entry->second, length});
+    const auto length = static_cast<float>(edge * std::sqrt(static_cast<double>(axes)));
+    real.springs.push_back(
+        {static_cast<std::uint16_t>(pair >> 16), static_cast<std::uint16_t>(pair & 0xffff), entry->second, length});
   }
   std::multimap<MaterialId, MaterialId> made;
   for (const auto& [of, id] : ids) made.emplace(std::get<0>(of), id);
