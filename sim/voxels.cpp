@@ -31,7 +31,7 @@ std::vector<Place> places_of(const Robot& robot, float edge) {
   return places;
 }
 
-// Distance of coordinates in the key of a place: places are below 1e6 in size.
+// Bits of a coordinate in the key of a place, and what is added so that it is not negative. Coordinates are within 1e6.
 constexpr std::int64_t place_bits = 21, first_place = std::int64_t{1} << (place_bits - 1);
 std::uint64_t key_of(const Place& place) {
   std::uint64_t key = 0;
@@ -39,7 +39,8 @@ std::uint64_t key_of(const Place& place) {
   return key;
 }
 
-// A hash table of numbers, of which many robots are asked for when they are loaded: open addressing, no memory per key.
+// A hash table with open addressing: thousands of robots are looked at when they are loaded, and memory per key would
+// take most of the time.
 class Table {
  public:
   explicit Table(std::size_t most)

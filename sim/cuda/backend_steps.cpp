@@ -93,9 +93,14 @@ void CudaBackend::step_and_report(const Clock& clock, std::int64_t steps, std::i
   };
   actuate_after_caller(clock);
   begin_launches(clock);
-  for (std::size_t portion = 0; portion < portions + in_flight - 1; ++portion) {
-    if (portion < portions) start(portion);
-    if (portion + 1 >= in_flight) read(portion + 1 - in_flight);
+  try {
+    for (std::size_t portion = 0; portion < portions + in_flight - 1; ++portion) {
+      if (portion < portions) start(portion);
+      if (portion + 1 >= in_flight) read(portion + 1 - in_flight);
+    }
+  } catch (...) {
+    end_launches();  // nobody may free what they use before
+    throw;
   }
   end_launches();
 }
@@ -183,8 +188,8 @@ void CudaBackend::launch(const Clock& clock, std::int64_t steps, const ReportPla
     arguments.reports.stride = static_cast<std::uint32_t>(places_.size());
     const StepModel model = model_for(robots);
     const cudaStream_t of_class = c == launch_order_.front() ? stream : robots.stream().get();
-    // A launch makes the steps of some reports, or some steps of one. Parts make no reports.
     const std::int64_t most_steps = launch_order_.size() > 1 ? most_steps_beside_others : most_steps_alone;
+    // A launch makes the steps of some reports, or some steps of one. Parts make no reports.
     std::int64_t at_once = most_steps;
     if (plan.first && plan.every > 0)
       at_once = robots.launch_in_parts() || plan.every > at_once ? plan.every : at_once - at_once % plan.every;

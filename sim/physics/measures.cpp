@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,19 +35,16 @@ float nearest_apart(const Robot& robot, float radius) {
   const std::uint32_t mask = std::bit_ceil(points) - 1;
   std::vector<Cell> cells;
   for (const Vec3& x : robot.masses) cells.push_back(cell_of(x, 1 / radius));
-  // The masses of a bucket follow one another.
-  const auto bucket_at = [&](const Cell& cell) { return bucket_of(hash_of(cell), mask); };
-  std::vector<std::uint32_t> ends(mask + 2), sorted(points);
-  for (const Cell& cell : cells) ++ends[bucket_at(cell) + 1];
-  std::partial_sum(ends.begin(), ends.end(), ends.begin());
-  for (std::uint32_t i = points; i-- > 0;) sorted[--ends[bucket_at(cells[i]) + 1]] = i;
+  std::vector<std::vector<std::uint32_t>> buckets(mask + 1);
+  const auto bucket_at = [&](const Cell& cell) -> std::vector<std::uint32_t>& {
+    return buckets[bucket_of(hash_of(cell), mask)];
+  };
+  for (std::uint32_t i = 0; i < points; ++i) bucket_at(cells[i]).push_back(i);
   float nearest = radius;
   for (std::uint32_t i = 0; i < points; ++i)
     for (int n = 0; n < half_neighborhood; ++n) {
       const Cell other = cells[i] + neighbor(n);
-      const std::uint32_t bucket = bucket_at(other);
-      const std::uint32_t begin = ends[bucket + 1], end = bucket == mask ? points : ends[bucket + 2];
-      for (const std::uint32_t j : std::span(sorted).subspan(begin, end - begin)) {
+      for (const std::uint32_t j : bucket_at(other)) {
         if ((n == 0 && j <= i) || !(cells[j] == other)) continue;
         const float distance = length(robot.masses[j] - robot.masses[i]);
         if (distance < nearest && !is_joined(i, j)) nearest = distance;
