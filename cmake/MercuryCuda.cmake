@@ -42,6 +42,9 @@ else()
     set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real 90 CACHE STRING "CUDA architectures")
   endif()
   enable_language(CUDA)
+  # nvcc's own choice makes a program half as large again.
+  include(CheckCompilerFlag)
+  check_compiler_flag(CUDA -compress-mode=size MERCURY_NVCC_COMPRESSES)
   if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
     # CMake 3.25 does not know that nvcc has C++20 since CUDA 12.
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
