@@ -165,6 +165,43 @@ double xpbd_softening(const Robot& robot, const Configuration& configuration) {
          configuration.dt;
 }
 
+namespace {
+
+// At most how strongly the springs of a mass hold it if its partners stay: with n along a spring of strength k and K =
+// sum k n n' for each mass, the largest eigenvalue of any K, or a little more. No eigenvalue of the whole body is
+// larger than twice that, since (n.u_a - n.u_b)^2 <= 2 (n.u_a)^2 + 2 (n.u_b)^2.
+template <class Strength>
+double strongest_hold(const Robot& robot, const Strength& strength) {
+  struct Symmetric {
+    double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+  };
+  std::vector<Symmetric> holds(robot.masses.size());
+  for (const Spring& spring : robot.springs) {
+    const Vec3 d = robot.masses[spring.b] - robot.masses[spring.a];
+    const double x = static_cast<double>(d.x), y = static_cast<double>(d.y), z = static_cast<double>(d.z);
+    const double squared = x * x + y * y + z * z;
+    if (!(squared > 0)) continue;
+    for (const std::uint16_t mass : {spring.a, spring.b}) {
+      const double k = strength(spring, mass) / squared;
+      Symmetric& hold = holds[mass];
+      hold.xx += k * x * x;
+      hold.yy += k * y * y;
+      hold.zz += k * z * z;
+      hold.xy += k * x * y;
+      hold.xz += k * x * z;
+      hold.yz += k * y * z;
+    }
+  }
+  double most = 0;
+  for (const Symmetric& hold : holds) {
+    const double xy = std::abs(hold.xy), xz = std::abs(hold.xz), yz = std::abs(hold.yz);
+    most = std::max({most, hold.xx + xy + xz, hold.yy + xy + yz, hold.zz + xz + yz});
+  }
+  return most;
+}
+
+}  // namespace
+
 double exceeded_dt(const Robot& robot, const Configuration& configuration) {
   constexpr double none = std::numeric_limits<double>::infinity();
   if (configuration.solver != Solver::force) return none;
@@ -184,6 +221,10 @@ double exceeded_dt(const Robot& robot, const Configuration& configuration) {
     for (const std::uint16_t mass : {spring.a, spring.b}) sums[mass] += with_damping(spring) * inverse(mass);
   const auto bound = [&](const Spring& spring) { return sums[spring.a] + sums[spring.b]; };
   if (std::ranges::all_of(robot.springs, [&](const Spring& spring) { return bound(spring) < 4; })) return none;
+  if (2 * strongest_hold(
+              robot, [&](const Spring& spring, std::uint16_t mass) { return with_damping(spring) * inverse(mass); }) <
+      4)
+    return none;
 
   struct Vector {
     double x = 0, y = 0, z = 0;
