@@ -7,7 +7,8 @@
 //
 // 1. One thread makes pieces of consecutive robots, each on all cores unless the source is serial. A piece is complete
 //    when it has as many robots as usual (fewer toward the end if there are several devices), when a device has too
-//    little to do and the piece is not tiny, or when its share of the memory is used up.
+//    little to do and the piece is not tiny, or when its share of the memory is used up. While no device has started,
+//    the thread also prepares the robots for it.
 // 2. Each device has several workers, each with a simulation of its own: while the robots of one are stepped, those of
 //    another are loaded. A worker takes several pieces as one portion (evaluator_threads.cpp).
 // 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
@@ -28,6 +29,7 @@
 #include <vector>
 
 #include "mercury/evaluator.h"
+#include "mercury/prepared_robots.h"
 #include "mercury/simulation.h"
 #include "sim/evaluator_portion.h"
 #include "sim/evaluator_trial.h"
@@ -70,20 +72,24 @@ struct Evaluator::Parts {
 
   // Of the maker.
   bool is_large_enough(std::size_t first, std::size_t robots) const;
+  // Until a device has started.
+  void prepare(const std::vector<std::shared_ptr<const Robot>>& robots);
   bool is_made() const;             // all robots that are known so far; locked
   bool may_make() const;            // to be called with the mutex locked, as all functions below that are marked so
   std::size_t piece_bytes() const;  // locked
 
   // Of the workers.
   int workers_of(const DeviceParts& device) const;
-  void device_started(DeviceParts& device, const Simulation& simulation);
+  void device_started(DeviceParts& device, const Backend& backend);
   std::size_t robots_that_fill(const DeviceParts& device) const;    // locked
   std::size_t largest_portion_of(const DeviceParts& device) const;  // locked
   bool may_take(const DeviceParts& device) const;                   // locked
   Portion next_portion(const DeviceParts& device);                  // locked
   std::optional<Portion> take(DeviceParts& device);
-  void evaluate(DeviceParts& device, Simulation& simulation, Portion portion, StepPace& pace);
-  void loaded(DeviceParts& device, const Simulation& simulation);
+  // `backend` is the simulation's.
+  void evaluate(DeviceParts& device, Simulation& simulation, const Backend& backend, Portion portion, StepPace& pace);
+  void loaded(DeviceParts& device, const Backend& backend);
+  void add_notes(const std::vector<std::string>& lines);
   void finish(DeviceParts& device, const Portion& portion, FinishedPortion result);
   void add_load_times(const LoadTimes& before, const LoadTimes& after);
 
@@ -97,6 +103,7 @@ struct Evaluator::Parts {
   const EvaluationRequest request;
   const RobotSource source;
   const std::size_t memory_limit;
+  std::shared_ptr<PreparedRobots> prepared;  // null if the devices need none; set before the threads start
 
   std::atomic<std::size_t> count;  // changes with the mutex locked
 
@@ -120,6 +127,7 @@ struct Evaluator::Parts {
 
   std::atomic<std::size_t> end;
   std::atomic<bool> stopping = false;
+  std::atomic<bool> may_prepare = false;       // no device has started, and one needs prepared robots
   std::atomic<std::size_t> memory_in_use = 0;  // by portions and results that are not yet yielded
   std::atomic<std::size_t> largest_robot = 0;  // [bytes]
   std::atomic<std::size_t> piece_robots = 0;   // wanted per piece, at most

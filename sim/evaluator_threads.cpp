@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The threads of an evaluator, see evaluator_parts.h.
 #include <algorithm>
+#include <future>
 #include <thread>
 #include <utility>
 
+#include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/host_memory.h"
+#include "mercury/parallel.h"
 #include "sim/devices.h"
 #include "sim/evaluator_parts.h"
+#include "sim/robot_notes.h"
 
 namespace mercury {
 namespace {
@@ -49,6 +53,8 @@ Evaluator::Parts::~Parts() {
 
 void Evaluator::Parts::start(std::vector<MakeBackend> given) {
   const bool are_known = !given.empty() || request.configuration.device.kind == DeviceKind::cpu || !built_with_cuda();
+  if (given.empty() && request.configuration.device.kind != DeviceKind::cpu) prepared = prepare_for_cuda();
+  may_prepare = prepared != nullptr;
   if (are_known) start_devices(given);
   maker = std::thread([this] { make_portions(); });
   // To look for CUDA devices can take a while; robots are made meanwhile.
@@ -63,12 +69,15 @@ void Evaluator::Parts::start_devices(const std::vector<MakeBackend>& given) {
       for (const Device& device : single_devices(request.configuration.device)) {
         DeviceParts& parts = found.emplace_back();
         parts.is_cpu = device.kind == DeviceKind::cpu;
-        parts.make_backend = [device] { return make_backend(device); };
+        parts.make_backend = [this, device] {
+          return device.kind == DeviceKind::cuda ? make_cuda_backend(device, prepared) : make_backend(device);
+        };
       }
     {
       const std::lock_guard lock(mutex);
       devices.swap(found);
       devices_are_known = true;
+      if (std::ranges::all_of(devices, &DeviceParts::is_cpu)) may_prepare = false;
       update_demand();
       maker_may_go_on.notify_one();
     }
@@ -99,17 +108,22 @@ void Evaluator::Parts::make_portions() {
       std::optional<UnionClock::Interval> interval(std::in_place, making);
       Portion portion = make_portion(source, first, known, limits, request.serial_source, largest_robot);
       interval.reset();
-      const std::lock_guard lock(mutex);
-      if (limits.canceled()) break;
-      const bool made_known = first + portion.candidates.size() == known;
-      is_complete = portion.candidates.empty() || (portion.is_last && !(request.grows && made_known));
-      first += portion.candidates.size();
-      made += portion.candidates.size();
-      memory_in_use += portion.bytes();
-      waiting_robots += portion.candidates.size();
-      if (!portion.candidates.empty()) waiting.push_back(std::move(portion));
-      update_demand();
-      portion_waits.notify_all();
+      std::vector<std::shared_ptr<const Robot>> to_prepare;
+      if (may_prepare) to_prepare = portion.robots();
+      {
+        const std::lock_guard lock(mutex);
+        if (limits.canceled()) break;
+        const bool made_known = first + portion.candidates.size() == known;
+        is_complete = portion.candidates.empty() || (portion.is_last && !(request.grows && made_known));
+        first += portion.candidates.size();
+        made += portion.candidates.size();
+        memory_in_use += portion.bytes();
+        waiting_robots += portion.candidates.size();
+        if (!portion.candidates.empty()) waiting.push_back(std::move(portion));
+        update_demand();
+        portion_waits.notify_all();
+      }
+      prepare(to_prepare);
     }
   } catch (...) {
     fail(first, std::current_exception());
@@ -120,30 +134,39 @@ void Evaluator::Parts::make_portions() {
   notify_all();
 }
 
+void Evaluator::Parts::prepare(const std::vector<std::shared_ptr<const Robot>>& robots) {
+  parallel_for(0, robots.size(), [&](std::size_t i) {
+    if (may_prepare) prepared->prepare(robots[i]);
+  });
+}
+
 // --- The workers
 
 void Evaluator::Parts::work(DeviceParts& device) {
   std::size_t first = 0;
   try {
     std::optional<UnionClock::Interval> interval(std::in_place, starting);
-    Simulation simulation(request.configuration, std::span<const Robot>(), device.make_backend());
+    std::unique_ptr<Backend> made = device.make_backend();
+    const Backend& backend = *made;
+    Simulation simulation(request.configuration, std::span<const Robot>(), std::move(made));
     interval.reset();
-    device_started(device, simulation);
-    StepPace pace(simulation.cuda_device() >= 0);
+    device_started(device, backend);
+    StepPace pace(backend.cuda_device() >= 0);
     while (std::optional<Portion> portion = take(device)) {
       first = portion->first;
-      evaluate(device, simulation, *std::move(portion), pace);
+      evaluate(device, simulation, backend, *std::move(portion), pace);
     }
   } catch (...) {
     fail(first, std::current_exception());
   }
 }
 
-void Evaluator::Parts::device_started(DeviceParts& device, const Simulation& simulation) {
-  const int cuda = simulation.cuda_device();
+void Evaluator::Parts::device_started(DeviceParts& device, const Backend& backend) {
+  const int cuda = backend.cuda_device();
   const std::size_t free = cuda >= 0 ? free_cuda_memory(cuda) : unknown_count;
   const std::lock_guard lock(mutex);
-  device.name = simulation.device_name();
+  device.name = backend.device_name();
+  may_prepare = false;
   portion_bytes = std::min(portion_bytes, free / static_cast<std::size_t>(workers_of(device) + 1));
   update_demand();
   device_has_started.notify_all();
@@ -165,7 +188,8 @@ std::optional<Portion> Evaluator::Parts::take(DeviceParts& device) {
   return portion;
 }
 
-void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Portion portion, StepPace& pace) {
+void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, const Backend& backend, Portion portion,
+                                StepPace& pace) {
   const std::size_t first = portion.first;
   const TrialContext context{.canceled = [&] { return first >= end; },
                              .stopping = [&] { return stopping.load(); },
@@ -178,7 +202,12 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Por
     std::optional<UnionClock::Interval> interval(std::in_place, loading);
     load(simulation, portion);
     interval.reset();
-    loaded(device, simulation);
+    loaded(device, backend);
+    // The robots are looked at while they are stepped.
+    std::future<void> noting;
+    if (request.notes)
+      noting = std::async(std::launch::async,
+                          [this, robots = portion.robots()] { add_notes(robot_notes(robots, request.configuration)); });
     PortionTrial trial(simulation, request, context, pace, portion);
     if (!stopping && trial.run()) {
       interval.emplace(reading);
@@ -186,21 +215,26 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, Por
     }
     add_load_times(before, simulation.load_times());
     simulation.keep({});
+    if (noting.valid()) noting.get();
   }
   // From here on, only the results hold the robots.
   for (Candidate& candidate : portion.candidates) candidate.robot.reset();
   finish(device, portion, std::move(result));
 }
 
-void Evaluator::Parts::loaded(DeviceParts& device, const Simulation& simulation) {
-  const std::size_t at_once = simulation.robots_at_once();
-  const std::vector<std::string> present = simulation.notes();  // which takes a while
+void Evaluator::Parts::loaded(DeviceParts& device, const Backend& backend) {
+  const std::size_t at_once = backend.robots_at_once();
+  if (request.notes) add_notes(backend.notes());
   const std::lock_guard lock(mutex);
   if (at_once > 0) device.robots_at_once = at_once;
-  for (const std::string& note : present)
-    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
   update_demand();
   portion_waits.notify_all();
+}
+
+void Evaluator::Parts::add_notes(const std::vector<std::string>& lines) {
+  const std::lock_guard lock(mutex);
+  for (const std::string& line : lines)
+    if (std::ranges::find(notes, line) == notes.end()) notes.push_back(line);
 }
 
 void Evaluator::Parts::add_load_times(const LoadTimes& before, const LoadTimes& after) {
@@ -265,8 +299,9 @@ void Evaluator::Parts::notify_all() {
 // How many robots an evaluator makes at a time, and which worker takes how many of them. Results do not depend on it.
 //
 // A GPU needs many robots at the same time: most robots are too small to use much of it alone, and their steps take as
-// long whether it is full or not. So a device that is not full takes what there is, at once; one that is full waits
-// until there is a large portion for the time after. The first portions are small, so that stepping begins early.
+// long whether it is full or not. So an idle device takes what there is, at once; one that is not full waits for twice
+// as many robots as it has, so that its workers do not all have small portions while many robots wait; one that is full
+// waits until there is a large portion for the time after. The first portions are small, so that stepping begins early.
 
 int Evaluator::Parts::workers_of(const DeviceParts& device) const {
   return request.workers > 0 ? request.workers : device.is_cpu ? cpu_workers : cuda_workers;
@@ -350,7 +385,8 @@ bool Evaluator::Parts::may_take(const DeviceParts& device) const {
   if (request.portion > 0 || device.portions_in_hand == 0) return true;
   if (!device.is_cpu && device.robots_at_once == 0) return device.portions_in_hand < portions_at_start;
   const std::size_t fill = robots_that_fill(device);
-  if (device.robots_in_hand < fill) return true;
+  const std::size_t larger = std::min(2 * device.robots_in_hand, largest_portion_of(device));
+  if (device.robots_in_hand < fill) return is_made() || waiting_robots >= larger;
   return device.robots_in_hand < 2 * fill && (is_made() || waiting_robots >= largest_portion_of(device));
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -15,7 +15,7 @@
 #include "mercury/parallel.h"
 #include "mercury/stopwatch.h"
 #include "mercury/work_counter.h"
-#include "sim/physics/measures.h"
+#include "sim/robot_notes.h"
 #include "sim/simulation_parts.h"
 
 namespace mercury {
@@ -225,46 +225,10 @@ std::span<const std::size_t> Simulation::mass_offsets() const { return parts_->o
 std::string Simulation::device_name() const { return parts_->backend->device_name(); }
 std::vector<std::string> Simulation::notes() const {
   std::vector<std::string> notes = parts_->backend->notes();
-  for (std::string note : {parts_->softening_note(), parts_->stability_note()})
-    if (!note.empty()) notes.push_back(std::move(note));
+  std::ranges::move(robot_notes(parts_->robots, parts_->configuration), std::back_inserter(notes));
   return notes;
 }
 
-std::string Simulation::Parts::softening_note() const {
-  if (configuration.solver != Solver::xpbd) return {};
-  constexpr double allowed = 0.05;
-  std::vector<double> softening(size());
-  parallel_for(0, size(), [&](std::size_t i) {
-    const bool known = i > 0 && robots[i] == robots[i - 1];
-    softening[i] = known ? 0 : xpbd_softening(*robots[i], configuration);
-  });
-  const double most = softening.empty() ? 0 : std::ranges::max(softening);
-  if (most <= allowed) return {};
-  const double dt = configuration.dt * std::sqrt(allowed / most);
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "XPBD makes the stiffest spring %.2g times as stiff at this time step as it is; %.1g s or --substeps %d "
-      "would be within 5 %%",
-      1 / (1 + most), dt, static_cast<int>(std::min(1e6, std::ceil(configuration.dt / dt))));
-  return text;
-}
-std::string Simulation::Parts::stability_note() const {
-  std::vector<double> allowed(size(), std::numeric_limits<double>::infinity());
-  parallel_for(0, size(), [&](std::size_t i) {
-    if (i == 0 || robots[i] != robots[i - 1]) allowed[i] = exceeded_dt(*robots[i], configuration);
-  });
-  const auto least = std::ranges::min_element(allowed);
-  if (least == allowed.end() || std::isinf(*least)) return {};
-  const std::string& name = robots[static_cast<std::size_t>(least - allowed.begin())]->name;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "%.60s vibrates too fast for this time step, %.3g s: the force solver is stable up to %.2g s; give a "
-                "shorter one, or --substeps %d",
-                name.empty() ? "a robot" : name.c_str(), configuration.dt, *least,
-                static_cast<int>(std::min(1e6, std::floor(configuration.dt / *least) + 1)));
-  return text;
-}
 std::size_t Simulation::robots_at_once() const { return parts_->backend->robots_at_once(); }
 double Simulation::spring_limit() const { return parts_->backend->spring_limit(); }
 double Simulation::busy_seconds() const { return parts_->backend->busy_seconds(); }

@@ -107,9 +107,6 @@ struct Simulation::Parts {
   void advance(std::int64_t steps);
   // To be called before the backend steps, and after it has changed the state. Returns how many steps it may take.
   std::int64_t before_step();
-  // Says that XPBD softens springs by more than a twentieth; empty if it does not.
-  std::string softening_note() const;
-  std::string stability_note() const;
   void after_change() const { shared_state.publish(*backend, pointers); }
   // Gives the backend the environments of robots that have their own.
   void write_environments();

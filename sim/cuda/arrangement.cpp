@@ -67,13 +67,18 @@ Arrangement arrange(const Robot& robot, std::span<const FacePair> pairs, std::ui
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {
   std::vector<std::uint64_t> keys(robots.size());
-  parallel_for(0, robots.size(), [&](std::size_t i) { keys[i] = topology_key(*robots[i]); });
+  const auto is_repeated = [&](std::size_t i) { return i > 0 && robots[i] == robots[i - 1]; };
+  parallel_for(0, robots.size(), [&](std::size_t i) {
+    if (!is_repeated(i)) keys[i] = topology_key(*robots[i]);
+  });
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    if (is_repeated(i)) keys[i] = keys[i - 1];
   std::unordered_map<std::uint64_t, std::uint32_t> first_of_key;
   for (std::uint32_t i = 0; i < robots.size(); ++i) first_of_key.try_emplace(keys[i], i);
   std::vector<std::uint32_t> first(robots.size());
   parallel_for(0, robots.size(), [&](std::size_t i) {
     const std::uint32_t candidate = first_of_key.at(keys[i]);
-    const bool same = candidate == i || same_topology(*robots[candidate], *robots[i]);
+    const bool same = robots[candidate] == robots[i] || same_topology(*robots[candidate], *robots[i]);
     first[i] = same ? candidate : static_cast<std::uint32_t>(i);
   });
   return first;

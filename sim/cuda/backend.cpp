@@ -17,7 +17,8 @@
 namespace mercury {
 namespace cuda {
 
-CudaBackend::CudaBackend(const Device& device) : device_(device.index) {
+CudaBackend::CudaBackend(const Device& device, std::shared_ptr<ArrangedRobots> arranged)
+    : device_(device.index), arranged_(std::move(arranged)) {
   const int count = cuda_device_count();
   if (count == 0) throw DeviceError("no CUDA device was found; use the device \"cpu\"");
   if (device_ >= count)
@@ -72,7 +73,7 @@ void CudaBackend::load(std::span<const Robot* const> robots, const Configuration
 void CudaBackend::add(std::span<const Robot* const> robots, std::size_t first_new) {
   begin_exchange();
   const std::vector<Place> places =
-      add_robots(owned_->classes, robots.subspan(first_new), configuration_, load_times_, watch_);
+      add_robots(owned_->classes, robots.subspan(first_new), configuration_, arranged_.get(), load_times_, watch_);
   places_.insert(places_.end(), places.begin(), places.end());
   number_masses(robots);
   choose_launches();
@@ -323,6 +324,10 @@ void CudaBackend::number_masses(std::span<const Robot* const> robots) {
 
 }  // namespace cuda
 
-std::unique_ptr<Backend> make_cuda_backend(const Device& device) { return std::make_unique<cuda::CudaBackend>(device); }
+std::unique_ptr<Backend> make_cuda_backend(const Device& device) { return make_cuda_backend(device, nullptr); }
+
+std::unique_ptr<Backend> make_cuda_backend(const Device& device, std::shared_ptr<PreparedRobots> prepared) {
+  return std::make_unique<cuda::CudaBackend>(device, std::dynamic_pointer_cast<cuda::ArrangedRobots>(prepared));
+}
 
 }  // namespace mercury

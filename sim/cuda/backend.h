@@ -32,7 +32,8 @@ namespace mercury::cuda {
 
 class CudaBackend final : public Backend {
  public:
-  explicit CudaBackend(const Device& device);
+  // `arranged` may be null.
+  CudaBackend(const Device& device, std::shared_ptr<ArrangedRobots> arranged);
   ~CudaBackend() override;
 
   std::string device_name() const override { return name_; }
@@ -167,6 +168,7 @@ class CudaBackend final : public Backend {
   void copy_reports(const ReportAt& report_at, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const;
 
   int device_;
+  std::shared_ptr<ArrangedRobots> arranged_;
   std::string name_;
   std::unique_ptr<Owned> owned_;
   std::vector<Place> places_;                                   // [robot]

@@ -26,7 +26,8 @@ void put(std::span<T> chunk, std::span<const Value> values) {
 
 }  // namespace
 
-Chunks::Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory) : sizes_(sizes) {
+Chunks::Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory, std::uint32_t fields)
+    : sizes_(sizes), fields_(fields) {
   const auto take = [&]<class T>(std::span<T>& buffer, std::size_t stride) {
     buffer = {reinterpret_cast<T*>(memory), robots * stride};
     memory += buffer.size_bytes();
@@ -48,13 +49,18 @@ void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangem
   fill_springs(k, robot, schedule);
   put(chunk(valences, k, sizes_.slots()), std::span<const std::uint32_t>(schedule.valences));
   fill_rows(chunk(groups, k, sizes_.tiles), chunk(rows, k, sizes_.slots()), schedule);
-  put(chunk(face_pairs, k, sizes_.face_pairs), std::span(arrangement.faces));
+  const auto addressed = [&](std::uint16_t slot) { return static_cast<std::uint16_t>(offset_of_slot(slot, fields_)); };
+  const std::span<FacePair> pairs = chunk(face_pairs, k, sizes_.face_pairs);
+  const auto rest = std::ranges::transform(arrangement.faces, pairs.begin(), [&](const FacePair& p) {
+                      return FacePair{addressed(p.a), addressed(p.b), addressed(p.c), addressed(p.d)};
+                    }).out;
+  std::fill(rest, pairs.end(), FacePair{});
 }
 
 void Chunks::fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule) {
   const RestLengths rest = sizes_.record_words == 1 ? rest_lengths(robot) : RestLengths{};
   if (sizes_.record_words == 1) put(chunk(lengths, k, max_lengths), std::span<const float>(rest.table));
-  fill_records(chunk(springs, k, sizes_.springs()), robot, schedule, rest);
+  fill_records(chunk(springs, k, sizes_.springs()), robot, schedule, rest, {.fields = fields_});
 }
 
 std::uint32_t groups_of(const Schedule& schedule) {

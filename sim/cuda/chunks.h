@@ -30,10 +30,11 @@ struct ChunkSizes {
 // Chunks of some consecutive robots, in memory that somebody else owns. The members are as in BatchView.
 class Chunks {
  public:
-  // `memory` = robots * sizes.bytes() bytes, aligned for all members.
-  Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory);
+  // `memory` = robots * sizes.bytes() bytes, aligned for all members. Masses are addressed by offset_of_slot() with
+  // `fields`.
+  Chunks(const ChunkSizes& sizes, std::size_t robots, std::byte* memory, std::uint32_t fields);
 
-  // Fills the chunks of robot k of these. Partners are slots. Safe to call for several robots at once.
+  // Fills the chunks of robot k of these. Safe to call for several robots at once.
   void fill(std::size_t k, const Robot& robot, const Arrangement& arrangement);
 
   std::span<FacePair> face_pairs;
@@ -46,6 +47,7 @@ class Chunks {
   void fill_springs(std::size_t k, const Robot& robot, const Schedule& schedule);
 
   ChunkSizes sizes_;
+  std::uint32_t fields_;
 };
 
 // How spring records name springs, partners and materials.

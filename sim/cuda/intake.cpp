@@ -32,19 +32,26 @@ struct NewRobot {
 
 class Intake {
  public:
-  Intake(SizeClasses& classes, std::span<const Robot* const> robots, LoadTimes& times, const WorkWatch& watch)
-      : classes_(classes), times_(times), watch_(watch), new_robots_(robots.size()), arrangements_(robots.size()),
-        users_(robots.size()), order_(robots.size()) {
+  Intake(SizeClasses& classes, std::span<const Robot* const> robots, const Configuration& configuration,
+         ArrangedRobots* arranged, LoadTimes& times, const WorkWatch& watch)
+      : classes_(classes), configuration_(configuration), times_(times), watch_(watch), new_robots_(robots.size()),
+        arrangements_(robots.size()), users_(robots.size()), order_(robots.size()) {
     const Stopwatch stopwatch(times_.schedule);
     const std::vector<std::uint32_t> first = first_of_topology(robots);
+    const auto is_repeated = [&](std::size_t i) { return i > 0 && robots[i] == robots[i - 1]; };
     parallel_for(0, robots.size(), [&](std::size_t i) {
+      if (is_repeated(i)) return;
       new_robots_[i] = {robots[i], measure(*robots[i]), record_words_for(*robots[i]), {}, first[i]};
+      if (arranged && first[i] == i) arrangements_[i] = arranged->take(*robots[i]);
     });
-    for (const std::uint32_t f : first) ++users_[f];
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      if (is_repeated(i)) new_robots_[i] = new_robots_[i - 1];
+      ++users_[first[i]];
+    }
     assign_places();
   }
 
-  void upload(const Configuration& configuration) {
+  void upload() {
     try {
       for (std::size_t first = 0; first < order_.size();) {
         const std::size_t last = end_of_portion(first);
@@ -52,7 +59,7 @@ class Intake {
         first = last;
         if (watch_) watch_("uploading robots", first, order_.size());
       }
-      for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].publish(first_new_[c], configuration);
+      for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].publish(first_new_[c], configuration_);
     } catch (...) {
       for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].truncate(first_new_[c]);
       throw;
@@ -135,18 +142,21 @@ class Intake {
     return runs;
   }
 
+  // Those before it are filled.
+  std::uint32_t first_place_of(const Run& run) const { return new_robots_[run.robots.front()].place.number; }
+
   void upload_chunks(std::span<const std::uint32_t> portion) {
     const Stopwatch stopwatch(times_.upload);
     const std::vector<Run> runs = runs_of(portion);
     std::size_t bytes = 0;
     for (const Run& run : runs) {
-      run.to.make_room(sizes_of(run));
+      run.to.make_room(sizes_of(run), first_place_of(run), configuration_.solver);
       bytes += run.robots.size() * run.to.sizes().bytes();
     }
     if (bytes > memory_.bytes()) memory_ = PinnedBuffer(bytes);
     std::byte* memory = memory_.data();
     for (const Run& run : runs) {
-      Chunks chunks(run.to.sizes(), run.robots.size(), memory);
+      Chunks chunks(run.to.sizes(), run.robots.size(), memory, run.to.address_fields());
       memory += run.robots.size() * run.to.sizes().bytes();
       parallel_for(0, run.robots.size(), [&](std::size_t k) {
         const NewRobot& entry = new_robots_[run.robots[k]];
@@ -154,7 +164,7 @@ class Intake {
         run.to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);
         chunks.fill(k, *entry.robot, arrangement);
       });
-      run.to.write_chunks(new_robots_[run.robots.front()].place.number, chunks);
+      run.to.write_chunks(first_place_of(run), chunks);
     }
     for (const Run& run : runs) run.to.urgent().synchronize();  // `memory_` is free again
   }
@@ -173,6 +183,7 @@ class Intake {
   const Arrangement& arrangement_of(std::uint32_t i) const { return *arrangements_[new_robots_[i].first_of_topology]; }
 
   SizeClasses& classes_;
+  const Configuration& configuration_;
   LoadTimes& times_;
   const WorkWatch& watch_;
   PinnedBuffer memory_;  // the chunks of a portion, on their way
@@ -198,9 +209,10 @@ void SizeClasses::free_empty() {
 }
 
 std::vector<Place> add_robots(SizeClasses& classes, std::span<const Robot* const> robots,
-                              const Configuration& configuration, LoadTimes& times, const WorkWatch& watch) {
-  Intake intake(classes, robots, times, watch);
-  intake.upload(configuration);
+                              const Configuration& configuration, ArrangedRobots* arranged, LoadTimes& times,
+                              const WorkWatch& watch) {
+  Intake intake(classes, robots, configuration, arranged, times, watch);
+  intake.upload();
   return intake.places();
 }
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "mercury/backend.h"
+#include "sim/cuda/arranged_robots.h"
 #include "sim/cuda/size_class.h"
 
 namespace mercury::cuda {
@@ -45,10 +46,11 @@ class SizeClasses {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> index_;
 };
 
-// Brings robots into places of `classes`, at rest in the positions of their files, with their own materials. Returns
-// the place of each, and adds to `times`. Throws DeviceError if the device has no room for them; the classes then are
-// as before. So they are after an exception of the watch.
+// Brings robots into places of `classes`, at rest in the positions of their files, with their own materials. Takes what
+// `arranged` has of them, which may be null. Returns the place of each, and adds to `times`. Throws DeviceError if the
+// device has no room for them; the classes then are as before. So they are after an exception of the watch.
 std::vector<Place> add_robots(SizeClasses& classes, std::span<const Robot* const> robots,
-                              const Configuration& configuration, LoadTimes& times, const WorkWatch& watch);
+                              const Configuration& configuration, ArrangedRobots* arranged, LoadTimes& times,
+                              const WorkWatch& watch);
 
 }  // namespace mercury::cuda

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <span>
 
 namespace mercury::cuda {
 namespace {
@@ -90,6 +91,26 @@ cudaMemPool_t present_pool() {
   return pool;
 }
 
+// Zeros to copy from. They live as long as the process, as the pool does.
+std::span<const std::byte> pinned_zeros() {
+  static const std::span<const std::byte> zeros = [] {
+    constexpr std::size_t bytes = std::size_t{1} << 20;
+    std::byte* const data = PinnedPool::instance().take(bytes);
+    std::fill_n(data, bytes, std::byte{0});
+    return std::span(data, bytes);
+  }();
+  return zeros;
+}
+
+void clear(void* data, std::size_t bytes, cudaStream_t stream) {
+  constexpr std::size_t most_by_copy_engine = std::size_t{32} << 20;  // for more, to wait takes no longer
+  constexpr const char* what = "clearing device memory";
+  if (bytes > most_by_copy_engine) return check(cudaMemsetAsync(data, 0, bytes, stream), what);
+  const std::span<const std::byte> zeros = pinned_zeros();
+  for (std::size_t first = 0; first < bytes; first += zeros.size())
+    upload(static_cast<std::byte*>(data) + first, zeros.data(), std::min(zeros.size(), bytes - first), stream, what);
+}
+
 // What `allocate` allocates, cleared.
 template <class Allocate>
 void* zeros(std::size_t bytes, cudaStream_t stream, const Allocate& allocate) {
@@ -107,12 +128,22 @@ void* zeros(std::size_t bytes, cudaStream_t stream, const Allocate& allocate) {
     throw DeviceError(no_room_text(bytes));
   }
   check(error, "allocating device memory");
-  check(cudaMemsetAsync(data, 0, bytes, stream), "clearing device memory");
+  clear(data, bytes, stream);
   check(cudaStreamSynchronize(stream), "allocating device memory");
   return data;
 }
 
 }  // namespace
+
+// Two rows are copied by an engine even if they are short.
+void upload(void* to, const void* from, std::size_t bytes, cudaStream_t stream, const char* what) {
+  const std::size_t row = bytes / 2, rest = bytes % 2;
+  if (row > 0) check(cudaMemcpy2DAsync(to, row, from, row, row, 2, cudaMemcpyHostToDevice, stream), what);
+  if (rest > 0)
+    check(cudaMemcpyAsync(static_cast<std::byte*>(to) + 2 * row, static_cast<const std::byte*>(from) + 2 * row, rest,
+                          cudaMemcpyHostToDevice, stream),
+          what);
+}
 
 void* allocate_on_device(std::size_t bytes) {
   const cudaStream_t stream = urgent_stream();

@@ -4,6 +4,10 @@
 // Simulations come and go, several at once (mercury/evaluator.h). cudaMalloc and cudaFree would make each of them wait
 // for all others, and pinned memory takes 0.4 ms per MiB to make. So both kinds are kept for reuse: device memory in
 // CUDA's own pool, pinned memory in ours.
+//
+// While others step, whatever a multiprocessor does waits for the launches that they have begun, tens of milliseconds
+// even in an urgent stream: kernels, copies within the device, cudaMemset, and copies of up to 24 kB to the device,
+// which go the same way. Copies by the copy engines do not wait.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -17,6 +21,10 @@
 #include "sim/cuda/stream.h"
 
 namespace mercury::cuda {
+
+// Queues a copy to the device by a copy engine, whatever its size. The host may change pageable memory afterward, but
+// not pinned memory before the stream has done it. `what` says what it is for.
+void upload(void* to, const void* from, std::size_t bytes, cudaStream_t stream, const char* what);
 
 // Bytes of zeros on the current device, ready for use by all streams. Throws DeviceError if there is no room.
 void* allocate_on_device(std::size_t bytes);
@@ -49,19 +57,19 @@ class DeviceArray {
 
   // Both return when the stream has done it.
   void write(std::size_t first, std::span<const T> values, cudaStream_t stream) {
-    copy(data_ + first, values.data(), values.size_bytes(), stream, "writing to the device");
+    constexpr const char* what = "writing to the device";
+    if (values.empty()) return;
+    upload(data_ + first, values.data(), values.size_bytes(), stream, what);
+    check(cudaStreamSynchronize(stream), what);
   }
   void read(std::size_t first, std::span<T> values, cudaStream_t stream) const {
-    copy(values.data(), data_ + first, values.size_bytes(), stream, "reading from the device");
-  }
-
- private:
-  static void copy(void* to, const void* from, std::size_t bytes, cudaStream_t stream, const char* what) {
-    if (bytes == 0) return;
-    check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream), what);
+    constexpr const char* what = "reading from the device";
+    if (values.empty()) return;
+    check(cudaMemcpyAsync(values.data(), data_ + first, values.size_bytes(), cudaMemcpyDeviceToHost, stream), what);
     check(cudaStreamSynchronize(stream), what);
   }
 
+ private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CUDA backend of a build without nvcc: there are no devices.
-#include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/error.h"
+#include "mercury/prepared_robots.h"
 
 namespace mercury {
 
-std::unique_ptr<Backend> make_cuda_backend(const Device&) {
+std::unique_ptr<Backend> make_cuda_backend(const Device&, std::shared_ptr<PreparedRobots>) {
   throw DeviceError("this build has no CUDA backend; build with nvcc on PATH, or use the device \"cpu\"");
 }
+std::unique_ptr<Backend> make_cuda_backend(const Device& device) { return make_cuda_backend(device, nullptr); }
+std::shared_ptr<PreparedRobots> prepare_for_cuda() { return nullptr; }
 ChipFit chip_fit(const Robot&, const Configuration&, int) { throw DeviceError("this build has no CUDA backend"); }
 int cuda_device_count() { return 0; }
 std::string cuda_device_name(int) { return {}; }

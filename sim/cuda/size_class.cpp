@@ -5,6 +5,7 @@
 
 #include "mercury/parallel.h"
 #include "sim/cuda/block_layout.h"
+#include "sim/cuda/device_limits.h"
 #include "sim/cuda/kernels.h"
 
 namespace mercury::cuda {
@@ -61,13 +62,18 @@ std::uint32_t SizeClass::append(std::size_t count) {
   return first;
 }
 
-void SizeClass::make_room(const ChunkSizes& sizes) {
+void SizeClass::make_room(const ChunkSizes& sizes, std::uint32_t used, Solver solver) {
+  if (capacity_ == 0) {
+    // As the launch will want it, most likely.
+    const std::uint32_t fields = working_fields(solver, true);
+    address_fields_ = sizes.tiles * fields * field_bytes <= device_limits().shared_per_block ? fields : 0;
+  }
   const auto fits = [](std::uint32_t needed, std::uint32_t present) { return needed <= present; };
   if (size() <= capacity_ && fits(sizes.tiles, sizes_.tiles) && fits(sizes.groups, sizes_.groups) &&
       fits(sizes.face_pairs, sizes_.face_pairs))
     return;
   const ChunkSizes old_sizes = sizes_;
-  const std::size_t old_capacity = capacity_, used = std::min<std::size_t>(capacity_, size());
+  const std::size_t old_capacity = capacity_;
   const auto reshape = [&] {
     for_each_array([&](auto& array, std::size_t stride) { array.reshape(capacity_, stride, used, urgent_->get()); });
   };
@@ -118,9 +124,7 @@ void SizeClass::set_robot(std::uint32_t place, const Robot& robot, const RobotMe
 void SizeClass::write_chunks(std::uint32_t first_place, const Chunks& chunks) {
   const auto copy = [&]<class T>(const ChunkedArray<T>& to, std::span<const T> values) {
     if (values.empty()) return;
-    check(cudaMemcpyAsync(to.chunk(first_place), values.data(), values.size_bytes(), cudaMemcpyHostToDevice,
-                          urgent_->get()),
-          "uploading robots");
+    upload(to.chunk(first_place), values.data(), values.size_bytes(), urgent_->get(), "uploading robots");
   };
   copy(state_, std::span<const float>(chunks.state));
   copy(valences_, std::span<const float>(chunks.valences));
@@ -144,7 +148,6 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
   device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
   statuses_.write(first_place, std::vector<DeviceStatus>(count, DeviceStatus{-1, no_mass}), stream);
   device_materials_.write(first_place, std::span(materials_).subspan(std::size_t{first_place} * max_materials), stream);
-  address_masses(first_place, 0, address_fields_);
 }
 
 void SizeClass::truncate(std::uint32_t first_place) {
@@ -250,7 +253,7 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   launch_of_many_ = choose(many, many_robots + (batch_size - size()));
   const std::uint32_t fields = working_fields(configuration.solver, launch_.valence_on_chip);
   const std::uint32_t old_fields = std::exchange(address_fields_, launch_.on_chip ? fields : 0);
-  address_masses(0, old_fields, address_fields_);
+  address_masses(old_fields, address_fields_);
   std::size_t workspace = 0;
   if (!launch_.on_chip) workspace += std::size_t{sizes_.tiles} * fields * field_bytes;
   if (!launch_.contacts_on_chip) workspace += contact_grid_bytes(launch_.contact_buckets, sizes_.tiles);
@@ -289,14 +292,12 @@ void SizeClass::choose_launch_in_parts(const Configuration& configuration, std::
     parts_ = {};
 }
 
-void SizeClass::address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields) {
-  const std::size_t robots = size() - first_place;
-  if (old_fields == new_fields || robots == 0) return;
-  const std::size_t records = robots * sizes_.springs() / sizes_.record_words, pairs = robots * sizes_.face_pairs;
+void SizeClass::address_masses(std::uint32_t old_fields, std::uint32_t new_fields) {
+  if (old_fields == new_fields || size() == 0) return;
+  const std::size_t records = size() * sizes_.springs() / sizes_.record_words, pairs = size() * sizes_.face_pairs;
   if (records > 0)
-    readdress_partners(springs_.chunk(first_place), records, sizes_.record_words, old_fields, new_fields,
-                       urgent_->get());
-  if (pairs > 0) readdress_corners({face_pairs_.chunk(first_place), pairs}, old_fields, new_fields, urgent_->get());
+    readdress_partners(springs_.data(), records, sizes_.record_words, old_fields, new_fields, urgent_->get());
+  if (pairs > 0) readdress_corners({face_pairs_.data(), pairs}, old_fields, new_fields, urgent_->get());
   urgent_->synchronize();
 }
 

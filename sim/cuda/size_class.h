@@ -47,8 +47,11 @@ class SizeClass {
   // New robots take the next `count` places. Returns the first of them. Each is then to be filled: make room for all
   // chunks, set_robot(), write_chunks(), and publish() for all at the end.
   std::uint32_t append(std::size_t count);
-  // Makes room for the chunks of all places, of at least these sizes. Throws DeviceError if there is none.
-  void make_room(const ChunkSizes& sizes);
+  // Makes room for the chunks of all places, of at least these sizes, of which the first `used` are filled. Throws
+  // DeviceError if there is none.
+  void make_room(const ChunkSizes& sizes, std::uint32_t used, Solver solver);
+  // By which chunks address masses, see offset_of_slot().
+  std::uint32_t address_fields() const { return address_fields_; }
   // Safe to call for several places at once.
   void set_robot(std::uint32_t place, const Robot& robot, const RobotMeasures& measures,
                  const Arrangement& arrangement);
@@ -141,9 +144,9 @@ class SizeClass {
   void publish_backs(const Configuration& configuration);
   // To be called when tables from a place on have changed.
   void find_same_materials(std::uint32_t first_changed);
-  // Rewrites how spring records and face pairs from `first_place` on address masses: by offsets in working memory with
-  // this many fields per tile, or by slots (0).
-  void address_masses(std::uint32_t first_place, std::uint32_t old_fields, std::uint32_t new_fields);
+  // Rewrites how spring records and face pairs address masses: by offsets in working memory with this many fields per
+  // tile, or by slots (0).
+  void address_masses(std::uint32_t old_fields, std::uint32_t new_fields);
   void reserve_workspace(std::size_t bytes_per_robot);
   void choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain);
   // Replaces the material that each spring record names; `ids` = [place][max_materials], the new id by the old one.

@@ -9,8 +9,9 @@
 namespace mercury::cuda {
 namespace {
 
-// Of pinned memory for states on their way. Always the same size, so that the memory is used again.
-constexpr std::size_t portion_bytes = std::size_t{4} << 20;
+// Of pinned memory for states on their way. Always the same size, so that the memory is used again; and not large,
+// since all classes read at once and pinned memory takes long to make.
+constexpr std::size_t portion_bytes = std::size_t{1} << 20;
 
 }  // namespace
 

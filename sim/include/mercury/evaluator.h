@@ -69,6 +69,7 @@ struct EvaluationRequest {
   std::function<void(std::size_t index, const Robot& robot, std::int64_t period, std::span<float> drives)> drive;
   bool hashes = false;  // of the final states
   bool states = false;  // the final states themselves
+  bool notes = true;    // Evaluator::notes() has what there is to say about the robots, which takes a while to find out
 
   // Racing: robots that do badly are stopped early. At each of these numbers of steps of the trial (ascending, above 0
   // and below `steps`), goes_on() is asked about every robot that is still stepped. Robots for which it returns false
@@ -173,7 +174,7 @@ class Evaluator {
 
   // Of all devices, as Simulation::device_name(). Waits until they have started; throws DeviceError.
   std::string device_name();
-  // What Simulation::notes() said for any portion so far, each line once.
+  // What Simulation::notes() says of portions so far, those of all results included, each line once.
   std::vector<std::string> notes() const;
   EvaluationProgress progress() const;
 
