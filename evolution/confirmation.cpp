@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <utility>
 
 #include "mercury/number_text.h"
@@ -111,34 +112,46 @@ std::optional<std::vector<Confirmation>> check_robots(
     std::string* device_name) {
   constexpr std::chrono::milliseconds watch_period(100);
   const auto per_step = static_cast<std::size_t>(trials.trials);
-  // Smaller steps take longer; trials count by their steps.
-  std::size_t all = 0, done = 0;
-  for (std::size_t k = 0; k < checked_steps; ++k) all += count * per_step << k;
-  std::vector<Confirmation> checked(count);
-  std::vector<double> lengths(count);
+  // All time steps at once: few robots do not keep a device busy.
+  std::vector<EvaluationRequest> requests;
+  std::vector<std::unique_ptr<Evaluator>> evaluators;
+  std::size_t all = 0;
   for (std::size_t k = 0; k < checked_steps; ++k) {
     Configuration finer = configuration;
     finer.dt = configuration.dt / static_cast<double>(1 << k);
-    EvaluationRequest request = trial_request(trials, finer, seed);
+    EvaluationRequest& request = requests.emplace_back(trial_request(trials, finer, seed));
     if (uses_folding(objective)) request.folding = measure_all_folding;
     request.upright = request.upright || uses_upright(objective);
-    Evaluator evaluator(request, trial_source(robots, trials, seed), count * per_step);
+    request.notes = false;
+    evaluators.push_back(std::make_unique<Evaluator>(request, trial_source(robots, trials, seed), count * per_step));
+    all += count * per_step << k;
+  }
+  // Smaller steps take longer; trials count by their steps.
+  const auto done = [&] {
+    std::size_t sum = 0;
+    for (std::size_t k = 0; k < checked_steps; ++k) sum += evaluators[k]->progress().done << k;
+    return sum;
+  };
+  std::vector<Confirmation> checked(count);
+  std::vector<double> lengths(count);
+  for (std::size_t k = 0; k < checked_steps; ++k) {
+    const EvaluationRequest& request = requests[k];
+    Evaluator& evaluator = *evaluators[k];
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<Evaluation> of_robot;
       while (of_robot.size() < per_step) {
         while (!evaluator.wait_for(watch_period))
-          if (watch && !watch(done + (evaluator.progress().done << k), all)) return std::nullopt;
+          if (watch && !watch(done(), all)) return std::nullopt;
         of_robot.push_back(evaluator.next().value());
       }
       checked[i].steps[k] = checked_step(of_robot, request, trials, objective);
       if (!of_robot.front().failure.empty()) checked[i].reason = of_robot.front().failure;
       if (!of_robot.front().robot) continue;
       checked[i].robot = of_robot.front().robot->name;
-      lengths[i] =
-          quantities()[find_quantity("length").value()].value({*of_robot.front().robot, of_robot.front(), finer});
+      lengths[i] = quantities()[find_quantity("length").value()].value(
+          {*of_robot.front().robot, of_robot.front(), request.configuration});
     }
-    done += count * per_step << k;
-    if (watch && !watch(done, all)) return std::nullopt;
+    if (watch && !watch(done(), all)) return std::nullopt;
     if (device_name) *device_name = evaluator.device_name();
   }
   constexpr std::string_view distances[] = {"distance", "-target_distance", "target_approach", "-target_nearest"};

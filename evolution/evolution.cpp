@@ -271,16 +271,21 @@ std::vector<double> Evolution::interim_limits(std::span<const Individual> parent
   return limits;
 }
 
+std::vector<Individual> Evolution::living_and(std::span<const Individual> children) const {
+  std::vector<Individual> pool(living_.size() + children.size());
+  parallel_for(0, pool.size(),
+               [&](std::size_t i) { pool[i] = i < living_.size() ? living_[i] : children[i - living_.size()]; });
+  return pool;
+}
+
 Generation Evolution::select(std::vector<Individual> children) {
-  std::vector<Individual> pool = living_;
-  std::ranges::copy(children, std::back_inserter(pool));
+  std::vector<Individual> pool = living_and(children);
   const std::vector<std::size_t> survivors = islands_->survivors(pool, living_.size());
   return take(std::move(pool), std::move(children), survivors);
 }
 
 Generation Evolution::select(std::vector<Individual> children, std::span<const std::uint64_t> living) {
-  std::vector<Individual> pool = living_;
-  std::ranges::copy(children, std::back_inserter(pool));
+  std::vector<Individual> pool = living_and(children);
   std::vector<std::size_t> survivors;
   for (const std::uint64_t id : living) {
     const auto found = std::ranges::find(pool, id, &Individual::id);

@@ -45,10 +45,15 @@ class Tally {
     assessment_.hash = Fnv1a(assessment_.hash).add(evaluation.hash).value();
     // One trial has its own hash, as in `mercury run`, except in runs of earlier versions.
     if (settings_.median && settings_.trials == 1) assessment_.hash = evaluation.hash;
-    const std::vector<double> values = quantities_of({.robot = *evaluation.robot,
-                                                      .evaluation = evaluation,
-                                                      .configuration = request_.configuration,
-                                                      .net_efficiency = !settings_.median});
+    const bool is_same_robot = evaluation.robot == robot_;
+    const std::vector<double> values =
+        quantities_of({.robot = *evaluation.robot,
+                       .evaluation = evaluation,
+                       .configuration = request_.configuration,
+                       .net_efficiency = !settings_.median},
+                      is_same_robot ? std::span<const double>(last_values_) : std::span<const double>());
+    robot_ = evaluation.robot;
+    last_values_ = values;
     values_.resize(values.size());
     for (std::size_t q = 0; q < values.size(); ++q) values_[q].push_back(values[q]);
     scores_.resize(objectives_.size());
@@ -99,6 +104,8 @@ class Tally {
   Assessment assessment_{.fate = Fate::sound, .hash = Fnv1a::empty};
   std::vector<std::vector<double>> values_, scores_;  // [quantity or objective][trial]
   std::size_t trials_ = 0;
+  std::shared_ptr<const Robot> robot_;  // of the last trial
+  std::vector<double> last_values_;     // of its quantities
 };
 
 // Candidates that are assessed together: a part of what the evaluator's source has.
@@ -145,6 +152,7 @@ class LocalAssessor : public Assessor {
       : settings_(settings), objectives_(std::move(objectives)), seed_(seed),
         request_(trial_request(settings, configuration, seed)) {
     request_.grows = true;
+    request_.notes = false;
     if (std::ranges::any_of(objectives_, uses_folding)) request_.folding = measure_all_folding;
     request_.upright = request_.upright || std::ranges::any_of(objectives_, uses_upright);
     if (!settings_.racing || request_.steps <= static_cast<std::int64_t>(racing_checks)) return;

@@ -179,7 +179,7 @@ void add_cells(CsvLines& csv, const std::vector<double>& values, std::size_t cou
 // A line per individual after the head, made on all cores.
 std::string lines_of(const RunHistory& run, const CsvLines& head,
                      const std::function<void(const Individual&, CsvLines&)>& add) {
-  constexpr std::size_t portion = 4096;
+  constexpr std::size_t portion = 256;
   const std::span<const Individual> all = run.individuals();
   std::vector<std::string> parts((all.size() + portion - 1) / portion);
   parallel_for(0, parts.size(), [&](std::size_t part) {

@@ -186,9 +186,11 @@ double together(const Quantity& quantity, std::vector<double> values) {
   return quantity.is_share ? mean_and_error(values).median : median_of(std::move(values));
 }
 
-std::vector<double> quantities_of(const Trial& trial) {
+std::vector<double> quantities_of(const Trial& trial, std::span<const double> of_same_robot) {
   std::vector<double> values;
-  for (const Quantity& quantity : table) values.push_back(quantity.value(trial));
+  values.reserve(std::size(table));
+  for (const Quantity& quantity : table)
+    values.push_back(quantity.of_body && !of_same_robot.empty() ? of_same_robot[values.size()] : quantity.value(trial));
   return values;
 }
 

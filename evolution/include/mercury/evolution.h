@@ -124,6 +124,7 @@ class Evolution {
 
  private:
   void begin_to_learn();
+  std::vector<Individual> living_and(std::span<const Individual> children) const;
   Generation take(std::vector<Individual> pool, std::vector<Individual> children,
                   std::span<const std::size_t> survivors);
   // Those who are the parents of the next generation.

@@ -54,7 +54,8 @@ inline bool counts(const Quantity& quantity, Fate fate) {
 // Of the values of a quantity in several trials: the median, or the mean of a share.
 double together(const Quantity& quantity, std::vector<double> values);
 
-// The values of all quantities after one trial.
-std::vector<double> quantities_of(const Trial& trial);
+// The values of all quantities after one trial. `of_same_robot` = those after another trial of the same robot, if there
+// are any: what its body alone says is taken from there.
+std::vector<double> quantities_of(const Trial& trial, std::span<const double> of_same_robot = {});
 
 }  // namespace mercury
