@@ -141,8 +141,16 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
   if (count == 0) return;
   lists_kept_ = false;
   find_same_materials(first_place);
-  parallel_for(first_place, size(),
-               [&](std::size_t place) { describe(static_cast<std::uint32_t>(place), configuration); });
+  // Trials of one robot stand side by side.
+  const auto is_repeated = [&](std::size_t place) { return place > first_place && robots_[place] == robots_[place - 1]; };
+  parallel_for(first_place, size(), [&](std::size_t place) {
+    if (!is_repeated(place)) describe(static_cast<std::uint32_t>(place), configuration);
+  });
+  for (std::size_t place = first_place; place < size(); ++place)
+    if (is_repeated(place)) {
+      headers_[place] = headers_[place - 1];
+      point_properties_[place] = point_properties_[place - 1];
+    }
   points_stale_ = true;
   const cudaStream_t stream = urgent_->get();
   device_headers_.write(first_place, std::span(headers_).subspan(first_place), stream);
