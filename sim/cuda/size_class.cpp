@@ -142,7 +142,9 @@ void SizeClass::publish(std::uint32_t first_place, const Configuration& configur
   lists_kept_ = false;
   find_same_materials(first_place);
   // Trials of one robot stand side by side.
-  const auto is_repeated = [&](std::size_t place) { return place > first_place && robots_[place] == robots_[place - 1]; };
+  const auto is_repeated = [&](std::size_t place) {
+    return place > first_place && robots_[place] == robots_[place - 1];
+  };
   parallel_for(first_place, size(), [&](std::size_t place) {
     if (!is_repeated(place)) describe(static_cast<std::uint32_t>(place), configuration);
   });
