@@ -299,8 +299,8 @@ void Evaluator::Parts::notify_all() {
 // How many robots an evaluator makes at a time, and which worker takes how many of them. Results do not depend on it.
 //
 // A GPU needs many robots at the same time: most robots are too small to use much of it alone, and their steps take as
-// long whether it is full or not. So an idle device takes what there is, at once; one that is not full waits for twice
-// as many robots as it has, so that its workers do not all have small portions while many robots wait; one that is full
+// long whether it is full or not. So an idle device takes what there is, at once; one that is not full waits for as
+// many robots as it has, so that its workers do not all have small portions while many robots wait; one that is full
 // waits until there is a large portion for the time after. The first portions are small, so that stepping begins early.
 
 int Evaluator::Parts::workers_of(const DeviceParts& device) const {
@@ -385,8 +385,8 @@ bool Evaluator::Parts::may_take(const DeviceParts& device) const {
   if (request.portion > 0 || device.portions_in_hand == 0) return true;
   if (!device.is_cpu && device.robots_at_once == 0) return device.portions_in_hand < portions_at_start;
   const std::size_t fill = robots_that_fill(device);
-  const std::size_t larger = std::min(2 * device.robots_in_hand, largest_portion_of(device));
-  if (device.robots_in_hand < fill) return is_made() || waiting_robots >= larger;
+  const std::size_t as_many = std::min(device.robots_in_hand, largest_portion_of(device));
+  if (device.robots_in_hand < fill) return is_made() || waiting_robots >= as_many;
   return device.robots_in_hand < 2 * fill && (is_made() || waiting_robots >= largest_portion_of(device));
 }
 
