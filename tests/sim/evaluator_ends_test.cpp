@@ -191,6 +191,47 @@ TEST(EvaluatorEnds, StopKeepsWhatWasTriedBehindRobotsThatHaveNotStarted) {
   EXPECT_EQ(tried, (std::vector<std::size_t>{0, 1, 2, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19}));
 }
 
+// A device for a thousand robots that counts those it has loaded, and steps them only when it may.
+class PatientBackend final : public BrokenBackend {
+ public:
+  struct Gate {
+    std::atomic<std::size_t> robots = 0, portions = 0;
+    std::atomic<bool> opens = false;
+  };
+  explicit PatientBackend(Gate& gate) : gate_(gate) {}
+  std::size_t robots_at_once() const override { return 1000; }
+  void add(std::span<const Robot* const> robots, std::size_t first_new) override {
+    gate_.robots += robots.size() - first_new;
+    ++gate_.portions;
+    gate_.portions.notify_all();
+  }
+  void step(const Clock&, std::int64_t) override { gate_.opens.wait(false); }
+
+ private:
+  Gate& gate_;
+};
+
+TEST(EvaluatorEnds, PortionsDoubleWhileADeviceIsNotFull) {
+  PatientBackend::Gate gate;
+  const auto wait_for_portions = [&](std::size_t count) {
+    for (std::size_t now = gate.portions; now < count; now = gate.portions) gate.portions.wait(now);
+  };
+  EvaluationRequest request = usual();
+  request.grows = true;
+  request.workers = 4;
+  const std::shared_ptr<const Robot> robot = std::make_shared<Robot>(bodies::point());
+  Evaluator evaluator(request, [&](std::size_t) { return robot; }, 1,
+                      {[&] { return std::make_unique<PatientBackend>(gate); }});
+  wait_for_portions(1);  // now it is known how many robots the device steps at once
+  evaluator.extend(4000);
+  wait_for_portions(4);
+  // One robot, then at least one and two pieces of 256; the fourth portion waits for as many robots as all these.
+  EXPECT_GE(gate.robots, 2 * (1 + 256 + 257));
+  gate.opens = true;
+  gate.opens.notify_all();
+  EXPECT_EQ(rest_of(evaluator).size(), 4001u);
+}
+
 TEST(EvaluatorEnds, CanBeDestroyedAtAnyTime) {
   EvaluationRequest request = usual();
   request.steps = std::int64_t{1} << 60;
