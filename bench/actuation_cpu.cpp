@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 
@@ -96,4 +97,4 @@ void run(double seconds) {
 
 }  // namespace mercury::bench
 
-int main(int argc, char** argv) { mercury::bench::run(argc > 1 ? std::atof(argv[1]) : 2.0); }
+int main(int argc, char** argv) { mercury::bench::run(argc > 1 ? mercury::seconds_from(argv[1]) : 2.0); }

@@ -20,6 +20,7 @@
 
 #include "bench/cpu_lattice.h"
 #include "bench/cpu_plain_loop.h"
+#include "bench/timing.h"
 #include "mercury/random_voxel.h"
 #include "sim/cpu/backend.h"
 
@@ -214,5 +215,6 @@ void run(double seconds, const char* filter, const char* kernel_name) {
 }  // namespace mercury::bench
 
 int main(int argc, char** argv) {
-  mercury::bench::run(argc > 1 ? std::atof(argv[1]) : 1.0, argc > 2 ? argv[2] : "", argc > 3 ? argv[3] : "");
+  mercury::bench::run(argc > 1 ? mercury::seconds_from(argv[1]) : 1.0, argc > 2 ? argv[2] : "",
+                      argc > 3 ? argv[3] : "");
 }

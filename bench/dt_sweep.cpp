@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/timing.h"
 #include "mercury/random_voxel.h"
 #include "mercury/simulation.h"
 
@@ -69,7 +70,7 @@ void print_table(const Environment& environment, std::span<const double> time_st
 }  // namespace
 
 int main(int argc, char** argv) try {
-  const double seconds = argc > 1 ? std::atof(argv[1]) : 20;
+  const double seconds = argc > 1 ? seconds_from(argv[1]) : 20;
   const Device device = argc > 2 ? device_named(argv[2]) : Device{};
   const std::vector<Robot> robots = random_voxel_robots({}, 1, 8);
   const std::vector<double> in_water = {1e-3, 1e-2, 3e-2, 5e-2, 6e-2, 7e-2, 8e-2, 1e-1, 0.2, 0.5, 1, 2, 5};
