@@ -112,10 +112,15 @@ std::optional<std::vector<Confirmation>> check_robots(
     std::string* device_name) {
   constexpr std::chrono::milliseconds watch_period(100);
   const auto per_step = static_cast<std::size_t>(trials.trials);
-  // All time steps at once: few robots do not keep a device busy.
+  // Few robots do not keep a device busy, so all time steps are tried at once. Many would take too much memory so.
+  constexpr std::size_t few = 256;
+  const bool at_once = count * per_step <= few;
   std::vector<EvaluationRequest> requests;
-  std::vector<std::unique_ptr<Evaluator>> evaluators;
-  std::size_t all = 0;
+  std::vector<std::unique_ptr<Evaluator>> evaluators(checked_steps);
+  const auto start = [&](std::size_t k) {
+    evaluators[k] = std::make_unique<Evaluator>(requests[k], trial_source(robots, trials, seed), count * per_step);
+  };
+  std::size_t all = 0, finished = 0;
   for (std::size_t k = 0; k < checked_steps; ++k) {
     Configuration finer = configuration;
     finer.dt = configuration.dt / static_cast<double>(1 << k);
@@ -123,19 +128,21 @@ std::optional<std::vector<Confirmation>> check_robots(
     if (uses_folding(objective)) request.folding = measure_all_folding;
     request.upright = request.upright || uses_upright(objective);
     request.notes = false;
-    evaluators.push_back(std::make_unique<Evaluator>(request, trial_source(robots, trials, seed), count * per_step));
+    if (at_once) start(k);
     all += count * per_step << k;
   }
   // Smaller steps take longer; trials count by their steps.
   const auto done = [&] {
-    std::size_t sum = 0;
-    for (std::size_t k = 0; k < checked_steps; ++k) sum += evaluators[k]->progress().done << k;
+    std::size_t sum = finished;
+    for (std::size_t k = 0; k < checked_steps; ++k)
+      if (evaluators[k]) sum += evaluators[k]->progress().done << k;
     return sum;
   };
   std::vector<Confirmation> checked(count);
   std::vector<double> lengths(count);
   for (std::size_t k = 0; k < checked_steps; ++k) {
     const EvaluationRequest& request = requests[k];
+    if (!at_once) start(k);
     Evaluator& evaluator = *evaluators[k];
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<Evaluation> of_robot;
@@ -153,6 +160,8 @@ std::optional<std::vector<Confirmation>> check_robots(
     }
     if (watch && !watch(done(), all)) return std::nullopt;
     if (device_name) *device_name = evaluator.device_name();
+    evaluators[k].reset();
+    finished += count * per_step << k;
   }
   constexpr std::string_view distances[] = {"distance", "-target_distance", "target_approach", "-target_nearest"};
   const bool is_distance = std::ranges::find(distances, objective.formula()) != std::end(distances);

@@ -49,10 +49,9 @@ void Chunks::fill(std::size_t k, const Robot& robot, const Arrangement& arrangem
   fill_springs(k, robot, schedule);
   put(chunk(valences, k, sizes_.slots()), std::span<const std::uint32_t>(schedule.valences));
   fill_rows(chunk(groups, k, sizes_.tiles), chunk(rows, k, sizes_.slots()), schedule);
-  const auto addressed = [&](std::uint16_t slot) { return static_cast<std::uint16_t>(offset_of_slot(slot, fields_)); };
   const std::span<FacePair> pairs = chunk(face_pairs, k, sizes_.face_pairs);
-  const auto rest = std::ranges::transform(arrangement.faces, pairs.begin(), [&](const FacePair& p) {
-                      return FacePair{addressed(p.a), addressed(p.b), addressed(p.c), addressed(p.d)};
+  const auto rest = std::ranges::transform(arrangement.faces, pairs.begin(), [&](const FacePair& pair) {
+                      return addressed(pair, fields_);
                     }).out;
   std::fill(rest, pairs.end(), FacePair{});
 }
@@ -113,6 +112,11 @@ void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Sc
           else
             std::fill_n(to, words, 0u);
   std::fill(to, records.data() + records.size(), 0u);
+}
+
+FacePair addressed(const FacePair& pair, std::uint32_t fields) {
+  const auto at = [&](std::uint16_t slot) { return static_cast<std::uint16_t>(offset_of_slot(slot, fields)); };
+  return {at(pair.a), at(pair.b), at(pair.c), at(pair.d)};
 }
 
 void fill_backs(std::span<std::uint32_t> backs, const Robot& robot, std::span<const std::uint16_t> mass_at,

@@ -65,6 +65,9 @@ void fill_rows(std::span<std::uint32_t> groups, std::span<SlotRows> rows, const 
 void fill_records(std::span<std::uint32_t> records, const Robot& robot, const Schedule& schedule,
                   const RestLengths& rest, const RecordNames& names = {});
 
+// A pair whose corners are slots, with these addressed by offset_of_slot() with `fields`.
+FacePair addressed(const FacePair& pair, std::uint32_t fields);
+
 // BatchView::face_backs of a robot or a part: for each pair, `mass_at` having the masses by their slots. Of a slot that
 // repeats a mass the first one counts. A face whose mass behind is not here has its own corner a for it. Corners are
 // addressed by offset_of_slot() with `fields`.

@@ -107,12 +107,8 @@ void DeviceParts::upload_parts(cudaStream_t stream) {
     std::ranges::copy(part.export_start, export_start.begin() + static_cast<std::ptrdiff_t>(i * (tile_stride_ + 1)));
     const auto first_face = static_cast<std::ptrdiff_t>(i * face_stride_);
     std::ranges::copy(part.face_dithers, face_dithers.begin() + first_face);
-    std::ranges::transform(part.arrangement.faces, faces.begin() + first_face, [&](const FacePair& p) {
-      const auto address = [&](std::uint16_t slot) {
-        return static_cast<std::uint16_t>(offset_of_slot(slot, fields_));
-      };
-      return FacePair{address(p.a), address(p.b), address(p.c), address(p.d)};
-    });
+    std::ranges::transform(part.arrangement.faces, faces.begin() + first_face,
+                           [&](const FacePair& pair) { return addressed(pair, fields_); });
     std::ranges::copy(part.exports, exports.begin() + static_cast<std::ptrdiff_t>(i * view_.export_stride));
     // Empty slots read some mass at the start, and then have its position. No spring leads there.
     const std::span slots_of_part = std::span(slot_map).subspan(i * slots, slots);

@@ -46,7 +46,7 @@ class Intake {
     });
     for (std::size_t i = 0; i < robots.size(); ++i) {
       if (is_repeated(i)) new_robots_[i] = new_robots_[i - 1];
-      ++users_[first[i]];
+      ++users_[new_robots_[i].first_of_topology];
     }
     assign_places();
   }

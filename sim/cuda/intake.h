@@ -3,7 +3,7 @@
 //
 //   inspect    all new robots   rest lengths, measures, which of them share a topology       all cores
 //   assign     all new robots   a size class and a place each, most springs first            one core
-//   upload     a portion        arrange each topology, fill the chunks, copy them            all cores
+//   upload     a portion        arrange topologies that are not yet, fill and copy chunks    all cores
 //              a portion        ...
 //
 // A portion is so small that its chunks fit into a pinned buffer, and the arrangements of its robots are dropped with

@@ -135,8 +135,10 @@ void* zeros(std::size_t bytes, cudaStream_t stream, const Allocate& allocate) {
 
 }  // namespace
 
-// Two rows are copied by an engine even if they are short.
+// Two rows are copied by an engine even if they are short. Longer copies are in any case, and rows have a limit.
 void upload(void* to, const void* from, std::size_t bytes, cudaStream_t stream, const char* what) {
+  constexpr std::size_t longest_short = std::size_t{1} << 16;
+  if (bytes > longest_short) return check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream), what);
   const std::size_t row = bytes / 2, rest = bytes % 2;
   if (row > 0) check(cudaMemcpy2DAsync(to, row, from, row, row, 2, cudaMemcpyHostToDevice, stream), what);
   if (rest > 0)

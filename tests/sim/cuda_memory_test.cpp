@@ -40,10 +40,10 @@ TEST_F(DeviceMemory, IsZeroAtFirst) {
   }
 }
 
-// An upload is two rows and, of an odd number, the last byte.
+// A short upload is two rows and, of an odd number, the last byte.
 TEST_F(DeviceMemory, HoldsWhatIsWrittenAndNothingElseChanges) {
   const Stream stream;
-  for (const std::size_t size : {1, 2, 3, 255, 4096, 65537}) {
+  for (const std::size_t size : {1, 2, 3, 255, 4096, 65535, 65536, 65537}) {
     DeviceArray<std::uint8_t> array(size + 2);
     array.write(1, numbered(size), stream.get());
     std::vector<std::uint8_t> found(size + 2), wanted = numbered(size);
