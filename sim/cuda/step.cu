@@ -3,7 +3,6 @@
 
 #include "sim/cuda/device_limits.h"
 #include "sim/cuda/early_start.cuh"
-#include "sim/cuda/step_kernel.h"
 #include "sim/cuda/stream.h"
 
 namespace mercury::cuda {

@@ -76,6 +76,12 @@ inline StepModel step_model_in_parts(const Configuration& configuration, bool re
       solver_model_of(configuration.environment, real_bodies));
 }
 
+// The kernel for an environment, of which each kind of StepModel has a source in step_kernels/.
+template <class EnvironmentModel>
+using StepKernel = void (*)(const StepArguments, const EnvironmentModel);
+template <class EnvironmentModel>
+StepKernel<EnvironmentModel> step_kernel_for(Solver solver, const LaunchConfiguration& launch);
+
 // Robots that the current device steps at the same time; 0 if it cannot have blocks in such clusters.
 std::uint32_t robots_in_flight(Solver solver, const StepModel& model, const LaunchConfiguration& launch);
 

@@ -7,7 +7,7 @@
 #include "sim/cuda/material_table.cuh"
 #include "sim/cuda/report.cuh"
 #include "sim/cuda/step.cuh"
-#include "sim/cuda/step_kernel.h"
+#include "sim/cuda/step.h"
 #include "sim/cuda/think.cuh"
 
 namespace mercury::cuda {
