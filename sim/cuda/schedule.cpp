@@ -13,7 +13,7 @@ namespace {
 // row.
 //
 // The springs of a tile are the edges of a bipartite graph: on one side the 32 lanes of the owners, on the other the 32
-// banks of the partners. A mass with two banks (spring_owners.h) is two of them.
+// banks of the partners. A mass with several banks (spring_owners.h) is as many of them.
 //
 //   lanes      0    1    2   ...  31          spring: owner's lane -> partner's bank
 //              | \  |  / |         |          edges that meet at a lane: the lane computes one spring per row
@@ -41,7 +41,7 @@ template <bool one_word>
 class EdgeColoring {
  public:
   EdgeColoring(const OwnedSprings& owned, std::span<const std::uint32_t> row_start)
-      : springs_(owned.springs), double_bank_(owned.double_bank), row_start_(row_start),
+      : springs_(owned.springs), mass_banks_(owned.banks), row_start_(row_start),
         words_(one_word ? 1 : words_of_colors(row_start)), entries_(std::size_t{row_start.back()} * lanes),
         lane_at_bank_(std::size_t{row_start.back()} * banks, no_lane) {
     const auto tiles = static_cast<std::uint32_t>(row_start.size() - 1);
@@ -83,7 +83,7 @@ class EdgeColoring {
   void color(std::uint32_t i) {
     const OwnedSpring s = springs_[i];
     const std::uint32_t tile = s.owner / lanes, first_lane = tile * tile_counters, first_bank = first_lane + lanes;
-    const std::uint32_t lane = s.owner % lanes, bank = double_bank_.bank_of(s);
+    const std::uint32_t lane = s.owner % lanes, bank = mass_banks_.bank_of(s);
     const std::uint32_t c = common_color(first_lane + lane, first_bank + bank);
     if (c == no_color) return exchange_path(tile, lane, {i, s.partner});
     flip(first_lane + lane, c);
@@ -98,7 +98,7 @@ class EdgeColoring {
   void exchange_path(std::uint32_t tile, std::uint32_t lane, ScheduledSpring edge) {
     const std::uint32_t first_lane = tile * tile_counters, first_bank = first_lane + lanes;
     const auto bank_of = [&] {
-      return double_bank_.bank_of({static_cast<std::uint16_t>(tile * lanes + lane), edge.partner});
+      return mass_banks_.bank_of({static_cast<std::uint16_t>(tile * lanes + lane), edge.partner});
     };
     std::uint32_t bank = bank_of();
     const std::uint32_t p = common_color(first_lane + lane, first_lane + lane);
@@ -130,7 +130,7 @@ class EdgeColoring {
   }
 
   const std::span<const OwnedSpring> springs_;
-  const DoubleBank double_bank_;
+  const MassBanks mass_banks_;
   const std::span<const std::uint32_t> row_start_;
   const std::uint32_t words_;               // of a set of colors
   std::vector<std::uint64_t> free_;         // [tile][lane or bank][word], a bit per color

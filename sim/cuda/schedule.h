@@ -11,7 +11,7 @@
 //   ...                                                                         in a row all different
 //
 // 1. Shared memory serves 32 lanes in one pass if their words lie in different banks. So no two partners of a row
-//    share a bank, but for the one mass that may have two (spring_owners.h). The owners of a row stand in the 32 lanes
+//    share a bank, but for masses that count as several (spring_owners.h). The owners of a row stand in the 32 lanes
 //    of one tile, so they never do.
 // 2. A row of springs waits for its slowest lane, so a tile should have few rows. Rows are the colors of an edge
 //    coloring (schedule.cpp), which needs as many as the busiest lane or bank has springs. Owners are chosen to

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 #include <utility>
 
@@ -23,7 +24,7 @@ class OwnerSearch {
   OwnerSearch(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts)
       : springs_(std::move(springs)), tiles_(tiles_for(masses)), partly_empty_(masses % lanes != 0 && tiles_ > 1),
         load_((tiles_ + tiles_for(ghosts)) * tile_counters) {
-    if (load_.size() == tile_counters) find_double_bank();
+    if (ghosts == 0) banks_ = MassBanks(masses, springs_);
     std::fill(load_.begin() + tiles_ * tile_counters, load_.end(), too_busy);
     if (partly_empty_) add_to_last_lanes(head_start);
     choose_first();
@@ -36,7 +37,7 @@ class OwnerSearch {
   }
 
   OwnedSprings take() {
-    return {std::move(springs_), double_bank_, std::move(limit_), std::move(first_candidate_), std::move(candidates_)};
+    return {std::move(springs_), banks_, std::move(limit_), std::move(first_candidate_), std::move(candidates_)};
   }
 
  private:
@@ -51,15 +52,7 @@ class OwnerSearch {
     std::uint32_t counter, spring, before;
   };
 
-  // Of the mass that most springs join, if all rows but these few would be for its springs.
-  void find_double_bank() {
-    std::array<std::uint32_t, lanes> valence{};
-    for (const OwnedSpring s : springs_) ++valence[s.owner], ++valence[s.partner];
-    const auto most = std::ranges::max_element(valence);
-    if (*most / 2 > tiles_for(springs_.size())) double_bank_.slot = static_cast<std::uint32_t>(most - valence.begin());
-  }
-
-  std::uint32_t bank_counter(OwnedSpring s) const { return double_bank_.bank_counter(s); }
+  std::uint32_t bank_counter(OwnedSpring s) const { return banks_.bank_counter(s); }
 
   void add_to_last_lanes(int springs) {
     for (std::uint32_t lane = 0; lane < lanes; ++lane) load_[(tiles_ - 1) * tile_counters + lane] += springs;
@@ -263,7 +256,7 @@ class OwnerSearch {
   std::vector<OwnedSpring> springs_;
   std::uint32_t tiles_;  // without those of ghosts
   bool partly_empty_;    // the last tile
-  DoubleBank double_bank_;
+  MassBanks banks_;
   std::vector<int> load_;                                    // [counter]
   std::vector<std::uint32_t> limit_;                         // [tile]
   std::vector<std::uint32_t> first_candidate_, candidates_;  // OwnedSprings
@@ -273,6 +266,25 @@ class OwnerSearch {
 };
 
 }  // namespace
+
+// In a row, a mass takes part once as an owner, and once for each of its banks. There are enough if all masses are busy
+// in each row.
+MassBanks::MassBanks(std::size_t masses, std::span<const OwnedSpring> springs) {
+  if (masses > lanes) return;
+  constexpr std::uint32_t most = 4;
+  const auto rows = divide_up(static_cast<std::uint32_t>(springs.size()), static_cast<std::uint32_t>(masses));
+  std::array<std::uint32_t, lanes> valence{};
+  for (const OwnedSpring s : springs) ++valence[s.owner], ++valence[s.partner];
+  std::uint32_t next = lanes;
+  for (std::uint32_t slot = 0; slot < masses; ++slot) {
+    if (valence[slot] <= 2 * rows) continue;
+    const std::uint32_t others = std::min(std::bit_ceil(divide_up(valence[slot], rows) - 1), most) - 1;
+    if (next + others > lanes + most_extra_banks) continue;
+    others_[slot] = static_cast<std::uint8_t>(others);
+    before_others_[slot] = static_cast<std::uint8_t>(next - 1);
+    next += others;
+  }
+}
 
 OwnedSprings choose_owners(std::size_t masses, std::vector<OwnedSpring> springs, std::size_t ghosts) {
   return OwnerSearch(masses, std::move(springs), ghosts).take();

@@ -16,13 +16,15 @@
 //    none, the tile keeps its limit, and is done.
 // 3. A row of the last tile has fewer springs than one of another tile, if that tile is partly empty. So its masses own
 //    as few springs as possible: the search prefers their partners, and lowers the limit of the last tile first.
-// 4. A robot of one tile may have a mass that joins to nearly all others, as the middle of 2 x 2 x 2 voxels does: all
-//    rows are waiting for it. Its bank counts as two, one for owners in even and one for owners in odd lanes. So two
-//    lanes of a row may have it as their partner: they read it in one pass, and add to its sum in two.
+// 4. A robot of one tile may have masses that join to most others, as the middle of 2 x 2 x 2 voxels does: all rows are
+//    waiting for them. Their banks count as two or four, in turn by the lane of the owner. So as many lanes of a row
+//    may have such a mass as their partner: they read it in one pass, and add to its sum one after another, which takes
+//    less time than more rows.
 // 5. A warp computes four rows at a time (rows_at_once). So limits become multiples of four where the sum of all limits
 //    allows it, by further chains.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -35,24 +37,31 @@ struct OwnedSpring {
   std::uint16_t owner, partner;  // slots
 };
 
-// Counters of a tile: its 32 lanes, its 32 banks, the second bank of a mass that has two.
-inline constexpr std::uint32_t tile_counters = 2 * lanes + 1;
+// Counters of a tile: its 32 lanes, its 32 banks, and those that masses have beyond one.
+inline constexpr std::uint32_t most_extra_banks = 15, tile_counters = 2 * lanes + most_extra_banks;
 constexpr std::uint32_t lane_counter(std::uint32_t owner) { return owner / lanes * tile_counters + owner % lanes; }
 
-// The slot whose bank counts as two, or none.
-struct DoubleBank {
-  static constexpr std::uint32_t none = 0xffffffffu;
-  std::uint32_t slot = none;
+// How many banks the masses of a robot count as: one each, if it has several tiles.
+class MassBanks {
+ public:
+  MassBanks() = default;
+  MassBanks(std::size_t masses, std::span<const OwnedSpring> springs);
 
+  std::uint32_t count(std::uint32_t slot) const { return others_[slot % lanes] + 1u; }
+  // That of a spring's partner which its owner uses.
   std::uint32_t bank_of(OwnedSpring s) const {
-    return s.partner == slot && s.owner % 2 != 0 ? lanes : s.partner % lanes;
+    const std::uint32_t first = s.partner % lanes, other = s.owner & others_[first];
+    return other == 0 ? first : before_others_[first] + other;
   }
   std::uint32_t bank_counter(OwnedSpring s) const { return s.owner / lanes * tile_counters + lanes + bank_of(s); }
+
+ private:
+  std::array<std::uint8_t, lanes> others_{}, before_others_{};  // [bank], 0, 1 or 3 others, which follow this one
 };
 
 struct OwnedSprings {
   std::vector<OwnedSpring> springs;  // by their number
-  DoubleBank double_bank;
+  MassBanks banks;
   std::vector<std::uint32_t> rows;  // by tile: as many as its busiest lane or bank has springs, or up to three more
   // The numbers of the springs that load counter c, or would if their other mass owned them:
   // candidates[first_candidate[c] .. first_candidate[c + 1]).
