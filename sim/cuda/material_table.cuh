@@ -137,17 +137,26 @@ class MaterialTable {
   }
 
   // Replaces the coefficients by the rates of the length factors at this many steps after the launch's first [1/s].
-  __device__ void write_rates(const StepArguments& arguments, std::uint32_t step) {
+  // Returns the chunks that this is done for, a bit each: of real bodies, which have few materials of their own, those
+  // that some spring may read. Elsewhere it costs more to know than it saves.
+  template <bool real_bodies>
+  __device__ std::uint32_t write_rates(const StepArguments& arguments, std::uint32_t step) {
+    std::uint32_t written = 0;
     for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_) {
       const std::int64_t now = arguments.clock.step - arguments.clock.base_step + step;
       const std::uint32_t id = chunk * lanes + lane_;
+      if constexpr (real_bodies && solver == Solver::force)
+        if (!__any_sync(0xffffffffu, table_[id * copies_].stiffness != 0)) continue;
+      written |= 1u << chunk;
       spread(chunk, coefficient, muscle_rate(materials_[id], phase_at(phases_[id], now)));
     }
+    return real_bodies ? written : ~0u;
   }
   // Puts them back.
-  __device__ void write_coefficients(const StepArguments& arguments) {
+  __device__ void write_coefficients(const StepArguments& arguments, std::uint32_t written) {
     for (std::uint32_t chunk = warp_; chunk < arguments.launch.table_chunks; chunk += warps_)
-      spread(chunk, coefficient, coefficient_of(arguments, materials_[chunk * lanes + lane_]));
+      if (written >> chunk & 1)
+        spread(chunk, coefficient, coefficient_of(arguments, materials_[chunk * lanes + lane_]));
   }
 
  private:

@@ -5,8 +5,9 @@
 //   -- barrier --     also after MaterialTable::write_rates()
 //   measure_springs   each lane     energy and power of the springs it owns            -> fields of the masses
 //                     each warp     their largest strain, the number of strained ones  -> the staged report
+//   add_up_tiles      each warp     masses, energies and power, summed over its tiles   -> fields of the masses
 //   -- barrier --
-//   reduce            each warp     some of the quantities, summed over all masses     -> the staged report
+//   add_up_robot      one warp      the sums of all tiles                              -> the staged report
 //   -- barrier --
 //   mark_inverted     each warp     which of 32 cells are inside out, if asked for     -> fields of the masses
 //   -- barrier --
@@ -30,6 +31,43 @@
 #include "sim/physics/springs.h"
 
 namespace mercury::cuda {
+
+// Adds up some numbers of each lane over the warp. Each lane returns one of the sums: at each distance, half of the
+// lanes go on with half of the numbers.
+//
+//   distance 16   lanes 0 .. 15   numbers 0 .. 4, their own and those of the lane 16 further on
+//                 lanes 16 .. 31  numbers 5 .. 8
+//   distance 8    ...
+template <std::uint32_t distance, std::uint32_t count>
+__device__ double sum_of_one(std::uint32_t lane, const double (&numbers)[count]) {
+  if constexpr (distance == 0) {
+    return numbers[0];
+  } else {
+    constexpr std::uint32_t half = divide_up(count, 2);
+    const bool is_higher = lane & distance;
+    double kept[half];
+#pragma unroll
+    for (std::uint32_t i = 0; i < half; ++i) {
+      const double low = numbers[i], high = numbers[min(i + half, count - 1)];
+      const bool has_both = i + half < count;
+      kept[i] = (is_higher && has_both ? high : low) +
+                __shfl_xor_sync(0xffffffffu, is_higher || !has_both ? low : high, distance);
+    }
+    return sum_of_one<distance / 2>(lane, kept);
+  }
+}
+// Which one; `count` or more if another lane returns it, too.
+template <std::uint32_t distance, std::uint32_t count>
+__device__ std::uint32_t number_of_sum(std::uint32_t lane) {
+  if constexpr (distance == 0) {
+    return 0;
+  } else {
+    constexpr std::uint32_t half = divide_up(count, 2);
+    const std::uint32_t of_half = number_of_sum<distance / 2, half>(lane);
+    const std::uint32_t number = of_half + (lane & distance ? half : 0);
+    return of_half < half && number < count ? number : Failure::never;
+  }
+}
 
 template <class Robot>
 class RobotReporter {
@@ -62,7 +100,27 @@ class RobotReporter {
                 static_cast<int>(strained));
   }
 
-  __device__ void reduce() const {
+  // The sums of a tile take the place of its energies.
+  __device__ void add_up_tiles() const {
+    for (std::uint32_t tile = robot_.first_tile(); tile < robot_.last_tile(); ++tile) {
+      const Mass<Memory> mass = robot_.own_mass(tile);
+      const float kilograms = robot_.point_mass(tile);
+      const Vec3 x = mass.vector(field_x), v = mass.vector(field_v);
+      const float speed = multiply_add(v.x, v.x, multiply_add(v.y, v.y, v.z * v.z));
+      const float values[quantities] = {kilograms * x.x,          kilograms * x.y,          kilograms * x.z,
+                                        kilograms * v.x,          kilograms * v.y,          kilograms * v.z,
+                                        0.5f * kilograms * speed, mass.value(field_energy), mass.value(field_power)};
+      double each[quantities];
+#pragma unroll
+      for (std::uint32_t i = 0; i < quantities; ++i) each[i] = static_cast<double>(values[i]);
+      const double sum = sum_of_one<lanes / 2>(robot_.context().lane, each);
+      const std::uint32_t quantity = number_of_sum<lanes / 2, quantities>(robot_.context().lane);
+      __syncwarp();  // all lanes have read their energies
+      if (quantity < quantities) set_tile_sum(tile, quantity, sum);
+    }
+  }
+
+  __device__ void add_up_robot() const {
     if (robot_.thread() == 0) {  // this thread stored the status
       const DeviceStatus status = robot_.arguments().batch.statuses[robot_.context().robot];
       stage(offsetof(DeviceTelemetry, bad_mass), static_cast<int>(status.bad_mass));
@@ -72,19 +130,25 @@ class RobotReporter {
       stage(offsetof(DeviceTelemetry, strained_share),
             __float_as_int(mercury::strained_share(__float_as_uint(strained), robot_.header().springs)));
     }
-    const double share = 1.0 / robot_.header().mass;
-    for (std::uint32_t quantity = robot_.context().warp; quantity < quantities; quantity += robot_.warps()) {
-      const double total = sum(quantity);
-      if (quantity == kinetic_energy)
-        stage(offsetof(DeviceTelemetry, kinetic_energy), __double_as_longlong(total));
-      else if (quantity == elastic_energy)
-        stage(offsetof(DeviceTelemetry, elastic_energy), __double_as_longlong(0.5 * total));
-      else if (quantity == power)
-        stage(offsetof(DeviceTelemetry, muscle_power), __float_as_int(static_cast<float>(total)));
-      else  // a component of the center of mass or of the velocity, which is also the number of a field
-        stage(offsetof(DeviceTelemetry, center_of_mass) + 4 * quantity,
-              __float_as_int(static_cast<float>(share * total)));
-    }
+    if (robot_.context().warp != 0) return;
+    // Three lanes each add up a third of the tiles.
+    constexpr std::uint32_t thirds = 3;
+    const std::uint32_t lane = robot_.context().lane, quantity = lane % quantities;
+    double total = 0;
+    if (lane < thirds * quantities)
+      for (std::uint32_t tile = lane / quantities; tile < robot_.header().tiles; tile += thirds)
+        total += tile_sum(tile, quantity);
+    total += __shfl_down_sync(0xffffffffu, total, quantities) + __shfl_down_sync(0xffffffffu, total, 2 * quantities);
+    if (lane >= quantities) return;
+    if (quantity == kinetic_energy)
+      stage(offsetof(DeviceTelemetry, kinetic_energy), __double_as_longlong(total));
+    else if (quantity == elastic_energy)
+      stage(offsetof(DeviceTelemetry, elastic_energy), __double_as_longlong(0.5 * total));
+    else if (quantity == power)
+      stage(offsetof(DeviceTelemetry, muscle_power), __float_as_int(static_cast<float>(total)));
+    else  // a component of the center of mass or of the velocity
+      stage(offsetof(DeviceTelemetry, center_of_mass) + 4 * quantity,
+            __float_as_int(static_cast<float>(total * (1.0 / robot_.header().mass))));
   }
 
   __device__ void mark_inverted(const Reports& reports) const {
@@ -170,33 +234,16 @@ class RobotReporter {
     }
   }
 
-  // Over all masses. Each lane has eight loads under way at once.
-  __device__ double sum(std::uint32_t quantity) const {
-    constexpr int at_once = 8;
-    const std::uint32_t tiles = robot_.header().tiles;
-    double even = 0, odd = 0;
-    for (std::uint32_t tile = 0; tile < tiles; tile += at_once) {
-      float value[at_once];
-#pragma unroll
-      for (int i = 0; i < at_once; ++i) value[i] = tile + i < tiles ? value_of(tile + i, quantity) : 0;
-#pragma unroll
-      for (int i = 0; i < at_once; i += 2) {
-        even += static_cast<double>(value[i]);
-        odd += static_cast<double>(value[i + 1]);
-      }
-    }
-    double sum = even + odd;
-    for (std::uint32_t half = lanes / 2; half > 0; half /= 2) sum += __shfl_down_sync(0xffffffffu, sum, half);
-    return sum;
+  __device__ void set_tile_sum(std::uint32_t tile, std::uint32_t quantity, double sum) const {
+    tile_word(tile, 2 * quantity).set_value(field_energy, __int_as_float(__double2loint(sum)));
+    tile_word(tile, 2 * quantity + 1).set_value(field_energy, __int_as_float(__double2hiint(sum)));
   }
-  __device__ float value_of(std::uint32_t tile, std::uint32_t quantity) const {
-    const Mass<Memory> mass = robot_.own_mass(tile);
-    if (quantity == elastic_energy) return mass.value(field_energy);
-    if (quantity == power) return mass.value(field_power);
-    const float kilograms = robot_.point_mass(tile);
-    if (quantity != kinetic_energy) return kilograms * mass.value(quantity);
-    const Vec3 v = mass.vector(field_v);
-    return 0.5f * kilograms * multiply_add(v.x, v.x, multiply_add(v.y, v.y, v.z * v.z));
+  __device__ double tile_sum(std::uint32_t tile, std::uint32_t quantity) const {
+    return __hiloint2double(__float_as_int(tile_word(tile, 2 * quantity + 1).value(field_energy)),
+                            __float_as_int(tile_word(tile, 2 * quantity).value(field_energy)));
+  }
+  __device__ Mass<Memory> tile_word(std::uint32_t tile, std::uint32_t i) const {
+    return robot_.mass_at(tile * lanes + i);
   }
 
   // Has the bits of 32 cells in field_energy, when energies have been summed.
@@ -204,7 +251,7 @@ class RobotReporter {
   // The word of the staged report at this offset [bytes]: word i lies in field_staged of slot i.
   __device__ Mass<Memory> staged(std::uint32_t offset) const { return {robot_.context().masses + offset}; }
   __device__ void stage(std::uint32_t offset, int word) const {
-    if (robot_.context().lane == 0) staged(offset).set_value(field_staged, __int_as_float(word));
+    staged(offset).set_value(field_staged, __int_as_float(word));
   }
   __device__ void stage(std::uint32_t offset, long long words) const {
     stage(offset, static_cast<int>(words));
@@ -225,8 +272,9 @@ __device__ __noinline__ void report(const StepArguments& arguments, ThreadContex
   reporter.begin();
   __syncthreads();
   reporter.measure_springs();
+  reporter.add_up_tiles();
   __syncthreads();
-  reporter.reduce();
+  reporter.add_up_robot();
   __syncthreads();
   if (arguments.reports.robots) {
     reporter.mark_inverted(arguments.reports);

@@ -96,14 +96,15 @@ __device__ void report_if_due(const StepArguments& arguments, const Given& model
   const auto& thread = part.context.thread;
   if (part.active()) part.stepper.store_status();
   if (arguments.launch.apart) __syncthreads();  // all robots' springs are done
-  part.materials.write_rates(arguments, steps);
+  const std::uint32_t written =
+      part.materials.template write_rates<Part::EnvironmentModel::real_bodies>(arguments, steps);
   const std::uint32_t table = arguments.launch.shared_table ? 0 : thread.robot;
   report<typename Part::Robot>(arguments, thread, arguments.batch.materials + std::size_t{table} * max_materials,
                                part.context.has_robot ? arguments.reports.after(steps) + thread.robot : nullptr);
   if (steps == arguments.steps) return;
   __syncthreads();
   part.stepper.clear_sums();
-  part.materials.write_coefficients(arguments);
+  part.materials.write_coefficients(arguments, written);
   __syncthreads();
 }
 
