@@ -26,6 +26,7 @@
 #include "app/recording/configuration_json.h"
 #include "evolution/run_folder/champion_checks.h"
 #include "mercury/confirmation.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/error.h"
 #include "mercury/quantity.h"
 
@@ -247,6 +248,8 @@ int check(const CheckOptions& options) {
                   {"in", fmt::format("{}", fmt::join(environment_texts, "; others in "))},
                   {"on", device_text(report.configuration().device)},
                   {"write", options.csv}});
+  const double steps_of_trial = 7 * report.trials.seconds / report.configuration().dt;  // 1 + 2 + 4 times as many
+  prepare_cuda_for(static_cast<double>(robots.count) * report.trials.trials * steps_of_trial);
   check_groups(report, robots, objective, seed);
   for (std::size_t i = 0; i < report.robots.size(); ++i) {
     report.identities.push_back(identity_of(robots, i));

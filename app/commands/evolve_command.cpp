@@ -26,7 +26,6 @@
 #include "evolution/run_folder/champion_checks.h"
 #include "evolution/run_folder/derived_files.h"
 #include "evolution/run_folder/journal.h"
-#include "mercury/backend.h"
 #include "mercury/cuda_devices.h"
 #include "mercury/custom.h"
 #include "mercury/error.h"
@@ -81,6 +80,12 @@ void set_generations(const EvolveOptions& options, RunFolder& run) {
   run.set_generations(*given);
 }
 
+// All generations, though some may be there already.
+void prepare_cuda(const EvolutionSettings& settings) {
+  const double robots = static_cast<double>(settings.algorithm.population) * (settings.generations + 1.0);
+  prepare_cuda_for(robots * settings.trials.trials * settings.trials.seconds / settings.configuration.dt);
+}
+
 RunFolder open_folder(const EvolveOptions& options, const Command& command) {
   const std::filesystem::path folder = options.folder;
   if (options.resume) {
@@ -96,9 +101,10 @@ RunFolder open_folder(const EvolveOptions& options, const Command& command) {
   const RunSettings settings = options.run.settings(notes);
   require_no_custom_parts(options, settings);
   for (const std::string& note : notes) warn(note);
+  prepare_cuda(settings.evolution);
   // A device that is not there is noticed before a folder is made or replaced.
-  if (settings.evolution.configuration.device.kind == DeviceKind::cuda)
-    make_backend(settings.evolution.configuration.device);
+  if (const Device& device = settings.evolution.configuration.device; device.kind == DeviceKind::cuda)
+    require_cuda_device(device.index);
   return RunFolder::create(folder, settings, options.output.force());
 }
 
@@ -206,6 +212,7 @@ void report(const EvolveOptions& options, const RunFolder& run, const Evolution&
 EvolutionSettings settings_here(const EvolveOptions& options, const Command& command, const RunSettings& run) {
   EvolutionSettings settings = run.evolution;
   options.run.choose_device(command, settings.configuration);
+  prepare_cuda(settings);
   return settings;
 }
 
@@ -219,8 +226,8 @@ int evolve_in(const EvolveOptions& options, RunFolder& run, const EvolutionSetti
   if (run.history().settings().evolution.confirm)
     checks.emplace(run, checking_threads(settings.configuration.device)).update();
   const bool done = evolve(run, evolution, assessor, checks ? &*checks : nullptr);
+  if (checks) checks->update();  // while the files are written, the last champion is checked
   run.write_all();
-  if (checks) checks->update();
   const bool all_checked = !checks || finish_checks(*checks);
   if (!options.brief) {
     report(options, run, evolution);

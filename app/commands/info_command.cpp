@@ -304,6 +304,7 @@ class InfoDocument {
 };
 
 int info(const InfoOptions& options) {
+  prepare_cuda_for(0);
   if (options.json) {
     InfoDocument document;
     if (options.robots.empty()) document.set_machine(inspect_machine(options.ffmpeg));

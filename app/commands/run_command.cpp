@@ -26,6 +26,7 @@
 #include "app/recording/recorder.h"
 #include "app/recording/repro.h"
 #include "app/recording/trajectory_layout.h"
+#include "mercury/cuda_devices.h"
 #include "mercury/simulation.h"
 
 namespace mercury {
@@ -408,6 +409,7 @@ int run(RunOptions& options) {  // its robots count what is left out
   if (options.rate) require_frame_rate("--fps", *options.rate, configuration.dt);
   if (options.output.dry_run())
     return describe_work(options, configuration, std::llround(trials.seconds / configuration.dt), size_text(robots));
+  prepare_cuda_for(static_cast<double>(robots.count) * trials.trials * trials.seconds / configuration.dt);
   if (in_one) return run_in_one(options, robots, configuration, trials, seed);
   UnsavedResults results;
   const RunReport report = evaluate(robots, configuration, trials, seed, results);

@@ -2,6 +2,8 @@
 // The CUDA devices of this machine.
 #include "mercury/cuda_devices.h"
 
+#include <cstdlib>
+
 #include "sim/cuda/device_limits.h"
 #include "sim/cuda/device_parts.h"
 #include "sim/cuda/memory.h"
@@ -59,6 +61,20 @@ int cuda_device_count() {
     return 0;
   }
   return count;
+}
+
+// Measured with random voxel robots (docs/experiments.md).
+void prepare_cuda_for(double robot_steps) {
+  const char* const queues = robot_steps < 1e6 ? "1" : robot_steps < 1e8 ? "2" : robot_steps < 4e8 ? "8" : "12";
+  setenv("CUDA_DEVICE_MAX_CONNECTIONS", queues, 0);
+}
+
+void require_cuda_device(int index) {
+  const int count = cuda_device_count();
+  if (count == 0) throw DeviceError("no CUDA device was found; use the device \"cpu\"");
+  if (index >= count)
+    throw DeviceError("CUDA device " + std::to_string(index) + " is not there, the last one is " +
+                      std::to_string(count - 1));
 }
 
 std::string cuda_device_name(int index) {

@@ -6,8 +6,13 @@
 
 namespace mercury {
 
-std::unique_ptr<Backend> make_cuda_backend(const Device&, std::shared_ptr<PreparedRobots>) {
+void prepare_cuda_for(double) {}
+void require_cuda_device(int) {
   throw DeviceError("this build has no CUDA backend; build with nvcc on PATH, or use the device \"cpu\"");
+}
+std::unique_ptr<Backend> make_cuda_backend(const Device& device, std::shared_ptr<PreparedRobots>) {
+  require_cuda_device(device.index);
+  return nullptr;
 }
 std::unique_ptr<Backend> make_cuda_backend(const Device& device) { return make_cuda_backend(device, nullptr); }
 std::shared_ptr<PreparedRobots> prepare_for_cuda() { return nullptr; }

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much shared memory a robot needs, and whether it fits on the CUDA device of this machine.
+// How much shared memory a robot needs, whether it fits on the CUDA device of this machine, and what is asked of
+// devices.
 #include "mercury/cuda_devices.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "mercury/error.h"
 #include "mercury/simulation.h"
@@ -59,6 +65,40 @@ TEST(Chip, AgreesWithABatchOnTheDevice) {
         EXPECT_EQ(fit.robots_at_once, batch.robots_at_once()) << masses;
         EXPECT_EQ(chip_bytes(robot, configuration) <= fit.most_bytes, fit.contacts_on_chip) << masses;
       }
+}
+
+TEST(CudaDevices, OneThatIsNotThereIsRefused) {
+  const int count = cuda_device_count();
+  EXPECT_THROW(require_cuda_device(count), DeviceError);
+  if (count == 0) {
+    EXPECT_THROW(require_cuda_device(Device::all_devices), DeviceError);
+  } else {
+    EXPECT_NO_THROW(require_cuda_device(count - 1));
+    EXPECT_NO_THROW(require_cuda_device(Device::all_devices));
+  }
+}
+
+// The number for one amount of work is a choice, but more work never has fewer.
+TEST(CudaDevices, MoreWorkHasMoreQueuesUnlessTheUserSaysHowMany) {
+  if (!built_with_cuda()) GTEST_SKIP() << "a build without CUDA";
+  constexpr const char* variable = "CUDA_DEVICE_MAX_CONNECTIONS";
+  const char* const before = std::getenv(variable);
+  const std::string user = before ? before : "";
+  std::vector<int> queues;
+  for (const double steps : {0.0, 1e5, 1e7, 1e8, 1e9, 1e12}) {
+    unsetenv(variable);
+    prepare_cuda_for(steps);
+    queues.push_back(std::stoi(std::getenv(variable)));
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(queues));
+  EXPECT_EQ(queues.front(), 1);
+  EXPECT_GT(queues.back(), 8);   // more than CUDA makes by itself
+  EXPECT_LE(queues.back(), 32);  // and no more than it can
+  setenv(variable, "5", 1);
+  prepare_cuda_for(1e12);
+  EXPECT_STREQ(std::getenv(variable), "5");
+  unsetenv(variable);
+  if (before) setenv(variable, user.c_str(), 1);
 }
 
 }  // namespace

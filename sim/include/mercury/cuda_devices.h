@@ -14,6 +14,14 @@ namespace mercury {
 bool built_with_cuda();
 // Usable CUDA devices; 0 without a driver or in a build without CUDA.
 int cuda_device_count();
+// Says how much there is to do, in steps of one robot. To be called before all else that uses CUDA in this process, by
+// a program: CUDA makes 8 queues for the work of its streams, each in 15 to 30 ms, and what is in a queue waits for
+// what is before it. So fewer are better for a short trial, and more for an evolution of some seconds. Sets the
+// environment variable CUDA_DEVICE_MAX_CONNECTIONS, unless it is set.
+void prepare_cuda_for(double robot_steps);
+// Throws DeviceError if there is no device of that index, or none at all for Device::all_devices. It takes half of the
+// time in which a device starts.
+void require_cuda_device(int index);
 // For example "NVIDIA H100 80GB HBM3"; empty in a build without CUDA. Throws DeviceError if the device does not exist.
 std::string cuda_device_name(int index);
 // Memory of a device that no program uses [bytes]. Throws DeviceError if the device does not exist.
