@@ -4,9 +4,12 @@
 #include <utility>
 
 #include "mercury/error.h"
+#include "sim/cuda/rest_lengths.h"
 
 namespace mercury {
 namespace cuda {
+
+RobotFindings look_at(const Robot& robot) { return {topology_key(robot), measure(robot), record_words_for(robot)}; }
 
 void ArrangedRobots::prepare(const std::shared_ptr<const Robot>& robot) {
   try {
@@ -14,23 +17,24 @@ void ArrangedRobots::prepare(const std::shared_ptr<const Robot>& robot) {
   } catch (const InputError&) {
     return;
   }
-  const std::uint64_t topology = topology_key(*robot);
+  Entry entry{robot, look_at(*robot), nullptr};
+  bool is_first;
   {
     const std::lock_guard lock(mutex_);
-    if (!topologies_.insert(topology).second) return;
+    is_first = topologies_.insert(entry.findings.topology).second;
   }
-  auto arrangement = std::make_unique<const Arrangement>(arrange(*robot));
+  if (is_first) entry.arrangement = std::make_unique<const Arrangement>(arrange(*robot));
   const std::lock_guard lock(mutex_);
-  entries_.try_emplace(robot.get(), robot, std::move(arrangement));
+  entries_.try_emplace(robot.get(), std::move(entry));
 }
 
-std::unique_ptr<const Arrangement> ArrangedRobots::take(const Robot& robot) {
+// In one go: thousands of robots from all threads would wait for the mutex longer than this takes.
+std::vector<std::optional<ArrangedRobots::Entry>> ArrangedRobots::take(std::span<const Robot* const> robots) {
+  std::vector<std::optional<Entry>> taken(robots.size());
   const std::lock_guard lock(mutex_);
-  const auto found = entries_.find(&robot);
-  if (found == entries_.end()) return nullptr;
-  std::unique_ptr<const Arrangement> arrangement = std::move(found->second.arrangement);
-  entries_.erase(found);
-  return arrangement;
+  for (std::size_t i = 0; i < robots.size() && !entries_.empty(); ++i)
+    if (auto found = entries_.extract(robots[i])) taken[i] = std::move(found.mapped());
+  return taken;
 }
 
 }  // namespace cuda

@@ -1,30 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrangements made before a device has started (mercury/prepared_robots.h).
+// What is worked out of a robot before it is loaded, and such work done before a device has started
+// (mercury/prepared_robots.h).
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 #include "mercury/prepared_robots.h"
 #include "sim/cuda/arrangement.h"
+#include "sim/physics/measures.h"
 
 namespace mercury::cuda {
 
+struct RobotFindings {
+  std::uint64_t topology = 0;  // its key
+  RobotMeasures measures;
+  std::uint32_t record_words = 1;
+};
+RobotFindings look_at(const Robot& robot);
+
 class ArrangedRobots final : public PreparedRobots {
  public:
-  // Does nothing for a robot of a topology that was there before, since such robots share an arrangement.
-  void prepare(const std::shared_ptr<const Robot>& robot) override;
-  // The arrangement of this robot, which is then no longer here; null if there is none.
-  std::unique_ptr<const Arrangement> take(const Robot& robot);
-
- private:
   struct Entry {
     std::shared_ptr<const Robot> robot;  // so that no other robot gets its address
+    RobotFindings findings;
+    // Null if a robot of its topology was there before, since such robots share one.
     std::unique_ptr<const Arrangement> arrangement;
   };
 
+  void prepare(const std::shared_ptr<const Robot>& robot) override;
+  // The entry of each robot, which is then no longer here; none if there is none.
+  std::vector<std::optional<Entry>> take(std::span<const Robot* const> robots);
+
+ private:
   std::mutex mutex_;
   std::unordered_set<std::uint64_t> topologies_;  // keys of all that were ever here
   std::unordered_map<const Robot*, Entry> entries_;

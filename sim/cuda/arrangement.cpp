@@ -73,6 +73,11 @@ std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robot
   });
   for (std::size_t i = 0; i < robots.size(); ++i)
     if (is_repeated(i)) keys[i] = keys[i - 1];
+  return first_of_topology(robots, keys);
+}
+
+std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots,
+                                             std::span<const std::uint64_t> keys) {
   std::unordered_map<std::uint64_t, std::uint32_t> first_of_key;
   for (std::uint32_t i = 0; i < robots.size(); ++i) first_of_key.try_emplace(keys[i], i);
   std::vector<std::uint32_t> first(robots.size());

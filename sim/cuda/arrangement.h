@@ -24,7 +24,9 @@ struct Arrangement {
 Arrangement arrange(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts = 0);
 inline Arrangement arrange(const Robot& robot) { return arrange(robot, pair_faces(robot)); }
 
-// For each robot the first one of the same topology (mercury/robot.h), which may be the robot itself. Uses all cores.
+// For each robot the first one of the same topology (mercury/robot.h), which may be the robot itself. `keys` = those of
+// their topologies. Uses all cores, as the other one does.
+std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots, std::span<const std::uint64_t> keys);
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots);
 
 }  // namespace mercury::cuda

@@ -19,12 +19,12 @@ namespace cuda {
 
 CudaBackend::CudaBackend(const Device& device, std::shared_ptr<ArrangedRobots> arranged)
     : device_(device.index), arranged_(std::move(arranged)) {
-  const int count = cuda_device_count();
-  if (count == 0) throw DeviceError("no CUDA device was found; use the device \"cpu\"");
-  if (device_ >= count)
-    throw DeviceError("CUDA device " + std::to_string(device_) + " is not there, the last one is " +
-                      std::to_string(count - 1));
+  require_cuda_device(device_);
   use_device();
+  memory_ = std::async(std::launch::async, [this] {
+    use_device();
+    set_up_memory();
+  });
   name_ = cuda_device_name(device_);
   owned_ = std::make_unique<Owned>();
 }

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <future>
 #include <memory>
 #include <string>
 #include <utility>
@@ -168,6 +169,7 @@ class CudaBackend final : public Backend {
   void copy_reports(const ReportAt& report_at, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const;
 
   int device_;
+  std::future<void> memory_;  // is set up while robots are checked
   std::shared_ptr<ArrangedRobots> arranged_;
   std::string name_;
   std::unique_ptr<Owned> owned_;

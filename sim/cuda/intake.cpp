@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <optional>
 
 #include "mercury/parallel.h"
 #include "mercury/stopwatch.h"
 #include "mercury/work_counter.h"
-#include "sim/cuda/rest_lengths.h"
 
 namespace mercury::cuda {
 namespace {
@@ -24,8 +24,7 @@ std::uint32_t class_limit(std::uint32_t tiles) {
 
 struct NewRobot {
   const Robot* robot = nullptr;
-  RobotMeasures measures;
-  std::uint32_t record_words = 1;
+  RobotFindings findings;
   Place place{};
   std::uint32_t first_of_topology = 0;
 };
@@ -37,16 +36,22 @@ class Intake {
       : classes_(classes), configuration_(configuration), times_(times), watch_(watch), new_robots_(robots.size()),
         arrangements_(robots.size()), users_(robots.size()), order_(robots.size()) {
     const Stopwatch stopwatch(times_.schedule);
-    const std::vector<std::uint32_t> first = first_of_topology(robots);
+    std::vector<std::optional<ArrangedRobots::Entry>> known(robots.size());
+    if (arranged) known = arranged->take(robots);
     const auto is_repeated = [&](std::size_t i) { return i > 0 && robots[i] == robots[i - 1]; };
     parallel_for(0, robots.size(), [&](std::size_t i) {
-      if (is_repeated(i)) return;
-      new_robots_[i] = {robots[i], measure(*robots[i]), record_words_for(*robots[i]), {}, first[i]};
-      if (arranged && first[i] == i) arrangements_[i] = arranged->take(*robots[i]);
+      if (!is_repeated(i)) new_robots_[i] = {robots[i], known[i] ? known[i]->findings : look_at(*robots[i])};
     });
+    std::vector<std::uint64_t> keys(robots.size());
     for (std::size_t i = 0; i < robots.size(); ++i) {
       if (is_repeated(i)) new_robots_[i] = new_robots_[i - 1];
-      ++users_[new_robots_[i].first_of_topology];
+      keys[i] = new_robots_[i].findings.topology;
+    }
+    const std::vector<std::uint32_t> first = first_of_topology(robots, keys);
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      new_robots_[i].first_of_topology = first[i];
+      ++users_[first[i]];
+      if (known[i] && known[i]->arrangement) arrangements_[first[i]] = std::move(known[i]->arrangement);
     }
     assign_places();
   }
@@ -59,7 +64,12 @@ class Intake {
         first = last;
         if (watch_) watch_("uploading robots", first, order_.size());
       }
-      for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].publish(first_new_[c], configuration_);
+      int device = 0;
+      check(cudaGetDevice(&device), "querying the current device");
+      parallel_tasks(0, first_new_.size(), [&](std::size_t c) {
+        check(cudaSetDevice(device), "choosing the device");
+        classes_[c].publish(first_new_[c], configuration_);
+      });
     } catch (...) {
       for (std::size_t c = 0; c < first_new_.size(); ++c) classes_[c].truncate(first_new_[c]);
       throw;
@@ -77,7 +87,7 @@ class Intake {
   // Sorts the new robots by class, then by descending springs, and gives them the next places of their classes.
   void assign_places() {
     for (NewRobot& entry : new_robots_)
-      entry.place.size_class = classes_.class_for(tiles_for(entry.robot->masses.size()), entry.record_words);
+      entry.place.size_class = classes_.class_for(tiles_for(entry.robot->masses.size()), entry.findings.record_words);
     std::iota(order_.begin(), order_.end(), 0u);
     std::ranges::stable_sort(order_, [&](std::uint32_t a, std::uint32_t b) {
       const NewRobot &one = new_robots_[a], &other = new_robots_[b];
@@ -161,7 +171,7 @@ class Intake {
       parallel_for(0, run.robots.size(), [&](std::size_t k) {
         const NewRobot& entry = new_robots_[run.robots[k]];
         const Arrangement& arrangement = arrangement_of(run.robots[k]);
-        run.to.set_robot(entry.place.number, *entry.robot, entry.measures, arrangement);
+        run.to.set_robot(entry.place.number, *entry.robot, entry.findings.measures, arrangement);
         chunks.fill(k, *entry.robot, arrangement);
       });
       run.to.write_chunks(first_place_of(run), chunks);

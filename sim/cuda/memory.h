@@ -26,6 +26,9 @@ namespace mercury::cuda {
 // not pinned memory before the stream has done it. `what` says what it is for.
 void upload(void* to, const void* from, std::size_t bytes, cudaStream_t stream, const char* what);
 
+// Gets the first memory of the current device, which takes 10 ms. Otherwise the first allocation does.
+void set_up_memory();
+
 // Bytes of zeros on the current device, ready for use by all streams. Throws DeviceError if there is no room.
 void* allocate_on_device(std::size_t bytes);
 // No stream may still use them. The device that holds them must be the current one.

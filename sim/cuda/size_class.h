@@ -35,6 +35,22 @@
 
 namespace mercury::cuda {
 
+// For a vector whose new elements are unset until they are written. All threads that write them then get their memory
+// from the system, not one before them.
+template <class T>
+struct UnsetAllocator : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = UnsetAllocator<U>;
+  };
+  template <class U>
+  void construct(U*) const {}
+  template <class U, class Value>
+  void construct(U* at, Value&& value) const {
+    std::construct_at(at, std::forward<Value>(value));
+  }
+};
+
 class SizeClass {
  public:
   explicit SizeClass(std::uint32_t record_words) { sizes_.record_words = record_words; }
@@ -165,8 +181,8 @@ class SizeClass {
   std::vector<std::optional<Environment>> environments_;        // nothing = the configuration's
   std::vector<std::vector<PointProperties>> point_properties_;  // by mass; empty = free masses of 1 kg
   std::vector<std::shared_ptr<const SlotOrder>> slot_tables_;
-  std::vector<std::uint64_t> first_mass_;  // as in set_first_masses()
-  std::vector<Material> materials_;        // [place][max_materials]
+  std::vector<std::uint64_t> first_mass_;                      // as in set_first_masses()
+  std::vector<Material, UnsetAllocator<Material>> materials_;  // [place][max_materials], set by set_robot()
   LaunchConfiguration launch_, launch_of_many_;
   std::optional<LaunchConfiguration> launch_in_parts_;
   DeviceParts parts_;

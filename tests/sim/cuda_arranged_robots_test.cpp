@@ -4,7 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
+#include "sim/cuda/rest_lengths.h"
 #include "tests/sim/bodies.h"
 
 namespace mercury::cuda {
@@ -14,29 +19,38 @@ std::shared_ptr<const Robot> random_robot(std::uint64_t seed) {
   return std::make_shared<const Robot>(bodies::random_voxels({.x = 3, .y = 2, .z = 3}, seed));
 }
 
-TEST(ArrangedRobots, GiveTheArrangementThatARobotHasOtherwise) {
+std::optional<ArrangedRobots::Entry> take(ArrangedRobots& robots, const Robot& robot) {
+  const Robot* const one = &robot;
+  return std::move(robots.take(std::span(&one, 1)).front());
+}
+
+TEST(ArrangedRobots, GiveWhatARobotHasOtherwise) {
   ArrangedRobots robots;
   const auto robot = random_robot(1);
   robots.prepare(robot);
-  const std::unique_ptr<const Arrangement> found = robots.take(*robot);
-  ASSERT_TRUE(found);
+  const std::optional<ArrangedRobots::Entry> found = take(robots, *robot);
+  ASSERT_TRUE(found && found->arrangement);
+  EXPECT_EQ(found->robot, robot);
   const Arrangement wanted = arrange(*robot);
-  EXPECT_EQ(found->order->slots, wanted.order->slots);
-  EXPECT_EQ(found->schedule.row_start, wanted.schedule.row_start);
-  EXPECT_EQ(found->faces.size(), wanted.faces.size());
+  EXPECT_EQ(found->arrangement->order->slots, wanted.order->slots);
+  EXPECT_EQ(found->arrangement->schedule.row_start, wanted.schedule.row_start);
+  EXPECT_EQ(found->arrangement->faces.size(), wanted.faces.size());
+  EXPECT_EQ(found->findings.topology, topology_key(*robot));
+  EXPECT_EQ(found->findings.record_words, record_words_for(*robot));
+  EXPECT_EQ(found->findings.measures.squared_stretch_limit(), measure(*robot).squared_stretch_limit());
 }
 
 TEST(ArrangedRobots, AreTakenOnce) {
   ArrangedRobots robots;
   const auto robot = random_robot(1), other = random_robot(2);
-  EXPECT_FALSE(robots.take(*robot));
+  EXPECT_FALSE(take(robots, *robot));
   robots.prepare(robot);
-  EXPECT_FALSE(robots.take(*other));
-  EXPECT_TRUE(robots.take(*robot));
-  EXPECT_FALSE(robots.take(*robot));
+  EXPECT_FALSE(take(robots, *other));
+  EXPECT_TRUE(take(robots, *robot));
+  EXPECT_FALSE(take(robots, *robot));
 }
 
-TEST(ArrangedRobots, AreOnePerTopology) {
+TEST(ArrangedRobots, HaveOneArrangementPerTopology) {
   ArrangedRobots robots;
   const auto robot = random_robot(1);
   Robot softer = *robot;
@@ -44,8 +58,12 @@ TEST(ArrangedRobots, AreOnePerTopology) {
   const auto same_topology = std::make_shared<const Robot>(softer);
   robots.prepare(robot);
   robots.prepare(same_topology);
-  EXPECT_FALSE(robots.take(*same_topology));
-  EXPECT_TRUE(robots.take(*robot));
+  const Robot* const both[] = {same_topology.get(), robot.get()};
+  const std::vector<std::optional<ArrangedRobots::Entry>> found = robots.take(both);
+  ASSERT_TRUE(found.size() == 2 && found[0] && found[1]);
+  EXPECT_FALSE(found[0]->arrangement);
+  EXPECT_TRUE(found[1]->arrangement);
+  EXPECT_EQ(found[0]->findings.topology, found[1]->findings.topology);
 }
 
 TEST(ArrangedRobots, LiveUntilTheyAreTaken) {
@@ -55,7 +73,7 @@ TEST(ArrangedRobots, LiveUntilTheyAreTaken) {
   robots.prepare(robot);
   robot.reset();
   ASSERT_FALSE(watched.expired());
-  robots.take(*watched.lock());
+  take(robots, *watched.lock());
   EXPECT_TRUE(watched.expired());
 }
 
@@ -65,7 +83,7 @@ TEST(ArrangedRobots, PassOverOneThatBreaksARule) {
   broken.springs.front().a = 60000;
   const auto robot = std::make_shared<const Robot>(broken);
   robots.prepare(robot);
-  EXPECT_FALSE(robots.take(*robot));
+  EXPECT_FALSE(take(robots, *robot));
 }
 
 }  // namespace
