@@ -182,6 +182,19 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
       .configuration = configuration, .settle = trials.settle, .trials = trials.trials, .jitter = trials.jitter};
   std::optional<std::int64_t> reached;  // steps of the trial
   std::vector<Evaluation> of_robot;     // those of its trials that have come so far
+  // Of robots all of whose trials have come. Their results are worked out on all cores, many at a time: the last robots
+  // of a device come at once, and each takes as long as its origin is.
+  constexpr std::size_t most_waiting = 512;
+  std::vector<std::vector<Evaluation>> waiting;
+  const auto work_out = [&] {
+    const std::size_t first = report.robots.size();
+    report.robots.resize(first + waiting.size());
+    parallel_for(0, waiting.size(), [&](std::size_t i) {
+      const std::vector<Evaluation> own = std::move(waiting[i]);
+      report.robots[first + i] = result_of(identity_of(robots, own.front().index / per_robot), own, request, trials);
+    });
+    waiting.clear();
+  };
   const auto take = [&](const Evaluation& trial) {
     const std::size_t robot = trial.index / per_robot;
     if (!of_robot.empty() && of_robot.front().index / per_robot != robot) of_robot.clear();
@@ -192,8 +205,8 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
     }
     of_robot.push_back(trial);
     if (of_robot.size() < per_robot) return;
-    report.robots.push_back(result_of(identity_of(robots, robot), of_robot, request, trials));
-    of_robot.clear();
+    waiting.push_back(std::exchange(of_robot, {}));
+    if (waiting.size() == most_waiting) work_out();
   };
   bool stopped = false;
   {
@@ -202,11 +215,13 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
     try {
       stopped = !take_results(evaluator, progress, request.settling + request.steps, results, take);
     } catch (const DeviceError& error) {
+      work_out();
       if (report.robots.empty()) throw;
       report.problem = error.what();
       stopped = true;
     }
   }
+  work_out();
   report.missing = robots.count - report.robots.size();
   report.interrupted = stopped && (report.missing > 0 || reached.value_or(0) < request.steps);
   if (!report.interrupted) report_failures(robots, report.robots);
