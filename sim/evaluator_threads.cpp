@@ -136,7 +136,8 @@ void Evaluator::Parts::make_portions() {
 
 void Evaluator::Parts::prepare(const std::vector<std::shared_ptr<const Robot>>& robots) {
   parallel_for(0, robots.size(), [&](std::size_t i) {
-    if (may_prepare) prepared->prepare(robots[i]);
+    const bool is_repeated = i > 0 && robots[i] == robots[i - 1];
+    if (may_prepare && !is_repeated) prepared->prepare(robots[i]);
   });
 }
 

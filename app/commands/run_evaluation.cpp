@@ -183,7 +183,7 @@ RunReport evaluate(const RobotSequence& robots, const Configuration& configurati
   std::optional<std::int64_t> reached;  // steps of the trial
   std::vector<Evaluation> of_robot;     // those of its trials that have come so far
   // Of robots all of whose trials have come. Their results are worked out on all cores, many at a time: the last robots
-  // of a device come at once, and each takes as long as its origin is.
+  // of a device come at once, and the origin of each is parsed.
   constexpr std::size_t most_waiting = 512;
   std::vector<std::vector<Evaluation>> waiting;
   const auto work_out = [&] {
