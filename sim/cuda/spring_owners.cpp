@@ -283,6 +283,7 @@ MassBanks::MassBanks(std::size_t masses, std::span<const OwnedSpring> springs) {
     others_[slot] = static_cast<std::uint8_t>(others);
     before_others_[slot] = static_cast<std::uint8_t>(next - 1);
     next += others;
+    has_others_ = true;
   }
 }
 

@@ -50,12 +50,15 @@ class MassBanks {
   std::uint32_t count(std::uint32_t slot) const { return others_[slot % lanes] + 1u; }
   // That of a spring's partner which its owner uses.
   std::uint32_t bank_of(OwnedSpring s) const {
-    const std::uint32_t first = s.partner % lanes, other = s.owner & others_[first];
+    const std::uint32_t first = s.partner % lanes;
+    if (!has_others_) return first;  // as in nearly all robots
+    const std::uint32_t other = s.owner & others_[first];
     return other == 0 ? first : before_others_[first] + other;
   }
   std::uint32_t bank_counter(OwnedSpring s) const { return s.owner / lanes * tile_counters + lanes + bank_of(s); }
 
  private:
+  bool has_others_ = false;
   std::array<std::uint8_t, lanes> others_{}, before_others_{};  // [bank], 0, 1 or 3 others, which follow this one
 };
 
