@@ -11,7 +11,7 @@
 //   -- barrier --
 //   mark_inverted     each warp     which of 32 cells are inside out, if asked for     -> fields of the masses
 //   -- barrier --
-//   sum_inverted      one warp      their volume                                       -> the staged report
+//   sum_inverted      one thread    their volume                                       -> the staged report
 //   -- barrier --
 //   write             each thread   one word of the staged report                      -> host memory
 //
@@ -65,7 +65,7 @@ __device__ std::uint32_t number_of_sum(std::uint32_t lane) {
     constexpr std::uint32_t half = divide_up(count, 2);
     const std::uint32_t of_half = number_of_sum<distance / 2, half>(lane);
     const std::uint32_t number = of_half + (lane & distance ? half : 0);
-    return of_half < half && number < count ? number : Failure::never;
+    return of_half < half && number < count ? number : ~0u;
   }
 }
 
@@ -169,7 +169,7 @@ class RobotReporter {
 
   // Volumes are added in the order of the cells, as on the host.
   __device__ void sum_inverted(const Reports& reports) const {
-    if (robot_.context().warp != 0) return;
+    if (robot_.thread() != 0) return;
     const RobotCells of_robot = reports.robots[robot_.context().robot];
     double inverted = 0;
     for (std::uint32_t word = 0; word * lanes < of_robot.count; ++word)
