@@ -34,7 +34,7 @@ Robot body_for(std::size_t senses) {
 Thought thought_of(const Genome& genome) { return Thought(*genome.grow("").brain); }
 
 // How many robots a run has tried when it solves its task, and the one that did.
-struct Search {
+struct NeatSearch {
   int evaluations = 0;
   GenomePointer solution;
 };
@@ -46,7 +46,7 @@ class Task : public Assessor {
   Task(std::size_t senses, Score score, double enough)
       : body_(body_for(senses)), score_(std::move(score)), enough_(enough) {}
 
-  Search search(std::uint64_t seed) {
+  NeatSearch search(std::uint64_t seed) {
     EvolutionSettings settings;
     settings.algorithm = {.name = "neat", .population = 150, .crossover = 0.75};  // the paper's
     settings.generations = 100;
@@ -54,7 +54,7 @@ class Task : public Assessor {
     const auto space = make_genome_space(
         {.genes = Genes::brain, .founders = {body_}, .growth = {.brain_growth = true, .recurrence = 0}});
     Evolution evolution(settings, *space);
-    Search search;
+    NeatSearch search;
     while (const std::optional<Generation> generation = evolution.advance(*this)) {
       const auto best =
           std::ranges::find_if(generation->born, [&](const Individual& i) { return i.score() >= enough_; });
@@ -122,7 +122,7 @@ TEST(Neat, FindsXorWithAboutAsManyEvaluationsAsPublished) {
   int solved = 0;
   constexpr int runs = 25;
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-    const Search search = Task(2, xor_score, 100).search(seed);
+    const NeatSearch search = Task(2, xor_score, 100).search(seed);
     evaluations.push_back(search.evaluations);
     if (!search.solution) continue;
     ++solved;
@@ -201,9 +201,9 @@ TEST(Neat, BalancesTwoPoles) {
   int solved = 0;
   constexpr int runs = 5, most = 100'000;
   for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-    const Search search = Task(
-                              6, [](Thought& thought) { return steps_in_balance(thought, most); }, most)
-                              .search(seed);
+    const NeatSearch search = Task(
+                                  6, [](Thought& thought) { return steps_in_balance(thought, most); }, most)
+                                  .search(seed);
     evaluations.push_back(search.evaluations);
     solved += search.solution != nullptr;
   }

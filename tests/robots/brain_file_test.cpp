@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 // A chain of three springs with materials 1, 2 and 3 of the default table, and these members.
-std::string chain(const std::string& members) {
+std::string chain_with(const std::string& members) {
   return R"({"format":"mercury-robot","version":1,"name":"chain","masses":[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],)"
          R"("springs":[[0,1,1],[1,2,2],[2,3,3]],"faces":[],"actuators":[{"name":"a","materials":[1]},{"name":"b","materials":[2,3]}],)" +
          members + "}";
@@ -40,14 +40,14 @@ class BrainsInFiles : public testing::TestWithParam<RobotFormat> {
     return parse_robot(cbor, GetParam());
   }
   static std::string refusal(const std::string& members) {
-    return mercury::refusal([&] { read(chain(members)); });
+    return mercury::refusal([&] { read(chain_with(members)); });
   }
 };
 INSTANTIATE_TEST_SUITE_P(Formats, BrainsInFiles, testing::Values(RobotFormat::json, RobotFormat::cbor),
                          [](const auto& format) { return format.param == RobotFormat::json ? "json" : "cbor"; });
 
 TEST_P(BrainsInFiles, AreRead) {
-  const Robot robot = read(chain(whole));
+  const Robot robot = read(chain_with(whole));
   ASSERT_EQ(robot.sensors.size(), 5u);
   EXPECT_EQ(robot.sensors[0], (Sensor{.kind = SensorKind::clock, .frequency = 6.5f, .phase = 0.25f}));
   EXPECT_EQ(robot.sensors[1],
@@ -71,7 +71,7 @@ TEST_P(BrainsInFiles, AreRead) {
 }
 
 TEST_P(BrainsInFiles, ComeBackAsTheyWereWritten) {
-  Robot robot = read(chain(whole));
+  Robot robot = read(chain_with(whole));
   robot.brain->outputs.clear();
   robot.brain->layers[0].inputs[0].weights[3] = 7.0385307e-26f;  // whose shortest text rounds twice by way of a double
   const std::string written = serialize_robot(robot, GetParam());
@@ -88,8 +88,8 @@ TEST_P(BrainsInFiles, ComeBackAsTheyWereWritten) {
 
 // A layer is gated by one that stands before it, keeps what another says or a number, and says so in `requires`.
 TEST_P(BrainsInFiles, HaveGates) {
-  const Robot robot =
-      read(chain(R"("brain":{"layers":[{"name":"in","neurons":2,"activation":"sigmoid"},)"
+  const Robot robot = read(
+      chain_with(R"("brain":{"layers":[{"name":"in","neurons":2,"activation":"sigmoid"},)"
                  R"({"name":"cell","neurons":2,"gate":"in","keep":"out"},)"
                  R"({"name":"out","neurons":2,"alpha":0.5,"keep":[0,1]},{"name":"motor","neurons":2,"keep":0}]})"));
   const std::vector<NeuronLayer>& layers = robot.brain->layers;
@@ -106,7 +106,7 @@ TEST_P(BrainsInFiles, HaveGates) {
 }
 
 TEST_P(BrainsInFiles, SensorsNeedNoBrain) {
-  const Robot robot = read(chain(R"("sensors":[{"kind":"up"}])"));
+  const Robot robot = read(chain_with(R"("sensors":[{"kind":"up"}])"));
   EXPECT_EQ(robot.sensors.size(), 1u);
   EXPECT_FALSE(robot.brain);
 }
@@ -161,7 +161,7 @@ TEST_P(BrainsInFiles, ErrorsSayWhere) {
 }
 
 TEST(BrainOfAChangedBody, StaysIfItFits) {
-  const Robot robot = parse_robot(chain(whole), RobotFormat::json);
+  const Robot robot = parse_robot(chain_with(whole), RobotFormat::json);
   Robot longer = robot;
   longer.sensors.clear();
   longer.brain.reset();

@@ -32,11 +32,11 @@ constexpr float dt = 1e-3f;
 std::vector<float> drives(SharedBatch& batch) { return batch.read(batch->actuation().drive); }
 
 // Layers of doubles: what mercury/brain.h says, from the senses that the batch sampled.
-struct Reference {
+struct BrainInDoubles {
   const Robot& robot;
   std::vector<std::vector<double>> y;
 
-  explicit Reference(const Robot& of) : robot(of) {
+  explicit BrainInDoubles(const Robot& of) : robot(of) {
     for (const NeuronLayer& layer : robot.brain->layers) y.emplace_back(layer.neurons, 0.0);
   }
   const std::vector<double>& of(const std::string& name) const {
@@ -120,7 +120,7 @@ TEST_P(BrainOn, ThinksAsTheEquationSays) {
   for (const Robot& robot : {thinker(), lstm(), gated()}) {
     SharedBatch batch = this->batch({.dt = dt, .environment = Ocean{}}, std::span(&robot, 1));
     batch->set_target(0, Vec3{1, 2, 3});
-    Reference reference(robot);
+    BrainInDoubles reference(robot);
     for (int thought = 0; thought < 100; ++thought) {
       batch->step(20);
       const BrainState state = batch->brain_state(0);

@@ -14,7 +14,7 @@ namespace {
 using reference::Vector;
 using reference::vector_of;
 
-constexpr float edge = 0.1f;  // [m]
+constexpr float voxel_edge = 0.1f;  // [m]
 constexpr Material stiff{5000, 0, 0, 0}, soft{50, 0, 0, 0};
 
 class Water : public BackendTest {
@@ -26,7 +26,7 @@ class Water : public BackendTest {
 INSTANTIATE_TEST_SUITE_P(All, Water, every_device, BackendTest::name);
 
 Robot cube(std::uint64_t orientation, const Material& material = stiff) {
-  Robot robot = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = edge}, material);
+  Robot robot = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = voxel_edge}, material);
   bodies::rotate(robot, bodies::random_rotation(orientation));
   return robot;
 }
@@ -276,14 +276,14 @@ TEST_P(Water, AFlowCarriesACubeUpToItsOwnVelocity) {
 // flat has the shadow A, but only for a while, because turning a little increases its shadow. The test measures before.
 TEST_P(Water, TerminalSpeedOfAFallingCubeIsThatOfEquationOne) {
   const double g = 2, density = 1000, drag = 1.1, mass = 8;
-  const Robot flat = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = edge}, stiff);
+  const Robot flat = bodies::voxels({.x = 1, .y = 1, .z = 1, .edge = voxel_edge}, stiff);
   for (const Solver solver : {Solver::force, Solver::xpbd})
     for (const float lift : {0.0f, 0.2f}) {
       Simulation simulation(
           water({.drag_coefficient = 1.1f, .lift_coefficient = lift, .gravity = {0, 0, -2}}, 1e-3, solver),
           std::vector<Robot>{flat, cube(1), cube(2), cube(3)});
       simulation.step(2500);
-      const double expected = std::sqrt(mass * g / (density * double{edge} * double{edge} * drag));
+      const double expected = std::sqrt(mass * g / (density * double{voxel_edge} * double{voxel_edge} * drag));
       EXPECT_NEAR(-mean_velocity(simulation, 0).z(), expected, 0.01 * expected) << name_of(solver) << " lift " << lift;
       simulation.step(2500);
       for (std::size_t i = 0; i < simulation.size(); ++i) {

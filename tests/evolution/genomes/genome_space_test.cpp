@@ -46,7 +46,7 @@ Robot given_robot() {
   return robot;
 }
 
-Robot thinking_robot() {
+Robot thinking_voxels() {
   Robot robot = given_robot();
   give_brain_per_actuator(robot, 3);
   set_weights(*robot.brain, random_brain_genes(*robot.brain, 1).weights);
@@ -56,7 +56,7 @@ Robot thinking_robot() {
 GenomeSpaceRequest request_for(const Case& chosen) {
   if (chosen.kind == "given")
     return {.genes = chosen.genes,
-            .founders = {chosen.genes == Genes::muscles ? given_robot() : thinking_robot()},
+            .founders = {chosen.genes == Genes::muscles ? given_robot() : thinking_voxels()},
             .muscles = chosen.muscles,
             .growth = chosen.growth};
   GenomeSpaceRequest request{.kind = chosen.kind,

@@ -353,7 +353,7 @@ TEST_P(CmaEs, BeginsAgainWithTwiceThePopulationWhereItStandsStill) {
 
 // --- In an evolution
 
-EvolutionSettings settings_of(const std::string& name) {
+EvolutionSettings vector_settings(const std::string& name) {
   EvolutionSettings settings{.generations = 10};
   settings.algorithm = {.name = name, .population = 8};
   return settings;
@@ -387,7 +387,7 @@ std::string refusal(const EvolutionSettings& settings, const GenomeSpace& space)
 TEST_P(CmaEs, BeginsWithTheFounder) {
   const FounderSpace space(1);
   VectorAssessor assessor;
-  Evolution evolution(settings_of(GetParam()), space);
+  Evolution evolution(vector_settings(GetParam()), space);
   const std::optional<Generation> first = evolution.advance(assessor);
   ASSERT_EQ(first->born.size(), 8u);
   EXPECT_EQ(first->born[0].genome->numbers().size(), 4u);
@@ -399,12 +399,12 @@ TEST_P(CmaEs, BeginsWithTheFounder) {
 }
 
 TEST_P(CmaEs, RefusesWhatIsNoVectorAndSeveralStarts) {
-  EXPECT_EQ(refusal(settings_of(GetParam()), FounderSpace(1)), "");
-  EXPECT_EQ(refusal(settings_of(GetParam()), FounderSpace(3)),
+  EXPECT_EQ(refusal(vector_settings(GetParam()), FounderSpace(1)), "");
+  EXPECT_EQ(refusal(vector_settings(GetParam()), FounderSpace(3)),
             "algorithm: " + GetParam() + " begins with one robot, and there are 3");
-  EXPECT_THAT(refusal(settings_of(GetParam()), OpaqueSpace()), testing::HasSubstr("a fixed list of numbers"));
-  EXPECT_EQ(refusal(settings_of("ga"), OpaqueSpace()), "");
-  EvolutionSettings settings = settings_of(GetParam());
+  EXPECT_THAT(refusal(vector_settings(GetParam()), OpaqueSpace()), testing::HasSubstr("a fixed list of numbers"));
+  EXPECT_EQ(refusal(vector_settings("ga"), OpaqueSpace()), "");
+  EvolutionSettings settings = vector_settings(GetParam());
   settings.children = 4;
   EXPECT_THAT(refusal(settings, FounderSpace(1)), testing::StartsWith("children: "));
 }
@@ -413,11 +413,11 @@ TEST_P(CmaEs, RefusesWhatIsNoVectorAndSeveralStarts) {
 TEST_P(CmaEs, ARunIsNotContinuedWhereItsRobotsWouldBeOthers) {
   const FounderSpace space(1);
   VectorAssessor assessor;
-  Evolution evolution(settings_of(GetParam()), space);
+  Evolution evolution(vector_settings(GetParam()), space);
   std::vector<Individual> born;
   for (int generation = 0; generation < 3; ++generation)
     std::ranges::move(evolution.advance(assessor)->born, std::back_inserter(born));
-  Evolution same(settings_of(GetParam()), space), other(settings_of(GetParam()), space);
+  Evolution same(vector_settings(GetParam()), space), other(vector_settings(GetParam()), space);
   EXPECT_NO_THROW(same.restore(2, evolution.living(), born));
   born[3].assessment.scores = {1.0};  // now it was the best of generation 0
   EXPECT_THROW(other.restore(2, evolution.living(), born), InputError);
