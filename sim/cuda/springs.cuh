@@ -105,6 +105,7 @@ class SpringPass {
     // Measured for each (docs/experiments.md).
     constexpr SpringWalk walk{
         .keeps_loads_above = solver == Solver::xpbd || EnvironmentModel::real_bodies || Memory::in_parts ||
+                             std::is_same_v<EnvironmentModel, OceanModel> ||
                              std::is_same_v<Lengths, typename Robot::AnyLengths>,
         .groups_per_turn =
             Memory::in_parts || solver == Solver::xpbd || EnvironmentModel::real_bodies || has_contacts ? 2 : 1};
