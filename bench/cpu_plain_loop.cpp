@@ -280,8 +280,8 @@ bool PlainLoop::step_xpbd(const EnvironmentModel& model) {
 }
 
 void PlainLoop::step(std::int64_t steps) {
-  const AnyEnvironmentModel any_model = solver_model_of(
-      configuration_.environment, has_own_points(robot_) || has_viscous_springs(measures_, materials_of(robot_)));
+  const AnyEnvironmentModel any_model =
+      solver_model_of(configuration_, has_own_points(robot_) || has_viscous_springs(measures_, materials_of(robot_)));
   const auto step_once = [&](const auto& model) {
     return configuration_.solver == Solver::force ? step_force(model) : step_xpbd(model);
   };

@@ -90,9 +90,9 @@ bool fit(LaunchConfiguration& launch, const BatchView& robots, std::uint32_t fie
 
 // Such kernels have no robots apart (step.cu). Where only masses differ from the paper's, this is not seen here, and
 // robots wait for each other all the same.
-bool kernel_has_contacts(const Environment& environment, bool viscous) {
+bool kernel_has_contacts(const Configuration& configuration, bool viscous) {
   return std::visit([](const auto& model) { return std::decay_t<decltype(model)>::has_contacts; },
-                    solver_model_of(environment, viscous));
+                    solver_model_of(configuration, viscous));
 }
 
 // Small robots: several per block. Robots that are apart fill a multiprocessor's warps in one block, so that all share
@@ -154,7 +154,7 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   launch.record_words = robots.record_words;
   launch.fits_cache = robots.robot_count == batch_size;
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
-  launch.apart = !kernel_has_contacts(configuration.environment, viscous);
+  launch.apart = !kernel_has_contacts(configuration, viscous);
   const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip); };
   const std::uint32_t face_tiles =
       has_face_forces(configuration.environment) ? divide_up(robots.face_stride, lanes) : 0;

@@ -117,7 +117,7 @@ class RobotStepper {
       if (!robot_.has_mass(tile)) continue;
       const Mass<Memory> mass = robot_.own_mass(tile);
       const Vec3 v = mass.vector(field_v);
-      const Vec3 predicted = accelerated(v, acceleration(sum_of(mass, inverse_scale), v, point_at(tile)), constants());
+      const Vec3 predicted = accelerated_by_sum(mass, inverse_scale, v, point_at(tile));
       store(step, phase_prediction, tile, multiply_add(constants().dt, predicted, mass.vector(field_x)), predicted);
     }
   }
@@ -168,8 +168,11 @@ class RobotStepper {
       const PointProperties point = next_point_;
       next_point_ = point_at(min(tile + 1, batch().tile_stride - 1));
       if constexpr (solver == Solver::force) {
-        const Vec3 force = sum_of(mass, 1 / robot_.header().force_scale);
-        v = accelerated(v, sums_apart() ? point.inverse_inertia * force : acceleration(force, v, point), constants());
+        const float inverse_scale = 1 / robot_.header().force_scale;
+        if (sums_apart())
+          v = accelerated(v, point.inverse_inertia * sum_of(mass, inverse_scale), constants());
+        else
+          v = accelerated_by_sum(mass, inverse_scale, v, point);
         x = multiply_add(constants().dt, v, x);
       } else {
         Vec3 correction = sum_of(mass, 1 / robot_.header().correction_scale);
@@ -252,6 +255,16 @@ class RobotStepper {
       return point.inverse_inertia * (force + model_.on_mass(v, point.weight));
     else
       return force + model_.on_mass(v);
+  }
+
+  // The velocity after all forces, of which `inverse_scale` newtons are a unit of the sum. That is a power of two:
+  // multiplying by it is exact, so it does not matter when that happens.
+  __device__ Vec3 accelerated_by_sum(const Mass<Memory>& mass, float inverse_scale, Vec3 v,
+                                     const PointProperties& point) const {
+    if constexpr (EnvironmentModel::still_water)
+      return multiply_add(constants().dt * inverse_scale, sum_of(mass, 1), v);
+    else
+      return accelerated(v, acceleration(sum_of(mass, inverse_scale), v, point), constants());
   }
 
   __device__ const BatchView& batch() const { return robot_.arguments().batch; }

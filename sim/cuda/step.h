@@ -44,13 +44,13 @@ struct OwnModels {
 constexpr bool needs_own_models(const LaunchConfiguration& launch) {
   return !launch.on_chip || !launch.valence_on_chip;
 }
-using StepModel = std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel, ResistiveModel,
+using StepModel = std::variant<OceanModel, StillWaterOceanModel, OceanSimpleModel, LandModel, ResistiveModel,
                                GeneralModel, OwnModels>;
 
 // Those without contacts that have a kernel of their own for robots in parts. The others use that of OwnModels.
 template <class Model>
 inline constexpr bool has_kernel_in_parts =
-    std::is_same_v<Model, FrictionlessOceanModel> || std::is_same_v<Model, OceanSimpleModel> ||
+    std::is_same_v<Model, StillWaterOceanModel> || std::is_same_v<Model, OceanSimpleModel> ||
     std::is_same_v<Model, ResistiveModel>;
 
 // The model whose kernel a launch uses. `own` = one per robot, or null where all live in the configuration's
@@ -58,8 +58,7 @@ inline constexpr bool has_kernel_in_parts =
 inline StepModel step_model_of(const Configuration& configuration, bool real_bodies, const LaunchConfiguration& launch,
                                const OwnModel* own = nullptr) {
   if (needs_own_models(launch) || own) return OwnModels{own};
-  return std::visit([](const auto& model) -> StepModel { return model; },
-                    solver_model_of(configuration.environment, real_bodies));
+  return std::visit([](const auto& model) -> StepModel { return model; }, solver_model_of(configuration, real_bodies));
 }
 
 // The same for robots in parts. `own` is one per robot; `differ` = whether their environments differ.
@@ -73,7 +72,7 @@ inline StepModel step_model_in_parts(const Configuration& configuration, bool re
         else
           return OwnModels{own};
       },
-      solver_model_of(configuration.environment, real_bodies));
+      solver_model_of(configuration, real_bodies));
 }
 
 // The kernel for an environment, of which each kind of StepModel has a source in step_kernels/.

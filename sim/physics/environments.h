@@ -131,21 +131,19 @@ struct OceanModel {
   }
 };
 
-// Water without tangential drag and flow, as it is by default. Steps do not compute what is zero.
-struct FrictionlessOceanModel : OceanModel {
-  static constexpr bool has_tangential_drag = false, has_flow = false;
-  static bool fits(const OceanModel& model) { return model.tangential == 0 && model.flow == Vec3{}; }
+// Water that does not flow, without tangential drag and gravity, as it is by default. Steps do not compute what is
+// zero.
+struct StillWaterOceanModel : OceanModel {
+  static constexpr bool has_tangential_drag = false, has_flow = false, still_water = true;
+  static constexpr double min_dt = 1e-6;  // [s]; below, dt times a unit of force may not be exact
+  static bool fits(const OceanModel& model, double dt) {
+    return model.tangential == 0 && model.flow == Vec3{} && model.gravity == Vec3{} && dt >= min_dt;
+  }
 
   template <class Vector, class Real>
   MERCURY_HOST_DEVICE static Vector on_face(Vector normal, Vector u, Real speed_squared, FaceCoefficients<Real> by) {
     return drag_and_lift(normal, u, speed_squared, by);
   }
-};
-
-// Water that does not flow, without gravity. Only faces feel it, so a step needs neither on_mass() nor the flow.
-struct StillWaterOceanModel : FrictionlessOceanModel {
-  static constexpr bool still_water = true;
-  static bool fits(const FrictionlessOceanModel& model) { return model.flow == Vec3{} && model.gravity == Vec3{}; }
 };
 
 // Resistive drag on faces: the motion across a face and the motion along it are resisted apart.
@@ -358,11 +356,12 @@ struct GeneralModel : OceanModel {
 
 // The models that both backends compile their kernels for.
 using AnyEnvironmentModel =
-    std::variant<OceanModel, FrictionlessOceanModel, OceanSimpleModel, LandModel, ResistiveModel, GeneralModel>;
+    std::variant<OceanModel, StillWaterOceanModel, OceanSimpleModel, LandModel, ResistiveModel, GeneralModel>;
 
-// The fastest model that describes an environment. `real_bodies`: whether a robot has masses other than 1 kg, fixed
+// The fastest model that describes the environment. `real_bodies`: whether a robot has masses other than 1 kg, fixed
 // masses, or springs with a relaxation time (points.h).
-inline AnyEnvironmentModel solver_model_of(const Environment& environment, bool real_bodies = false) {
+inline AnyEnvironmentModel solver_model_of(const Configuration& configuration, bool real_bodies = false) {
+  const Environment& environment = configuration.environment;
   const Vec3 gravity = environment.gravity;
   const auto* resistive = std::get_if<ResistiveDrag>(&environment.water);
   if (resistive && !resistive->one_sided && !has_ground(environment)) return ResistiveModel(*resistive, gravity);
@@ -372,7 +371,7 @@ inline AnyEnvironmentModel solver_model_of(const Environment& environment, bool 
   if (has_ground(environment) || has_contacts(environment)) return GeneralModel(environment);
   if (const auto* water = std::get_if<FaceDrag>(&environment.water)) {
     const OceanModel model(*water, gravity);
-    if (FrictionlessOceanModel::fits(model)) return FrictionlessOceanModel{model};
+    if (StillWaterOceanModel::fits(model, configuration.dt)) return StillWaterOceanModel{model};
     return model;
   }
   if (const auto* water = std::get_if<PointDrag>(&environment.water); water && water->flow == Vec3{})

@@ -146,12 +146,14 @@ std::int64_t advance_body(Body& body, const EnvironmentModel& model, const StepS
 
 // Kernel::advance.
 inline std::int64_t advance(Body& body, const StepSetting& setting, Factors factors, StepRange steps) {
-  return with_model(setting, [&](const auto& model) {
-    using EnvironmentModel = std::decay_t<decltype(model)>;
-    if (!body.springs.has_gathered_rows())
-      return advance_body<EnvironmentModel, false>(body, model, setting, factors, steps);
-    return advance_body<EnvironmentModel, true>(body, model, setting, factors, steps);
-  });
+  return std::visit(
+      [&](const auto& model) {
+        using EnvironmentModel = std::decay_t<decltype(model)>;
+        if (!body.springs.has_gathered_rows())
+          return advance_body<EnvironmentModel, false>(body, model, setting, factors, steps);
+        return advance_body<EnvironmentModel, true>(body, model, setting, factors, steps);
+      },
+      setting.model);
 }
 
 }  // namespace mercury::cpu::HWY_NAMESPACE

@@ -318,7 +318,8 @@ bool advance_with(const EnvironmentModel& model, LockstepGroup& group, const Ste
 
 // Kernel::advance_group.
 inline bool advance_group(LockstepGroup& group, const StepSetting& setting, Factors factors, StepRange steps) {
-  return with_model(setting, [&](const auto& model) { return advance_with(model, group, setting, factors, steps); });
+  return std::visit([&](const auto& model) { return advance_with(model, group, setting, factors, steps); },
+                    setting.model);
 }
 
 }  // namespace mercury::cpu::HWY_NAMESPACE

@@ -73,16 +73,6 @@ HWY_INLINE void end_step_of(Lanes3& x, Lanes3& v, PointLanes point, const Enviro
     end_step(x, v, model, constants);
 }
 
-// Calls call(model) with the environment's model, or with StillWaterOceanModel where that gives the same bits faster.
-template <class Call>
-HWY_INLINE auto with_model(const StepSetting& setting, const Call& call) {
-  constexpr float min_dt = 1e-6f;  // [s]; below, dt times a unit of force may not be exact
-  const auto* const ocean = std::get_if<FrictionlessOceanModel>(&setting.model);
-  if (ocean != nullptr && StillWaterOceanModel::fits(*ocean) && setting.constants.dt >= min_dt)
-    return call(StillWaterOceanModel{*ocean});
-  return std::visit([&](const auto& model) { return call(model); }, setting.model);
-}
-
 // One phase of a body's step, tile by tile.
 template <class EnvironmentModel, bool gathered_springs>
 class Motion {

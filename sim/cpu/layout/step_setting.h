@@ -12,13 +12,13 @@ namespace mercury::cpu {
 
 struct StepSetting {
   Solver solver = Solver::force;
-  AnyEnvironmentModel model = solver_model_of(Ocean{});
+  AnyEnvironmentModel model = solver_model_of({.environment = Ocean{}});
   StepConstants constants;
 };
 
 // `real_bodies` as in solver_model_of().
 inline StepSetting setting_of(const Configuration& configuration, bool real_bodies) {
-  return {configuration.solver, solver_model_of(configuration.environment, real_bodies), step_constants(configuration)};
+  return {configuration.solver, solver_model_of(configuration, real_bodies), step_constants(configuration)};
 }
 
 // `count` steps from step `first` of the simulation on.

@@ -3,6 +3,6 @@
 
 namespace mercury::cuda {
 
-template StepKernel<FrictionlessOceanModel> step_kernel_for(Solver solver, const LaunchConfiguration& launch);
+template StepKernel<StillWaterOceanModel> step_kernel_for(Solver solver, const LaunchConfiguration& launch);
 
 }  // namespace mercury::cuda
