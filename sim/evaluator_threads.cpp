@@ -25,8 +25,9 @@ constexpr std::size_t cpu_robots_per_thread = 512;
 constexpr std::size_t smallest_piece = 256, usual_piece = 512;
 // Robots per portion on CUDA: the first, then twice as many, and so on. If more wait when the device starts, one
 // portion takes them all, or a few share them evenly: stepping begins earlier than if one took more bytes than these.
+// One simulation steps robots faster than several do: its size classes need few of CUDA's queues.
 constexpr std::size_t first_portion = 512, largest_portion = 8192;
-constexpr std::size_t usual_portion_bytes = std::size_t{64} << 20;
+constexpr std::size_t usual_portion_bytes = std::size_t{192} << 20;
 // Until it is known how many robots a device steps at once.
 constexpr std::size_t portions_at_start = 2, waiting_at_start = 16384;
 
