@@ -17,7 +17,8 @@
 //    from that the farthest that one of its masses moved in each step, which costs nothing but is often too much: what
 //    swings comes back, and the whole robot travels. So when nothing is left, the true ways are computed, relative to
 //    the mean way of some masses, from the positions at which the masses were listed. They replace the sums if all are
-//    below half the reach.
+//    below half the reach, lest the list is stale again soon. They are computed after a report, too, for which the
+//    steps have stopped; then all that is below the reach will do.
 // 3. If there are more pairs than the list holds, every step finds them and adds their forces at once.
 // 4. All ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
 //    not change a bit.
@@ -159,7 +160,8 @@ class ContactPass {
     bool complete = !collides || count_of(record) != not_listed;
     if (complete && collides) {
       farthest = farthest_since_listed(robot);
-      complete = farthest < reach(robot) / 2 && count_of(record) <= most_pairs(robot);
+      const bool is_stale = step > 0 && !arguments.reports.follow(step);
+      complete = farthest < reach(robot) * (is_stale ? 0.5f : 1.0f) && count_of(record) <= most_pairs(robot);
     }
     if (any(robot, !complete, record.votes[1], step)) {
       if (compares(robot))

@@ -108,7 +108,7 @@ class SpringPass {
                              std::is_same_v<EnvironmentModel, OceanModel> ||
                              std::is_same_v<Lengths, typename Robot::AnyLengths>,
         .groups_per_turn =
-            Memory::in_parts || solver == Solver::xpbd || EnvironmentModel::real_bodies || has_contacts ? 2 : 1};
+            Memory::in_parts || solver == Solver::xpbd || (has_contacts && !EnvironmentModel::real_bodies) ? 2 : 1};
     robot_.template walk_springs<walk>(
         [&](std::uint32_t tile, const Mass<Memory>& mass, const SlotRows& rows) {
           Owner owner{mass.vector(field_x), own_valence(tile, mass), rows.bias, rows.bias, rows.bias, {}};
