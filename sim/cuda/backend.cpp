@@ -309,6 +309,33 @@ void CudaBackend::choose_launches() {
   std::iota(launch_order_.begin(), launch_order_.end(), 0u);
   std::ranges::sort(launch_order_, std::greater{}, [&](std::uint32_t c) { return owned_->classes[c].sizes().tiles; });
   std::erase_if(launch_order_, [&](std::uint32_t c) { return owned_->classes[c].size() == 0; });
+  divide_memory();
+}
+
+// Kernels that share a multiprocessor must divide its memory alike, or one waits until the others are gone; those of
+// other simulations on the device, too. So a class alone divides it as it needs, but several classes by one of few
+// levels, which simulations of such robots choose alike: by the memory that their blocks need on average, each class
+// counted by its warps. A few blocks less at once are slower by less than more cache is faster (docs/experiments.md).
+void CudaBackend::divide_memory() {
+  if (launch_order_.size() < 2) return;
+  constexpr std::uint32_t levels[] = {50, 75, 100}, least_with_common_tables = 75, may_lack = 10;  // [%]
+  const DeviceLimits limits = device_limits();
+  double warps = 0, needed = 0;
+  std::uint32_t least = 0;  // that common tables take, and the largest block
+  for (const std::uint32_t c : launch_order_) {
+    const SizeClass& robots = owned_->classes[c];
+    const LaunchConfiguration& launch = robots.launch_of_steps();
+    const double own = static_cast<double>(robots.size()) * launch.parts * launch.warps_per_robot;
+    warps += own;
+    needed += own * launch.shared_percent;
+    const auto block = static_cast<std::uint32_t>(launch.shared_bytes) + limits.reserved_per_block;
+    least = std::max({least, launch.shared_table ? least_with_common_tables : 0,
+                      std::min(100u, 100 * block / limits.shared_per_multiprocessor + 1)});
+  }
+  const std::uint32_t common = *std::ranges::find_if(levels, [&](std::uint32_t level) {
+    return level == 100 || (level >= least && level + may_lack >= needed / warps);
+  });
+  for (const std::uint32_t c : launch_order_) owned_->classes[c].set_shared_percent(common);
 }
 
 void CudaBackend::number_masses(std::span<const Robot* const> robots) {

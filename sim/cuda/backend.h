@@ -131,6 +131,7 @@ class CudaBackend final : public Backend {
 
   // Chooses how each class is launched.
   void choose_launches();
+  void divide_memory();
   StepModel model_for(const SizeClass& robots) const {
     return step_model_of(configuration_, real_bodies_, robots.launch(), robots.own_models());
   }

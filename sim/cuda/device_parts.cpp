@@ -43,7 +43,7 @@ std::optional<LaunchConfiguration> DeviceParts::choose(std::span<const Source> r
     // Two blocks per multiprocessor, so that one computes while the other waits; or one, if its part is large.
     for (const std::uint32_t blocks : {2u, 1u})
       if (const auto launch = choose_launch_in_parts(wanted.configuration, view(batch), wanted.same_materials,
-                                                     wanted.viscous, wanted.batch_size, wanted.table_chunks, blocks))
+                                                     wanted.viscous, wanted.table_chunks, blocks))
         return launch;
     same_robots = false;
   }

@@ -14,9 +14,9 @@ namespace {
 
 // Copies of a robot's own table are written in every step, which costs small robots more than the conflicts of fewer
 // copies: with 7 chunks, 16 copies cost robots of 61 rows 16 % of their speed and one copy 7 %, but robots of 445 rows
-// 0.6 % and 6 %.
+// 0.6 % and 6 %. Of one chunk, as real bodies have, one copy is the fastest for all robots.
 bool writes_more_than_it_reads(const LaunchConfiguration& launch, std::uint32_t rows) {
-  return !launch.shared_table && rows < 16 * launch.table_chunks;
+  return !launch.shared_table && (launch.table_chunks <= 2 || rows < 16 * launch.table_chunks);
 }
 
 void share_tiles(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t warps) {
@@ -57,12 +57,12 @@ bool fit_tables(LaunchConfiguration& launch, const BatchView& robots, std::uint3
     launch.shared_bytes = block_layout(launch, tiles, fields).total;
     const std::size_t bytes = blocks * (launch.shared_bytes + limits.reserved_per_block);
     if (launch.shared_bytes > limits.shared_per_block || bytes > most) return false;
-    if (launch.fits_cache) launch.shared_percent = std::min(100u, static_cast<std::uint32_t>(100 * bytes / whole) + 1);
+    launch.shared_percent = std::min(100u, static_cast<std::uint32_t>(100 * bytes / whole) + 1);
     return true;
   };
   if (writes_more_than_it_reads(launch, robots.group_stride * rows_at_once)) return fits(0, whole);
   // 8 copies and an eighth more to cache with are faster than 16 copies.
-  if (launch.fits_cache && (fits(4, whole / 8 * 7) || fits(3, whole / 8 * 7))) return true;
+  if (fits(4, whole / 8 * 7) || fits(3, whole / 8 * 7)) return true;
   for (const std::uint32_t bits : {4u, 3u, 2u, 1u, 0u})
     if (fits(bits, whole)) return true;
   return false;
@@ -152,7 +152,6 @@ LaunchConfiguration choose_launch_configuration(const Configuration& configurati
   launch.viscous = viscous;
   launch.table_chunks = table_chunks;
   launch.record_words = robots.record_words;
-  launch.fits_cache = robots.robot_count == batch_size;
   launch.contact_buckets = contact_buckets(configuration.environment, tiles);
   launch.apart = !kernel_has_contacts(configuration, viscous);
   const auto fields = [&] { return working_fields(configuration.solver, launch.valence_on_chip); };
@@ -181,8 +180,8 @@ bool is_faster_in_parts(const LaunchConfiguration& whole, std::uint32_t tiles, s
 }
 
 std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,
-                                                          bool same_materials, bool viscous, std::size_t batch_size,
-                                                          std::uint32_t table_chunks, std::uint32_t blocks) {
+                                                          bool same_materials, bool viscous, std::uint32_t table_chunks,
+                                                          std::uint32_t blocks) {
   LaunchConfiguration launch;
   launch.parts = parts.parts.per_robot;
   launch.contact_buckets = contact_buckets(configuration.environment, parts.parts.robot_tile_stride);
@@ -190,7 +189,6 @@ std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& c
   launch.viscous = viscous;
   launch.table_chunks = table_chunks;
   launch.record_words = parts.record_words;
-  launch.fits_cache = parts.robot_count == batch_size;
   share_tiles(launch, parts.tile_stride,
               divide_up(parts.tile_stride, divide_up(parts.tile_stride, resident_warps / blocks)));
   const std::uint32_t fields = working_fields(configuration.solver, true);

@@ -44,10 +44,9 @@ struct LaunchConfiguration {
   bool contacts_on_chip = true;                        // their grid, else after the working memory in the workspace
   BrainBytes brain;                                    // of each robot on the chip; 0 = in device memory
   std::size_t shared_bytes = 0;
-  // Of a multiprocessor's memory, what its blocks need; the rest caches what they read in every step. But kernels that
-  // share a multiprocessor must divide it alike, so a class beside others takes all. [%]
+  // Of a multiprocessor's memory, what its blocks need; the rest caches what they read in every step. Kernels that
+  // share a multiprocessor must divide it alike (CudaBackend::divide_memory()). [%]
   std::uint32_t shared_percent = 100;
-  bool fits_cache = false;  // whether shared_percent may be less
 };
 
 // The warps that the kernel's registers allow on a multiprocessor.
@@ -87,7 +86,7 @@ bool is_faster_in_parts(const LaunchConfiguration& whole, std::uint32_t tiles, s
 // The same for robots in parts: one part per block. `parts` = DeviceParts::view(). Returns nothing if a part does not
 // fit. `blocks` = that a multiprocessor should have at the same time.
 std::optional<LaunchConfiguration> choose_launch_in_parts(const Configuration& configuration, const BatchView& parts,
-                                                          bool same_materials, bool viscous, std::size_t batch_size,
-                                                          std::uint32_t table_chunks, std::uint32_t blocks);
+                                                          bool same_materials, bool viscous, std::uint32_t table_chunks,
+                                                          std::uint32_t blocks);
 
 }  // namespace mercury::cuda

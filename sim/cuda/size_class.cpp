@@ -254,8 +254,9 @@ void SizeClass::choose_launch(const Configuration& configuration, std::size_t ba
   const bool same_materials = same_materials_ && driven_materials_.size() == 0;
   const bool viscous =
       std::ranges::any_of(headers_, [](const RobotHeader& header) { return header.highest_length_rate > 0; });
+  const std::uint32_t chunks = table_chunks();
   const auto choose = [&](const BatchView& robots, std::size_t batch) {
-    return choose_launch_configuration(configuration, robots, same_materials, viscous, batch, table_chunks_, brain);
+    return choose_launch_configuration(configuration, robots, same_materials, viscous, batch, chunks, brain);
   };
   launch_ = choose(view(), batch_size);
   BatchView many = view();
@@ -292,7 +293,7 @@ void SizeClass::choose_launch_in_parts(const Configuration& configuration, std::
                                      {.configuration = configuration,
                                       .same_materials = launch_.shared_table,
                                       .viscous = launch_.viscous,
-                                      .table_chunks = table_chunks_,
+                                      .table_chunks = table_chunks(),
                                       .batch_size = batch_size});
   }
   parts_stale_ = !launch_in_parts_;

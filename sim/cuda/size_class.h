@@ -104,6 +104,12 @@ class SizeClass {
   const std::optional<LaunchConfiguration>& launch_in_parts() const { return launch_in_parts_; }
   BatchView view_of_parts() const { return parts_.view(view()); }
   void step_whole() { launch_in_parts_.reset(); }
+  // The launch that makes the steps.
+  const LaunchConfiguration& launch_of_steps() const { return launch_in_parts_ ? *launch_in_parts_ : launch_; }
+  void set_shared_percent(std::uint32_t percent) {
+    launch_.shared_percent = percent;
+    if (launch_in_parts_) launch_in_parts_->shared_percent = percent;
+  }
 
   // The table of a place; publish_materials() or publish_all_materials() uploads it.
   std::span<Material> table(std::uint32_t place) {
@@ -167,6 +173,8 @@ class SizeClass {
   void choose_launch_in_parts(const Configuration& configuration, std::size_t batch_size, const BrainBytes& brain);
   // Replaces the material that each spring record names; `ids` = [place][max_materials], the new id by the old one.
   void rename_materials(std::span<const MaterialId> ids);
+  // LaunchConfiguration::table_chunks: enough for the materials that springs name.
+  std::uint32_t table_chunks() const;
   // Those of a place that springs have, after air; max_materials elements.
   std::vector<Material> driven_table(std::uint32_t place) const;
   template <class Visit>
@@ -188,7 +196,6 @@ class SizeClass {
   DeviceParts parts_;
   bool parts_stale_ = true;
   std::uint32_t address_fields_ = 0;  // by which spring records and face pairs address masses; 0 = slots
-  std::uint32_t table_chunks_ = max_materials / lanes;  // LaunchConfiguration::table_chunks
   std::size_t workspace_stride_ = 0, perturbation_count_ = 0;
   bool same_materials_ = false;  // all robots have the same table
   bool points_stale_ = true, valences_have_masses_ = false;

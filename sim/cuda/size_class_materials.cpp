@@ -131,20 +131,17 @@ void SizeClass::update_phases(const Clock& clock, cudaStream_t stream) {
 void SizeClass::begin_actuation() {
   driven_ids_.assign(std::size_t{size()} * max_materials, air);
   std::vector<Material> tables;
-  std::uint32_t most = 1;
   for (std::uint32_t place = 0; place < size(); ++place) {
     std::uint32_t count = 1;
     for (std::size_t id = 1; id < max_materials; ++id)
       if (measures_[place].used[id])
         driven_ids_[std::size_t{place} * max_materials + id] = static_cast<MaterialId>(count++);
-    most = std::max(most, count);
     std::ranges::copy(driven_table(place), std::back_inserter(tables));
   }
   driven_materials_ = DeviceArray<Material>(tables.size());
   driven_materials_.write(0, tables, urgent_->get());
   rename_materials(driven_ids_);
   parts_stale_ = true;
-  table_chunks_ = (most + lanes - 1) / lanes;
   phases_stale_ = true;
 }
 
@@ -158,7 +155,6 @@ void SizeClass::end_actuation() {
   driven_materials_ = DeviceArray<Material>();
   driven_ids_.clear();
   parts_stale_ = true;
-  table_chunks_ = max_materials / lanes;
   phases_stale_ = true;
 }
 
@@ -168,6 +164,18 @@ void SizeClass::rename_materials(std::span<const MaterialId> ids) {
   cuda::rename_materials(springs_.data(), size(), sizes_.springs() / sizes_.record_words, sizes_.record_words,
                          on_device.data(), urgent_->get());
   urgent_->synchronize();
+}
+
+std::uint32_t SizeClass::table_chunks() const {
+  std::uint32_t named = 1;  // ids, from that of air on
+  for (std::uint32_t place = 0; place < size(); ++place) {
+    const auto& used = measures_[place].used;
+    if (driven_materials_.size() > 0)
+      named = std::max(named, 1 + static_cast<std::uint32_t>(std::ranges::count(used, true)));
+    else
+      named = static_cast<std::uint32_t>(std::find(used.rbegin(), used.rend() - named, true).base() - used.begin());
+  }
+  return divide_up(named, lanes);
 }
 
 std::vector<Material> SizeClass::driven_table(std::uint32_t place) const {
