@@ -198,6 +198,7 @@ class Window:
         self.frame()
         self.do("click", 1)
         self.frame()
+        self.frame()  # as in click(): the list would take the next click while it is open
 
     def dialog(self, text):
         """Types into the open dialog, accepts it and waits for the answer: it closes, another one opens, or it objects."""
