@@ -17,8 +17,8 @@
 //    from that the farthest that one of its masses moved in each step, which costs nothing but is often too much: what
 //    swings comes back, and the whole robot travels. So when nothing is left, the true ways are computed, relative to
 //    the mean way of some masses, from the positions at which the masses were listed. They replace the sums if all are
-//    below half the reach, lest the list is stale again soon. They are computed after a report, too, for which the
-//    steps have stopped; then all that is below the reach will do.
+//    below half the reach, lest the list is stale again soon. They are computed after a report and when a launch
+//    begins, too, since the steps have stopped; then all that is below the reach will do.
 // 3. If there are more pairs than the list holds, every step finds them and adds their forces at once.
 // 4. All ways find exactly the pairs that touch, and forces are summed as integers. So when the list was made does
 //    not change a bit.

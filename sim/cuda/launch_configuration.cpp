@@ -14,9 +14,10 @@ namespace {
 
 // Copies of a robot's own table are written in every step, which costs small robots more than the conflicts of fewer
 // copies: with 7 chunks, 16 copies cost robots of 61 rows 16 % of their speed and one copy 7 %, but robots of 445 rows
-// 0.6 % and 6 %. Of one chunk, as real bodies have, one copy is the fastest for all robots.
+// 0.6 % and 6 %. Springs of real bodies compute more beside each read: one copy is as fast or faster for any size.
 bool writes_more_than_it_reads(const LaunchConfiguration& launch, std::uint32_t rows) {
-  return !launch.shared_table && (launch.table_chunks <= 2 || rows < 16 * launch.table_chunks);
+  constexpr std::uint32_t most_rows = 128;
+  return !launch.shared_table && (launch.viscous || rows < most_rows);
 }
 
 void share_tiles(LaunchConfiguration& launch, std::uint32_t tiles, std::uint32_t warps) {

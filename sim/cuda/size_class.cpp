@@ -293,7 +293,7 @@ void SizeClass::choose_launch_in_parts(const Configuration& configuration, std::
                                      {.configuration = configuration,
                                       .same_materials = launch_.shared_table,
                                       .viscous = launch_.viscous,
-                                      .table_chunks = table_chunks(),
+                                      .table_chunks = launch_.table_chunks,
                                       .batch_size = batch_size});
   }
   parts_stale_ = !launch_in_parts_;
