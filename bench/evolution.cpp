@@ -5,10 +5,11 @@
 //
 //     bench_evolution [--seeds 10] [--evaluations 1280] [--kinds voxel,cppn,nn] [--environments ocean,land] ...
 //
-//     bench_evolution --throughput 1 --device cuda
+//     bench_evolution --throughput 1 --device cuda [--physics real]
 //
 // measures what a user waits for instead: robots per minute of a whole pipelined run with its folder, from the start of
-// a process to its end, with the start of CUDA, and the share of that time during which the device stepped.
+// a process to its end, with the start of CUDA, the share of that time during which the device stepped, and the springs
+// that it then stepped per second.
 //
 // All algorithms start from the same random robots, those of the seed. Runs are spread over the cores, whole runs at a
 // time. nsga2 has two objectives, distance and distance per work; the table shows its best distance. map-elites has a
@@ -33,6 +34,7 @@
 
 #include "mercury/error.h"
 #include "mercury/evolution.h"
+#include "mercury/quantity.h"
 #include "mercury/run_folder.h"
 #include "mercury/stopwatch.h"
 
@@ -54,8 +56,9 @@ struct Options {
   MuscleMutation muscles;
   EvolutionSettings settings;  // their defaults, and what the options say
   std::string device = "cpu", csv;
-  double throughput = 0;  // instead of the table: the share of the usual number of generations
-  int jobs = 0;           // runs at a time; 0 = one per core
+  double throughput = 0;          // instead of the table: the share of the usual number of generations
+  std::string physics = "paper";  // with --throughput
+  int jobs = 0;                   // runs at a time; 0 = one per core
 };
 
 std::vector<std::string> words_of(const std::string& list) {
@@ -109,6 +112,7 @@ Options options_from(int argc, char** argv) {
       {"--device", text(options.device)},
       {"--jobs", number(options.jobs)},
       {"--throughput", number(options.throughput)},
+      {"--physics", text(options.physics)},
       {"--csv", text(options.csv)}};
   for (int i = 1; i < argc; i += 2) {
     const auto setter = setters.find(argv[i]);
@@ -249,24 +253,36 @@ const std::vector<Search>& searches() {
   return all;
 }
 
+double springs_of(const Individual& individual) {
+  static const std::size_t quantity = find_quantity("springs").value();
+  const std::vector<double>& values = individual.assessment.values;
+  return values.empty() ? 0 : values[quantity];  // none = it could not be made
+}
+
 // What `mercury evolve RUN --pipelined --trials 1 --jitter 0 --no-confirm` does.
-void search(const Search& one, const Options& options, const std::filesystem::path& folder) {
+void search(const Search& one, const std::string& environment, const Options& options,
+            const std::filesystem::path& folder) {
   const std::chrono::duration<double> before = std::chrono::steady_clock::now().time_since_epoch();
   EvolutionSettings settings = options.settings;
   settings.algorithm.population = one.population;
   settings.generations = std::max(1, static_cast<int>(options.throughput * one.generations));
+  GenomeSpaceRequest space = one.space;
+  space.values.emplace("physics", options.physics);
+  space.environment = environment;
+  settings.configuration = default_configuration(physics_of(space), environment);
   settings.configuration.device = device_named(options.device);
   settings.trials.trials = 1;
   settings.trials.jitter = 0;
   settings.pipelined = true;
-  double busy = 0;
+  double busy = 0, springs = 0;
   std::size_t robots = 0;
   {
-    RunFolder run = RunFolder::create(folder, {.evolution = settings, .space = one.space});
+    RunFolder run = RunFolder::create(folder, {.evolution = settings, .space = space});
     const std::unique_ptr<Assessor> assessor = make_assessor(settings);
     Evolution evolution(settings, run.space());
     while (std::optional<Generation> generation = evolution.advance(*assessor)) {
       robots += generation->born.size();
+      for (const Individual& individual : generation->born) springs += springs_of(individual);
       run.append_later(*std::move(generation), {.seconds = 0, .device = assessor->device_name()});
     }
     run.write_all();
@@ -274,8 +290,10 @@ void search(const Search& one, const Options& options, const std::filesystem::pa
   }
   const std::chrono::duration<double> after = std::chrono::steady_clock::now().time_since_epoch();
   const double seconds = (after - before).count();
-  std::printf("%zu %s in %.1f s: %.3g per minute, device busy %.0f %%\n", robots, one.title, seconds,
-              60 * static_cast<double>(robots) / seconds, 100 * busy / seconds);
+  const auto steps = static_cast<double>(std::llround(settings.trials.seconds / settings.configuration.dt));
+  std::printf("%zu %s, %s, in %.1f s: %.3g per minute, device busy %.0f %%, %.3g springs/s\n", robots, one.title,
+              environment.c_str(), seconds, 60 * static_cast<double>(robots) / seconds, 100 * busy / seconds,
+              springs * steps / busy);
 }
 
 // Each in a process of its own, so that each starts CUDA.
@@ -284,16 +302,18 @@ void measure_throughput(const Options& options) {
       std::filesystem::temp_directory_path() / ("bench_evolution-" + std::to_string(getpid()));
   for (const Search& one : searches()) {
     if (std::ranges::find(options.kinds, one.space.kind) == options.kinds.end()) continue;
-    const pid_t child = fork();
-    if (child == 0) {
-      search(one, options, folder);
-      std::fflush(stdout);
-      _exit(0);
+    for (const std::string& environment : options.environments) {
+      const pid_t child = fork();
+      if (child == 0) {
+        search(one, environment, options, folder);
+        std::fflush(stdout);
+        _exit(0);
+      }
+      int status = 0;
+      waitpid(child, &status, 0);
+      std::filesystem::remove_all(folder);
+      if (status != 0) throw std::runtime_error(std::string(one.title) + " failed");
     }
-    int status = 0;
-    waitpid(child, &status, 0);
-    std::filesystem::remove_all(folder);
-    if (status != 0) throw std::runtime_error(std::string(one.title) + " failed");
   }
 }
 
