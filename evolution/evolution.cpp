@@ -271,41 +271,57 @@ std::vector<double> Evolution::interim_limits(std::span<const Individual> parent
   return limits;
 }
 
-std::vector<Individual> Evolution::living_and(std::span<const Individual> children) const {
-  std::vector<Individual> pool(living_.size() + children.size());
-  parallel_for(0, pool.size(),
-               [&](std::size_t i) { pool[i] = i < living_.size() ? living_[i] : children[i - living_.size()]; });
-  return pool;
-}
-
 Generation Evolution::select(std::vector<Individual> children) {
-  std::vector<Individual> pool = living_and(children);
-  const std::vector<std::size_t> survivors = islands_->survivors(pool, living_.size());
-  return take(std::move(pool), std::move(children), survivors);
+  const std::size_t lived = living_.size();
+  return select(std::move(children),
+                [&](std::span<const Individual> pool) { return islands_->survivors(pool, lived); });
 }
 
 Generation Evolution::select(std::vector<Individual> children, std::span<const std::uint64_t> living) {
-  std::vector<Individual> pool = living_and(children);
-  std::vector<std::size_t> survivors;
-  for (const std::uint64_t id : living) {
-    const auto found = std::ranges::find(pool, id, &Individual::id);
-    const auto index = static_cast<std::size_t>(found - pool.begin());
-    if (found == pool.end() || std::ranges::find(survivors, index) != survivors.end())
-      throw InputError("living", "robot " + std::to_string(id) +
-                                     " is not accepted; give each of those that live or are born, at most once");
-    survivors.push_back(index);
-  }
-  return take(std::move(pool), std::move(children), survivors);
+  return select(std::move(children), [&](std::span<const Individual> pool) {
+    std::vector<std::size_t> survivors;
+    for (const std::uint64_t id : living) {
+      const auto found = std::ranges::find(pool, id, &Individual::id);
+      const auto index = static_cast<std::size_t>(found - pool.begin());
+      if (found == pool.end() || std::ranges::find(survivors, index) != survivors.end())
+        throw InputError("living", "robot " + std::to_string(id) +
+                                       " is not accepted; give each of those that live or are born, at most once");
+      survivors.push_back(index);
+    }
+    return survivors;
+  });
 }
 
-Generation Evolution::take(std::vector<Individual> pool, std::vector<Individual> children,
-                           std::span<const std::size_t> survivors) {
-  Generation generation{.number = next_generation_, .born = std::move(children)};
-  if (settings_.pipelined) before_ = living_;
-  next_id_ += generation.born.size();
-  living_.clear();
-  for (const std::size_t i : survivors) living_.push_back(std::move(pool.at(i)));
+// While it waits for a generation, a GPU has nothing to do. So individuals are moved, not copied, as far as that goes.
+Generation Evolution::select(std::vector<Individual> children, const SurvivorsOf& survivors_of) {
+  const std::size_t lived = living_.size();
+  std::vector<Individual> pool = std::exchange(living_, {});
+  pool.insert(pool.end(), std::move_iterator(children.begin()), std::move_iterator(children.end()));
+  std::vector<std::size_t> survivors;
+  try {
+    survivors = survivors_of(pool);
+  } catch (...) {
+    pool.resize(lived);
+    living_ = std::move(pool);
+    throw;
+  }
+  living_.resize(survivors.size());
+  parallel_for(0, survivors.size(), [&](std::size_t k) {
+    Individual& survivor = pool.at(survivors[k]);
+    if (survivors[k] < lived && !settings_.pipelined)
+      living_[k] = std::move(survivor);
+    else
+      living_[k] = survivor;
+  });
+  Generation generation{.number = next_generation_, .born = {}, .living = {}};
+  const auto born = pool.begin() + static_cast<std::ptrdiff_t>(lived);
+  generation.born.assign(std::move_iterator(born), std::move_iterator(pool.end()));
   for (const Individual& individual : living_) generation.living.push_back(individual.id);
+  if (settings_.pipelined) {
+    pool.resize(lived);
+    before_ = std::move(pool);
+  }
+  next_id_ += generation.born.size();
   islands_->algorithm().learn(generation.born, Random(seed_of_plan(settings_.seed, next_generation_)));
   ++next_generation_;
   return generation;

@@ -23,7 +23,7 @@ namespace mercury {
 namespace {
 
 constexpr std::chrono::milliseconds watch_period(100);
-constexpr std::size_t most_waiting = 128;  // evaluations
+constexpr std::size_t most_waiting = 512;  // evaluations
 
 // The trials of one candidate together.
 class Tally {

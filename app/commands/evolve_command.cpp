@@ -134,13 +134,14 @@ bool evolve(RunFolder& run, Evolution& evolution, Assessor& assessor, ChampionCh
   bool has_warned = false;
   while (!evolution.is_over()) {
     const double start = wall_now();
-    const std::optional<Generation> generation = evolution.advance(assessor, watch);
+    std::optional<Generation> generation = evolution.advance(assessor, watch);
     if (!generation) return false;
     const double seconds = wall_now() - start;
-    if (checks) checks->update();  // of the generations before, which are written
-    run.append_later(*generation, {.seconds = seconds, .device = assessor.device_name()});
     if (!has_warned) has_warned = warn_of_undefined(*generation);
-    progress.finish_generation(generation->born.size() * static_cast<std::size_t>(evolution.settings().trials.trials),
+    const std::size_t born = generation->born.size();
+    if (checks) checks->update();  // of the generations before, which are written
+    run.append_later(*std::move(generation), {.seconds = seconds, .device = assessor.device_name()});
+    progress.finish_generation(born * static_cast<std::size_t>(evolution.settings().trials.trials),
                                evolution.living().empty() ? worst_score : evolution.living().front().score(),
                                median_score(evolution));
   }

@@ -32,7 +32,7 @@ struct RunFolder::Parts {
       first.get();
     }
   }
-  void append(const Generation& generation, const GenerationTimes& times);
+  void append(Generation generation, const GenerationTimes& times);
 
   JournalWriter writer;  // holds the lock, so the history is read after it was taken
   RunHistory history;
@@ -147,18 +147,18 @@ void RunFolder::append_later(Generation generation, GenerationTimes times) {
   parts_->settle(most_waiting);
   const std::shared_future<void> before = parts_->later.empty() ? std::shared_future<void>() : parts_->later.back();
   parts_->later.push_back(std::async(std::launch::async, [&parts = *parts_, before, generation = std::move(generation),
-                                                          times = std::move(times)] {
+                                                          times = std::move(times)]() mutable {
                             if (before.valid()) before.get();
-                            parts.few_threads.execute([&] { parts.append(generation, times); });
+                            parts.few_threads.execute([&] { parts.append(std::move(generation), times); });
                           }).share());
 }
 
-void RunFolder::Parts::append(const Generation& generation, const GenerationTimes& times) {
+void RunFolder::Parts::append(Generation generation, const GenerationTimes& times) {
   RunHistory::Parts& run = *history.parts_;
   if (generation.number != static_cast<int>(run.generations.size()))
     throw InputError(run.folder.string(), "generation " + std::to_string(generation.number) + " does not follow the " +
                                               std::to_string(run.generations.size()) + " generations of the run");
-  GenerationRecord record{.first_id = run.individuals.size(), .generation = generation, .times = times};
+  GenerationRecord record{.first_id = run.individuals.size(), .generation = std::move(generation), .times = times};
   const std::string genomes = store_genomes(record, run.genomes);
   for (Individual& born : record.generation.born) use_stored_quantities(born.assessment, run.file.quantities);
   run.journal.check_not_replaced();

@@ -31,9 +31,10 @@ BodyBox bounds_of(const Robot& robot) {
 class PointGrid {
  public:
   PointGrid(std::span<const Vec3> points, double reach)
-      : points_(points), reach_(reach), first_(std::bit_ceil(2 * points.size()), none), next_(points.size(), none) {
+      : points_(points), reach_(reach), cubes_per_meter_(0.5 / reach), first_(std::bit_ceil(2 * points.size()), none),
+        next_(points.size(), none) {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      std::uint32_t& first = first_[bucket(cube(points[i].x), cube(points[i].y), cube(points[i].z))];
+      std::uint32_t& first = first_[bucket(hash({points[i].x, points[i].y, points[i].z}))];
       next_[i] = first;
       first = static_cast<std::uint32_t>(i);
     }
@@ -43,11 +44,11 @@ class PointGrid {
   double distance(std::array<double, 3> x) const {
     double nearest = reach_ * reach_;
     bool found = false;
-    std::array<std::int64_t, 3> low{};
-    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = cube(x[axis] - reach_);
-    for (int corner = 0; corner < 8; ++corner) {
-      const std::size_t b = bucket(low[0] + (corner & 1), low[1] + (corner >> 1 & 1), low[2] + (corner >> 2));
-      for (std::uint32_t i = first_[b]; i != none; i = next_[i]) {
+    const std::uint64_t lowest = hash({x[0] - reach_, x[1] - reach_, x[2] - reach_});
+    for (std::size_t corner = 0; corner < 8 && nearest > 0; ++corner) {
+      std::uint64_t cube = lowest;
+      for (std::size_t axis = 0; axis < 3; ++axis) cube += (corner >> axis & 1) * factors[axis];
+      for (std::uint32_t i = first_[bucket(cube)]; i != none; i = next_[i]) {
         const double dx = points_[i].x - x[0], dy = points_[i].y - x[1], dz = points_[i].z - x[2];
         const double squared = dx * dx + dy * dy + dz * dz;
         if (squared > nearest) continue;
@@ -61,16 +62,20 @@ class PointGrid {
  private:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  std::int64_t cube(double x) const { return static_cast<std::int64_t>(std::floor(x / (2 * reach_))); }
-  std::size_t bucket(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    std::uint64_t hash = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15u;
-    hash = (hash ^ hash >> 32 ^ static_cast<std::uint64_t>(y)) * 0xbf58476d1ce4e5b9u;
-    hash = (hash ^ hash >> 32 ^ static_cast<std::uint64_t>(z)) * 0x94d049bb133111ebu;
-    return static_cast<std::size_t>(hash >> 32) & (first_.size() - 1);
+  // A sum over the axes, so that those of neighbors differ by the factors.
+  static constexpr std::array<std::uint64_t, 3> factors{0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u, 0x94d049bb133111ebu};
+  std::uint64_t hash(std::array<double, 3> x) const {
+    std::uint64_t sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto place = static_cast<std::int64_t>(std::floor(x[axis] * cubes_per_meter_));
+      sum += static_cast<std::uint64_t>(place) * factors[axis];
+    }
+    return sum;
   }
+  std::size_t bucket(std::uint64_t hash) const { return static_cast<std::size_t>(hash >> 32) & (first_.size() - 1); }
 
   const std::span<const Vec3> points_;
-  const double reach_;
+  const double reach_, cubes_per_meter_;
   std::vector<std::uint32_t> first_, next_;
 };
 

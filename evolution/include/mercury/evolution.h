@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -124,9 +125,9 @@ class Evolution {
 
  private:
   void begin_to_learn();
-  std::vector<Individual> living_and(std::span<const Individual> children) const;
-  Generation take(std::vector<Individual> pool, std::vector<Individual> children,
-                  std::span<const std::size_t> survivors);
+  // Indices of those who live on, the best first, of the living and then the children.
+  using SurvivorsOf = std::function<std::vector<std::size_t>(std::span<const Individual> pool)>;
+  Generation select(std::vector<Individual> children, const SurvivorsOf& survivors_of);
   // Those who are the parents of the next generation.
   const std::vector<Individual>& parents() const;
   // The children of a generation.
