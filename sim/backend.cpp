@@ -102,16 +102,21 @@ void Backend::put_at_rest(std::span<const Robot* const> robots, std::size_t firs
 
 bool Backend::measure_inversion(std::span<const BodyCells* const> /*cells*/) { return false; }
 
-void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, const VisitReports& visit) {
+void Backend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, bool from_now,
+                              const VisitReports& visit) {
   std::vector<RobotStatus> present = statuses();
   std::vector<Telemetry> telemetry(present.size());
   Clock now = clock;
-  while (now.step < clock.step + steps) {
-    step(now, every);
-    now.step += every;
+  const auto report_now = [&] {
     std::ranges::fill(telemetry, Telemetry{});
     report(now, telemetry, present);
     visit(telemetry, present);
+  };
+  if (from_now) report_now();
+  while (now.step < clock.step + steps) {
+    step(now, every);
+    now.step += every;
+    report_now();
   }
 }
 

@@ -66,16 +66,14 @@ bool PortionTrial::run() {
       simulation_.set_noise_seed(i, request_.noise_seed(results_[candidates_[i]].index));
   if (!settle()) return false;
   settled_ = simulation_.steps();
-  measures_.reserve(simulation_.size());
-  for (const Telemetry& start : simulation_.telemetry())
-    measures_.emplace_back(start, simulation_.configuration().environment);
+  if (request_.drive) observe_now();  // before the first drives
   for (const std::int64_t check : request_.checks) {
     if (!advance(check)) return false;
     if (steps_done() < check) break;  // it stops, or no robot is left
     remove_losers();
   }
   if (!advance(request_.steps)) return false;
-  if (observed_ < steps_done() && simulation_.size() > 0) observe_now();
+  if (simulation_.size() > 0 && (measures_.empty() || observed_ < steps_done())) observe_now();
   return true;
 }
 
@@ -127,6 +125,7 @@ bool PortionTrial::advance(std::int64_t end) {
     if (steps_done() == observed_ && count >= sample_every_) {
       step_and_observe(count - count % sample_every_);
     } else {
+      if (measures_.empty()) observe_now();
       step(std::min(count, next - steps_done()));
       if (steps_done() == next) observe_now();
     }
@@ -140,8 +139,8 @@ void PortionTrial::step(std::int64_t steps) {
 
 void PortionTrial::step_and_observe(std::int64_t steps) {
   timed(steps, [&] {
-    simulation_.step_and_sample(steps, sample_every_,
-                                [&](std::span<const Telemetry> samples) { observe(samples, sample_every_); });
+    const auto visit = [&](std::span<const Telemetry> samples) { observe(samples, sample_every_); };
+    simulation_.step_and_sample(steps, sample_every_, visit, measures_.empty());
   });
   observed_ = steps_done();
 }
@@ -176,7 +175,13 @@ void PortionTrial::observe_now() {
 }
 
 void PortionTrial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
-  const std::size_t robots = measures_.size();
+  const std::size_t robots = candidates_.size();
+  if (measures_.empty()) {
+    measures_.reserve(robots);
+    for (const Telemetry& start : samples.first(robots))
+      measures_.emplace_back(start, request_.configuration.environment);
+    samples = samples.subspan(robots);
+  }
   parallel_for(0, robots, [&](std::size_t i) {
     for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds(steps));
   });

@@ -104,7 +104,8 @@ class PortionTrial {
   template <class Call>
   void timed(std::int64_t steps, Call call);
   void observe_now();
-  // [sample][robot], `steps` steps apart; the first comes as many after the last sample before.
+  // [sample][robot], `steps` steps apart; the first comes as many after the last sample before. The first of all is the
+  // start of the trial.
   void observe(std::span<const Telemetry> samples, std::int64_t steps);
   void remove_losers();
   void keep(std::span<const std::size_t> robots);

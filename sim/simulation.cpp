@@ -350,11 +350,18 @@ std::vector<Telemetry> Simulation::step_and_sample(std::int64_t steps, std::int6
 }
 
 void Simulation::step_and_sample(std::int64_t steps, std::int64_t every,
-                                 const std::function<void(std::span<const Telemetry>)>& visit) {
+                                 const std::function<void(std::span<const Telemetry>)>& visit, bool from_now) {
   if (every <= 0 || steps < 0 || steps % every != 0)
     throw std::invalid_argument("samples need a number of steps that is a multiple of their distance");
   // These may need the positions between samples.
-  if (size() > 0 && (parts_->reads_posture() || parts_->host_thinks() || parts_->pushes_within(steps))) {
+  const bool one_by_one =
+      size() > 0 && (parts_->reads_posture() || parts_->host_thinks() || parts_->pushes_within(steps));
+  // Drives change before the first step.
+  if (from_now && size() > 0 && (one_by_one || steps == 0 || parts_->shared_actuation.is_made())) {
+    visit(telemetry());
+    from_now = false;
+  }
+  if (one_by_one) {
     for (std::int64_t left = steps; left > 0; left -= every) {
       step(every);
       visit(telemetry());
@@ -363,7 +370,7 @@ void Simulation::step_and_sample(std::int64_t steps, std::int64_t every,
   }
   if (size() > 0 && steps > 0) {
     parts_->before_step();
-    parts_->backend->step_and_report(parts_->clock, steps, every,
+    parts_->backend->step_and_report(parts_->clock, steps, every, from_now,
                                      [&](std::span<Telemetry> samples, std::span<const RobotStatus> statuses) {
                                        for (std::size_t first = 0; first < samples.size(); first += size())
                                          for (std::size_t i = 0; i < size(); ++i)

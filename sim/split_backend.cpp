@@ -264,18 +264,20 @@ class SplitBackend final : public Backend {
   }
 
   // Parts do not wait for each other between the samples that are visited together.
-  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, const VisitReports& visit) override {
+  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, bool from_now,
+                       const VisitReports& visit) override {
     const auto at_once = static_cast<std::int64_t>(std::max<std::size_t>(1, most_reports / shares_.size()));
     std::vector<Telemetry> all;
     std::vector<RobotStatus> all_statuses;
     Clock now = clock;
     for (std::int64_t left = steps / every; left > 0; left -= at_once) {
       const std::int64_t reports = std::min(left, at_once);
-      all.assign(static_cast<std::size_t>(reports) * shares_.size(), {});
+      const bool and_now = from_now && now.step == clock.step;
+      all.assign(static_cast<std::size_t>(reports + and_now) * shares_.size(), {});
       all_statuses.resize(all.size());
       for_each_part([&](std::size_t p) {
         std::size_t first = 0;  // of the part's next reports
-        parts_[p]->step_and_report(now, reports * every, every, [&](auto samples, auto statuses) {
+        parts_[p]->step_and_report(now, reports * every, every, and_now, [&](auto samples, auto statuses) {
           const std::size_t robots = shares_.size(p);
           for (std::size_t i = 0; i < samples.size(); i += robots, first += shares_.size()) {
             scatter<Telemetry>(p, samples.subspan(i, robots), std::span(all).subspan(first));

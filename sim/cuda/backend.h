@@ -63,7 +63,8 @@ class CudaBackend final : public Backend {
 
   // Time (backend_steps.cpp).
   void step(const Clock& clock, std::int64_t steps) override;
-  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, const VisitReports& visit) override;
+  void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, bool from_now,
+                       const VisitReports& visit) override;
   void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const override;
   void step_in_stream(const Clock& clock, std::int64_t steps, const PublishedArrays& arrays,
                       void* cuda_stream) override;

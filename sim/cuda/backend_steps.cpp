@@ -52,25 +52,32 @@ void CudaBackend::copy_reports(const ReportAt& report_at, std::span<Telemetry> t
 }
 
 // The launches of all portions follow one another in the streams of their classes, without a pause: some are queued
-// before the reports of the first one are read.
-void CudaBackend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every,
+// before the reports of the first one are read. A report before the first step is a portion without steps: to wait for
+// it takes long while the device is busy.
+void CudaBackend::step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, bool from_now,
                                   const VisitReports& visit) {
   if (places_.empty()) return;
   use_device();
   report_valid_ = false;
   const std::size_t robots = places_.size(), all = static_cast<std::size_t>(steps / every);
-  const std::size_t of_portion = std::clamp(most_reports / robots, std::size_t{1}, all),
-                    portions = (all + of_portion - 1) / of_portion, in_flight = owned_->reported.size();
+  const std::size_t of_portion = std::clamp(most_reports / robots, std::size_t{1}, all), before = from_now ? 1 : 0,
+                    portions = before + (all + of_portion - 1) / of_portion, in_flight = owned_->reported.size();
   MappedArray<DeviceTelemetry>& reports = owned_->samples;
   if (reports.size() < in_flight * of_portion * robots)
     reports = MappedArray<DeviceTelemetry>(in_flight * of_portion * robots);
   const auto first_of = [&](std::size_t portion) { return portion % in_flight * of_portion * robots; };
-  const auto size_of = [&](std::size_t portion) { return std::min(of_portion, all - portion * of_portion); };
+  const auto size_of = [&](std::size_t portion) {
+    return portion < before ? 1 : std::min(of_portion, all - (portion - before) * of_portion);
+  };
   const auto start = [&](std::size_t portion) {
-    Clock now = clock;
-    now.step += static_cast<std::int64_t>(portion * of_portion) * every;
-    launch(now, static_cast<std::int64_t>(size_of(portion)) * every,
-           {.first = reports.on_device() + first_of(portion), .every = every}, main().get());
+    DeviceTelemetry* const first = reports.on_device() + first_of(portion);
+    if (portion < before) {
+      launch(clock, 0, {.first = first}, main().get());
+    } else {
+      Clock now = clock;
+      now.step += static_cast<std::int64_t>((portion - before) * of_portion) * every;
+      launch(now, static_cast<std::int64_t>(size_of(portion)) * every, {.first = first, .every = every}, main().get());
+    }
     for (const std::uint32_t c : launch_order_) {
       const SizeClass& of_class = owned_->classes[c];
       of_class.done().record(of_class.stream().get());

@@ -257,6 +257,24 @@ TEST_P(BatchEdits, SamplesAreThoseOfStepAndTelemetryInTurn) {
   EXPECT_EQ(sampled.hashes(), in_turn.hashes());
 }
 
+TEST_P(BatchEdits, SamplesFromNowBeginWithTelemetry) {
+  const std::vector<Robot> robots = herd();
+  for (const std::int64_t steps : {0, 15, 400}) {  // 400 samples come in two portions
+    Simulation plain = start(robots), sampled = start(robots);
+    for (Simulation* simulation : {&plain, &sampled}) simulation->step(7);
+    std::vector<Telemetry> expected = plain.telemetry(), found;
+    const auto append = [](std::vector<Telemetry>& to) {
+      return [&](std::span<const Telemetry> samples) { to.insert(to.end(), samples.begin(), samples.end()); };
+    };
+    plain.step_and_sample(steps, 1, append(expected));
+    sampled.step_and_sample(steps, 1, append(found), true);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) expect_equal(found[i], expected[i]);
+    EXPECT_EQ(sampled.steps(), plain.steps());
+    EXPECT_EQ(sampled.hashes(), plain.hashes());
+  }
+}
+
 TEST_P(BatchEdits, SamplesNeedAWholeNumberOfPortions) {
   const std::vector<Robot> robots = herd();
   Simulation simulation = start(robots);

@@ -89,9 +89,9 @@ class BrokenBackend : public Backend {
   std::size_t robots_at_once() const override { return 1; }
   double spring_limit() const override { return 0; }
   double busy_seconds() const override { return 0; }
-  void load(std::span<const Robot* const>, const Configuration&) override {}
-  void add(std::span<const Robot* const>, std::size_t) override {}
-  void keep(std::span<const Robot* const>, std::span<const std::size_t>) override {}
+  void load(std::span<const Robot* const> robots, const Configuration&) override { size_ = robots.size(); }
+  void add(std::span<const Robot* const> robots, std::size_t) override { size_ = robots.size(); }
+  void keep(std::span<const Robot* const> robots, std::span<const std::size_t>) override { size_ = robots.size(); }
   void configure(const Configuration&) override {}
   void step(const Clock&, std::int64_t) override { throw DeviceError("the device fell off the bus"); }
   void read(std::size_t, std::span<Vec3>, std::span<Vec3>) const override {}
@@ -99,12 +99,15 @@ class BrokenBackend : public Backend {
   void read_positions(std::span<Vec3>) const override {}
   void read_velocities(std::span<Vec3>) const override {}
   RobotStatus status(std::size_t) const override { return {}; }
-  std::vector<RobotStatus> statuses() const override { return {}; }
+  std::vector<RobotStatus> statuses() const override { return std::vector<RobotStatus>(size_); }
   void set_status(std::size_t, const RobotStatus&) override {}
   void write_materials(std::span<const Material>) override {}
   void write_materials(std::size_t, std::span<const Material>) override {}
   void set_perturbations(std::span<const Perturbation>) override {}
   void report(const Clock&, std::span<Telemetry>, std::span<RobotStatus>) const override {}
+
+ private:
+  std::size_t size_ = 0;  // robots
 };
 
 TEST(EvaluatorEnds, FailingDevicesAreReportedByNext) {
@@ -156,8 +159,14 @@ class SlowBackend final : public BrokenBackend {
     std::atomic<bool> waits = false, opens = false;
   };
   explicit SlowBackend(Gate& gate) : gate_(gate) {}
-  void load(std::span<const Robot* const> robots, const Configuration&) override { pass(robots); }
-  void add(std::span<const Robot* const> robots, std::size_t) override { pass(robots); }
+  void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
+    BrokenBackend::load(robots, configuration);
+    pass(robots);
+  }
+  void add(std::span<const Robot* const> robots, std::size_t first_new) override {
+    BrokenBackend::add(robots, first_new);
+    pass(robots);
+  }
   void step(const Clock&, std::int64_t) override {}
 
  private:
@@ -201,6 +210,7 @@ class PatientBackend final : public BrokenBackend {
   explicit PatientBackend(Gate& gate) : gate_(gate) {}
   std::size_t robots_at_once() const override { return 1000; }
   void add(std::span<const Robot* const> robots, std::size_t first_new) override {
+    BrokenBackend::add(robots, first_new);
     gate_.robots += robots.size() - first_new;
     ++gate_.portions;
     gate_.portions.notify_all();

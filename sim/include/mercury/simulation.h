@@ -100,10 +100,11 @@ class Simulation {
   // The same with the telemetry after every `every` steps: [steps / every][robot], computed on the device. Throws
   // std::invalid_argument unless `every` > 0 divides `steps` >= 0.
   std::vector<Telemetry> step_and_sample(std::int64_t steps, std::int64_t every);
-  // The same with visit(samples), [sample][robot], for all samples in turn, one or more at a time. A GPU steps on
-  // meanwhile, so visit() must not call the simulation, or throw.
+  // The same with visit(samples), [sample][robot], for all samples in turn, one or more at a time; with `from_now` the
+  // first one is telemetry(), for which a busy GPU alone would be waited for long. A GPU steps on meanwhile, so visit()
+  // must not call the simulation, or throw.
   void step_and_sample(std::int64_t steps, std::int64_t every,
-                       const std::function<void(std::span<const Telemetry>)>& visit);
+                       const std::function<void(std::span<const Telemetry>)>& visit, bool from_now = false);
 
   // The same as step(), queued in a CUDA stream (a cudaStream_t) of cuda_device(), after what is there. What follows
   // in the stream comes after the steps. Returns at once. Robots that no CUDA device holds, or several, are stepped at
