@@ -7,8 +7,8 @@
 //
 // 1. One thread makes pieces of consecutive robots, each on all cores unless the source is serial. A piece is complete
 //    when it has as many robots as usual (fewer toward the end if there are several devices), when a device has too
-//    little to do and the piece is not tiny, or when its share of the memory is used up. While no device has started,
-//    the thread also prepares the robots for it.
+//    little to do and the piece is not tiny, or when its share of the memory is used up. The thread also prepares the
+//    robots for a GPU, which works out what loading them needs.
 // 2. Each device has several workers, each with a simulation of its own: while the robots of one are stepped, those of
 //    another are loaded. A worker takes several pieces as one portion (evaluator_threads.cpp).
 // 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
@@ -72,8 +72,7 @@ struct Evaluator::Parts {
 
   // Of the maker.
   bool is_large_enough(std::size_t first, std::size_t robots) const;
-  // Until a device has started.
-  void prepare(const std::vector<std::shared_ptr<const Robot>>& robots);
+  void prepare(const Portion& portion);
   bool is_made() const;             // all robots that are known so far; locked
   bool may_make() const;            // to be called with the mutex locked, as all functions below that are marked so
   std::size_t piece_bytes() const;  // locked
@@ -127,7 +126,7 @@ struct Evaluator::Parts {
 
   std::atomic<std::size_t> end;
   std::atomic<bool> stopping = false;
-  std::atomic<bool> may_prepare = false;       // no device has started, and one needs prepared robots
+  std::atomic<bool> prepares = false;          // a device may need prepared robots
   std::atomic<std::size_t> memory_in_use = 0;  // by portions and results that are not yet yielded
   std::atomic<std::size_t> largest_robot = 0;  // [bytes]
   std::atomic<std::size_t> piece_robots = 0;   // wanted per piece, at most

@@ -28,6 +28,9 @@ constexpr std::size_t smallest_piece = 256, usual_piece = 512;
 // One simulation steps robots faster than several do: its size classes need few of CUDA's queues.
 constexpr std::size_t first_portion = 512, largest_portion = 8192;
 constexpr std::size_t usual_portion_bytes = std::size_t{192} << 20;
+// A device takes portions until it has this many times the robots that it steps at once, so that the others keep it
+// full while a worker loads robots.
+constexpr std::size_t most_in_hand = 4;
 // Until it is known how many robots a device steps at once.
 constexpr std::size_t portions_at_start = 2, waiting_at_start = 16384;
 
@@ -55,7 +58,7 @@ Evaluator::Parts::~Parts() {
 void Evaluator::Parts::start(std::vector<MakeBackend> given) {
   const bool are_known = !given.empty() || request.configuration.device.kind == DeviceKind::cpu || !built_with_cuda();
   if (given.empty() && request.configuration.device.kind != DeviceKind::cpu) prepared = prepare_for_cuda();
-  may_prepare = prepared != nullptr;
+  prepares = prepared != nullptr;
   if (are_known) start_devices(given);
   maker = std::thread([this] { make_portions(); });
   // To look for CUDA devices can take a while; robots are made meanwhile.
@@ -78,7 +81,7 @@ void Evaluator::Parts::start_devices(const std::vector<MakeBackend>& given) {
       const std::lock_guard lock(mutex);
       devices.swap(found);
       devices_are_known = true;
-      if (std::ranges::all_of(devices, &DeviceParts::is_cpu)) may_prepare = false;
+      if (std::ranges::all_of(devices, &DeviceParts::is_cpu)) prepares = false;
       update_demand();
       maker_may_go_on.notify_one();
     }
@@ -109,8 +112,7 @@ void Evaluator::Parts::make_portions() {
       std::optional<UnionClock::Interval> interval(std::in_place, making);
       Portion portion = make_portion(source, first, known, limits, request.serial_source, largest_robot);
       interval.reset();
-      std::vector<std::shared_ptr<const Robot>> to_prepare;
-      if (may_prepare) to_prepare = portion.robots();
+      prepare(portion);
       {
         const std::lock_guard lock(mutex);
         if (limits.canceled()) break;
@@ -124,7 +126,6 @@ void Evaluator::Parts::make_portions() {
         update_demand();
         portion_waits.notify_all();
       }
-      prepare(to_prepare);
     }
   } catch (...) {
     fail(first, std::current_exception());
@@ -135,10 +136,13 @@ void Evaluator::Parts::make_portions() {
   notify_all();
 }
 
-void Evaluator::Parts::prepare(const std::vector<std::shared_ptr<const Robot>>& robots) {
+// Before a worker takes them. Workers that each prepared their own, on the same cores, would all be ready late.
+void Evaluator::Parts::prepare(const Portion& portion) {
+  if (!prepares) return;
+  const std::vector<std::shared_ptr<const Robot>> robots = portion.robots();
   parallel_for(0, robots.size(), [&](std::size_t i) {
     const bool is_repeated = i > 0 && robots[i] == robots[i - 1];
-    if (may_prepare && !is_repeated) prepared->prepare(robots[i]);
+    if (prepares && !is_repeated) prepared->prepare(robots[i]);
   });
 }
 
@@ -168,7 +172,6 @@ void Evaluator::Parts::device_started(DeviceParts& device, const Backend& backen
   const std::size_t free = cuda >= 0 ? free_cuda_memory(cuda) : unknown_count;
   const std::lock_guard lock(mutex);
   device.name = backend.device_name();
-  may_prepare = false;
   portion_bytes = std::min(portion_bytes, free / static_cast<std::size_t>(workers_of(device) + 1));
   update_demand();
   device_has_started.notify_all();
@@ -389,7 +392,7 @@ bool Evaluator::Parts::may_take(const DeviceParts& device) const {
   const std::size_t fill = robots_that_fill(device);
   const std::size_t as_many = std::min(device.robots_in_hand, largest_portion_of(device));
   if (device.robots_in_hand < fill) return is_made() || waiting_robots >= as_many;
-  return device.robots_in_hand < 2 * fill && (is_made() || waiting_robots >= largest_portion_of(device));
+  return device.robots_in_hand < most_in_hand * fill && (is_made() || waiting_robots >= largest_portion_of(device));
 }
 
 Portion Evaluator::Parts::next_portion(const DeviceParts& device) {

@@ -33,7 +33,10 @@ std::vector<std::optional<ArrangedRobots::Entry>> ArrangedRobots::take(std::span
   std::vector<std::optional<Entry>> taken(robots.size());
   const std::lock_guard lock(mutex_);
   for (std::size_t i = 0; i < robots.size() && !entries_.empty(); ++i)
-    if (auto found = entries_.extract(robots[i])) taken[i] = std::move(found.mapped());
+    if (auto found = entries_.extract(robots[i])) {
+      taken[i] = std::move(found.mapped());
+      if (taken[i]->arrangement) topologies_.erase(taken[i]->findings.topology);
+    }
   return taken;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is worked out of a robot before it is loaded, and such work done before a device has started
-// (mercury/prepared_robots.h).
+// What is worked out of a robot before it is loaded, and where that waits (mercury/prepared_robots.h).
 #pragma once
 
 #include <cstdint>
@@ -30,7 +29,7 @@ class ArrangedRobots final : public PreparedRobots {
   struct Entry {
     std::shared_ptr<const Robot> robot;  // so that no other robot gets its address
     RobotFindings findings;
-    // Null if a robot of its topology was there before, since such robots share one.
+    // Null if a robot of its topology has one here, since such robots share it.
     std::unique_ptr<const Arrangement> arrangement;
   };
 
@@ -40,7 +39,7 @@ class ArrangedRobots final : public PreparedRobots {
 
  private:
   std::mutex mutex_;
-  std::unordered_set<std::uint64_t> topologies_;  // keys of all that were ever here
+  std::unordered_set<std::uint64_t> topologies_;  // keys of those that have an arrangement, or will have one
   std::unordered_map<const Robot*, Entry> entries_;
 };
 

@@ -66,6 +66,17 @@ TEST(ArrangedRobots, HaveOneArrangementPerTopology) {
   EXPECT_EQ(found[0]->findings.topology, found[1]->findings.topology);
 }
 
+TEST(ArrangedRobots, ArrangeATopologyAgainOnceItWasTaken) {
+  ArrangedRobots robots;
+  for (int portion = 0; portion < 2; ++portion) {
+    const auto robot = random_robot(1);
+    robots.prepare(robot);
+    const std::optional<ArrangedRobots::Entry> found = take(robots, *robot);
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->arrangement) << portion;
+  }
+}
+
 TEST(ArrangedRobots, LiveUntilTheyAreTaken) {
   ArrangedRobots robots;
   auto robot = random_robot(1);
