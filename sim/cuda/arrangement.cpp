@@ -56,13 +56,10 @@ void shorten_padding(Schedule& schedule, const Robot& robot, const SlotOrder& or
 
 Arrangement arrange(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts) {
   auto order = std::make_shared<const SlotOrder>(choose_slots(robot, pairs, ghosts));
-  const std::vector<std::uint16_t>& slot = order->slots;
-  std::vector<FacePair> faces;
-  faces.reserve(pairs.size());
-  for (const FacePair& p : pairs) faces.push_back({slot[p.a], slot[p.b], slot[p.c], slot[p.d]});
-  Schedule schedule = schedule_springs(robot.masses.size() - ghosts, in_slots(robot.springs, slot), ghosts);
+  Schedule schedule = schedule_springs(robot.masses.size() - ghosts, in_slots(robot.springs, order->slots), ghosts);
   shorten_padding(schedule, robot, *order);
-  return {std::move(order), std::move(schedule), make_face_tiles(faces)};
+  std::vector<FacePair> faces = make_face_tiles(order->placed(pairs));
+  return {std::move(order), std::move(schedule), std::move(faces)};
 }
 
 std::vector<std::uint32_t> first_of_topology(std::span<const Robot* const> robots) {

@@ -51,9 +51,7 @@ class Splitter {
     std::vector<std::uint16_t> masses(robot.masses.size());
     std::iota(masses.begin(), masses.end(), std::uint16_t{0});
     bisect(robot, masses, 0, parts, part_of_);
-    std::vector<FacePair> pairs = pair_faces(robot);
-    for (FacePair& p : pairs) p = {order.slots[p.a], order.slots[p.b], order.slots[p.c], order.slots[p.d]};
-    pairs_ = make_face_tiles(pairs);
+    pairs_ = make_face_tiles(order.placed(pair_faces(robot)));
     const std::vector<std::uint16_t> mass_in = order.masses();
     for (FacePair& p : pairs_)
       if (p != padding_faces) p = {mass_in[p.a], mass_in[p.b], mass_in[p.c], mass_in[p.d]};

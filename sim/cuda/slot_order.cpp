@@ -159,6 +159,18 @@ class SlotSearch {
 
 }  // namespace
 
+std::vector<FacePair> SlotOrder::placed(std::span<const FacePair> pairs) const {
+  std::vector<FacePair> moved;
+  moved.reserve(pairs.size());
+  for (const FacePair& p : pairs) {
+    FacePair& m = moved.emplace_back(FacePair{slots[p.a], slots[p.b], slots[p.c], slots[p.d]});
+    if (m.d == m.a) continue;  // a single face
+    if (m.c < m.a) std::swap(m.a, m.c);
+    if (m.d < m.b) std::swap(m.b, m.d);
+  }
+  return moved;
+}
+
 SlotOrder choose_slots(const Robot& robot, std::span<const FacePair> pairs, std::uint32_t ghosts) {
   return SlotSearch(robot, pairs, ghosts).take();
 }

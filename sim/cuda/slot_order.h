@@ -31,6 +31,11 @@ struct SlotOrder {
   std::vector<std::uint16_t> slots;  // [mass]
 
   std::uint32_t slot_of(std::uint32_t mass) const { return slots[mass]; }
+  // Pairs of masses, by their slots, in a vertex order that follows from the slots alone. Robots of one topology share
+  // an arrangement. Forces on faces of real bodies are rounded by the place of their pair in it, and by which of the
+  // two is the first. So pairs in the order of the rest positions would let a robot move as another one, of another
+  // shape, has arranged it.
+  std::vector<FacePair> placed(std::span<const FacePair> pairs) const;
   std::vector<std::uint16_t> masses() const {  // [slot], of empty ones 0
     std::vector<std::uint16_t> inverse(slots.empty() ? 0 : std::ranges::max(slots) + std::size_t{1});
     for (std::size_t mass = 0; mass < slots.size(); ++mass) inverse[slots[mass]] = static_cast<std::uint16_t>(mass);

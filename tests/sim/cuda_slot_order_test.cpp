@@ -127,5 +127,18 @@ TEST(DealTiles, GivesWarpsAboutTheSameWork) {
     }
 }
 
+TEST(Arrangement, FollowsFromTheTopologyWhateverTheShape) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    const Robot robot = bodies::random_voxels({.x = 4, .y = 3, .z = 3}, seed);
+    Robot upside_down = robot;
+    for (Vec3& x : upside_down.masses) x = {x.x, -x.y, -x.z};
+    ASSERT_NE(pair_faces(robot), pair_faces(upside_down));
+    const Arrangement one = arrange(robot), other = arrange(upside_down);
+    EXPECT_EQ(one.order->slots, other.order->slots);
+    EXPECT_EQ(one.faces, other.faces);
+    EXPECT_EQ(one.schedule.row_start, other.schedule.row_start);
+  }
+}
+
 }  // namespace
 }  // namespace mercury::cuda

@@ -356,6 +356,21 @@ TEST_P(RealBody, ARealRobotInABatchWithOthersMovesAsItDoesAlone) {
   }
 }
 
+// A GPU arranges robots of one topology alike, which must not make a robot depend on another one's shape.
+TEST_P(RealBody, ARobotMovesAsItDoesAloneBesideOneOfItsTopologyAndAnotherShape) {
+  const Robot robot = body_of({.x = 3, .y = 2, .z = 3}, 2000, 1000, 0.005f);
+  Robot upside_down = robot;
+  for (Vec3& x : upside_down.masses) x = {x.x, -x.y, -x.z};
+  const Configuration setting = configuration(resistive({.flow = {0.3f, 0.2f, -0.1f}}));
+  const std::array both{upside_down, robot};
+  Simulation alone(setting, {&robot, 1}), together(setting, both);
+  const State moving = bodies::shaken(robot, 0.002f, 0.3f, 1);
+  alone.set_state(0, moving);
+  together.set_state(1, moving);
+  for (Simulation* simulation : {&alone, &together}) simulation->step(200);
+  EXPECT_EQ(together.hash(1), alone.hash(0));
+}
+
 class RealAgreement : public EveryPair {};
 INSTANTIATE_TEST_SUITE_P(All, RealAgreement,
                          testing::Combine(every_device, testing::Values(Solver::force, Solver::xpbd),
