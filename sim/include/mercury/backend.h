@@ -201,8 +201,9 @@ class Backend {
   virtual void report(const Clock& clock, std::span<Telemetry> telemetry, std::span<RobotStatus> statuses) const = 0;
 
   // step() with a report after every `every` > 0 steps, of which `steps` is a multiple, and with `from_now` one before
-  // the first step, to which drives of the caller's may already apply. Calls visit() with all reports in turn, one or more at a time: both are [report][robot]. Robots step
-  // on meanwhile, but an exploded one can be read. The default calls step() and report() in turn.
+  // the first step, to which drives of the caller's may already apply. Calls visit() with all reports in turn, one or
+  // more at a time: both are [report][robot]. Robots step on meanwhile, but an exploded one can be read. The default
+  // calls step() and report() in turn.
   using VisitReports = std::function<void(std::span<Telemetry> samples, std::span<const RobotStatus> statuses)>;
   virtual void step_and_report(const Clock& clock, std::int64_t steps, std::int64_t every, bool from_now,
                                const VisitReports& visit);

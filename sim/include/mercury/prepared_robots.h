@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a device needs of robots, worked out on the host before it loads them: while CUDA starts, which takes a quarter of
-// a second, or while others are stepped. Arranging thousands of robots keeps all cores busy for tens of milliseconds.
+// What a device needs of robots, worked out on the host before it loads them: while CUDA starts, which takes a quarter
+// of a second, or while others are stepped. Arranging thousands of robots keeps all cores busy for tens of
+// milliseconds.
 #pragma once
 
 #include <memory>
