@@ -285,7 +285,8 @@ void write_generations(const RunHistory& run) {
 
 void DerivedFiles::write_now_and_then(const RunHistory& run) {
   write_champions(run);
-  if (Clock::now() >= next_) write(run);
+  const bool is_over = run.generations().back().number >= run.settings().evolution.generations;
+  if (!is_over && Clock::now() >= next_) write(run);
 }
 
 void DerivedFiles::write(const RunHistory& run) {

@@ -21,7 +21,8 @@ inline constexpr std::array derived_file_names{lineage_name, first_parents_name,
 
 class DerivedFiles {
  public:
-  // Champions are written at once. The other files wait until 20 times as long has passed as writing them took.
+  // Champions are written at once. The other files wait until 20 times as long has passed as writing them took; after
+  // the last generation they wait for write(), which follows.
   void write_now_and_then(const RunHistory& run);
   // Writes them all.
   void write(const RunHistory& run);
