@@ -5,7 +5,7 @@
 //
 //     bench_evolution [--seeds 10] [--evaluations 1280] [--kinds voxel,cppn,nn] [--environments ocean,land] ...
 //
-//     bench_evolution --throughput 1 --device cuda [--physics real]
+//     bench_evolution --throughput 1 --device cuda [--physics real --environments water,land]
 //
 // measures what a user waits for instead: robots per minute of a whole pipelined run with its folder, from the start of
 // a process to its end, with the start of CUDA, the share of that time during which the device stepped, and the springs

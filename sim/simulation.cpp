@@ -356,7 +356,7 @@ void Simulation::step_and_sample(std::int64_t steps, std::int64_t every,
   // These may need the positions between samples.
   const bool one_by_one =
       size() > 0 && (parts_->reads_posture() || parts_->host_thinks() || parts_->pushes_within(steps));
-  // Drives change before the first step.
+  // Shared drives take effect before the first step, and so before the report that belongs to it.
   if (from_now && size() > 0 && (one_by_one || steps == 0 || parts_->shared_actuation.is_made())) {
     visit(telemetry());
     from_now = false;

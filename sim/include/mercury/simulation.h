@@ -100,9 +100,9 @@ class Simulation {
   // The same with the telemetry after every `every` steps: [steps / every][robot], computed on the device. Throws
   // std::invalid_argument unless `every` > 0 divides `steps` >= 0.
   std::vector<Telemetry> step_and_sample(std::int64_t steps, std::int64_t every);
-  // The same with visit(samples), [sample][robot], for all samples in turn, one or more at a time; with `from_now` the
-  // first one is telemetry(), for which a busy GPU alone would be waited for long. A GPU steps on meanwhile, so visit()
-  // must not call the simulation, or throw.
+  // The same with visit(samples), [sample][robot], for all samples in turn, one or more at a time. With `from_now` the
+  // first one is that of telemetry(), which itself waits long for a busy GPU. A GPU steps on meanwhile, so visit() must
+  // not call the simulation, or throw.
   void step_and_sample(std::int64_t steps, std::int64_t every,
                        const std::function<void(std::span<const Telemetry>)>& visit, bool from_now = false);
 
