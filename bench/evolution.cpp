@@ -5,7 +5,7 @@
 //
 //     bench_evolution [--seeds 10] [--evaluations 1280] [--kinds voxel,cppn,nn] [--environments ocean,land] ...
 //
-//     bench_evolution --throughput 1 --device cuda [--physics real --environments water,land]
+//     bench_evolution --throughput 1 --device cuda [--physics real --environments water,land] [--population 16384]
 //
 // measures what a user waits for instead: robots per minute of a whole pipelined run with its folder, from the start of
 // a process to its end, with the start of CUDA, the share of that time during which the device stepped, and the springs
@@ -45,7 +45,8 @@ struct Options {
   std::vector<std::string> algorithms{"random", "ga", "afpo", "alps", "nsga2", "map-elites", "novelty"};
   std::vector<std::string> kinds{"voxel", "cppn", "nn"}, environments{"ocean", "land"};
   std::uint64_t seeds = 10, first_seed = 1;
-  std::size_t evaluations = 1280, population = 64;
+  std::size_t evaluations = 1280;
+  std::size_t population = 0;  // 0 = 64; with --throughput, as usual for the kind
   SizeRange voxels{{4, 3, 3}, {4, 3, 3}};
   std::int64_t points = 64;
   struct Place {
@@ -119,6 +120,8 @@ Options options_from(int argc, char** argv) {
     if (setter == setters.end() || i + 1 == argc) throw InputError(argv[i], "is not an option with a value");
     setter->second(argv[i + 1]);
   }
+  if (options.throughput > 0) return options;
+  if (options.population == 0) options.population = 64;
   if (options.seeds == 0 || options.evaluations < options.population) throw InputError("give at least one generation");
   return options;
 }
@@ -264,7 +267,7 @@ void search(const Search& one, const std::string& environment, const Options& op
             const std::filesystem::path& folder) {
   const std::chrono::duration<double> before = std::chrono::steady_clock::now().time_since_epoch();
   EvolutionSettings settings = options.settings;
-  settings.algorithm.population = one.population;
+  settings.algorithm.population = options.population > 0 ? options.population : one.population;
   settings.generations = std::max(1, static_cast<int>(options.throughput * one.generations));
   GenomeSpaceRequest space = one.space;
   space.values.emplace("physics", options.physics);
