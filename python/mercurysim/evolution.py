@@ -342,8 +342,14 @@ class Run(_Asked):
     def advance(self) -> bool:
         """Makes, tries and selects one generation. Returns False if all are there.
 
-        Ctrl-C ends it, and the run is as it was before.
+        Ctrl-C ends it, and the run is as it was before. After the last one, charts, champions and tables are in the folder.
         """
+        advanced = self._advance()
+        if advanced and self.is_over:
+            self._search.write_all()
+        return advanced
+
+    def _advance(self) -> bool:
         advanced = bool(self._opened().advance())
         self.refresh()
         return advanced
@@ -370,7 +376,7 @@ class Run(_Asked):
         Charts, champions and tables are in the folder when it returns.
         """
         try:
-            while self.advance():
+            while self._advance():
                 if callback is not None and callback(self) is False:
                     break
         finally:

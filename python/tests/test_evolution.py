@@ -62,6 +62,8 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_never_stopped(run, tmp_path
         assert same(again.individuals(), run.individuals())
     with evolution.resume(tmp_path / "swim", generations=4) as longer:
         assert longer.advance() and len(longer.generations()["born"]) == 5
+        # Tables hold the last generation before the run is closed.
+        assert len((tmp_path / "swim" / "lineage.csv").read_text().splitlines()) == 1 + len(longer)
 
 
 def test_any_robot_of_a_run_can_be_taken_out(run):

@@ -149,8 +149,8 @@ class RunFolder {
   void set_generations(int generations);
 
   // Appends a generation to the journal; it is on the disk when this returns. The other files follow now and then, so
-  // that they take a small share of the time. If it cannot be written (a full disk), throws InputError, and the journal
-  // is as it was.
+  // that they take a small share of the time; call write_all() after the last generation. If it cannot be written (a
+  // full disk), throws InputError, and the journal is as it was.
   void append(const Generation& generation, const GenerationTimes& times);
   // The same on a thread of its own, while the caller makes the next generations. If more than three wait, it waits for
   // the first of them; all other functions wait for all. They throw what append() would have thrown.
