@@ -10,6 +10,7 @@
 #include "mercury/nn_robot.h"
 #include "mercury/random.h"
 #include "mercury/random_voxel.h"
+#include "mercury/real_body.h"
 #include "mercury/robot_file.h"
 #include "robots/nn/tetrahedra.h"
 #include "sim/cpu/kernels/kernel.h"
@@ -116,6 +117,14 @@ BENCHMARK_CAPTURE(draw_voxels, default, {})->Name("draw a voxel robot")->Unit(be
 BENCHMARK_CAPTURE(draw_voxels, ten, {.smallest = {10, 10, 10}, .largest = {10, 10, 10}})
     ->Name("draw a voxel robot of 10x10x10")
     ->Unit(benchmark::kMicrosecond);
+
+void make_real_bodies(State& state) {
+  const std::vector<Robot> robots = random_voxel_robots({}, 1, 200);
+  std::size_t next = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(with_real_body(robots[next++ % robots.size()], {}));
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(make_real_bodies)->Name("real body of a voxel robot")->Unit(benchmark::kMicrosecond);
 
 // The argument is the number of points in the cloud, here and below.
 std::size_t points_of(const State& state) { return static_cast<std::size_t>(state.range(0)); }

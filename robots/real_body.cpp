@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -41,6 +40,21 @@ double muscle_stiffness(std::span<const Material> table, const std::vector<Mater
   return static_cast<double>(*middle);
 }
 
+// Sorts keys whose upper halves name pairs of the masses, as pair_of() does. Few have the first mass in common.
+void sort_by_pair(std::vector<std::uint64_t>& keys, std::size_t masses) {
+  const auto first_mass = [](std::uint64_t key) { return static_cast<std::size_t>(key >> 48); };
+  std::vector<std::size_t> ends(masses + 1);
+  for (const std::uint64_t key : keys) ++ends[first_mass(key) + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<std::uint64_t> sorted(keys.size());
+  for (const std::uint64_t key : keys) sorted[ends[first_mass(key)]++] = key;
+  std::size_t begin = 0;
+  for (std::size_t mass = 0; mass < masses; begin = ends[mass++])
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin),
+              sorted.begin() + static_cast<std::ptrdiff_t>(ends[mass]));
+  keys.swap(sorted);
+}
+
 // Faces of a sealed cavity show into it: their shell, joined edge by edge, has a negative volume.
 void drop_cavities(Robot& robot) {
   std::vector<std::size_t> shell(robot.faces.size());
@@ -49,16 +63,18 @@ void drop_cavities(Robot& robot) {
     while (shell[f] != f) f = shell[f] = shell[shell[f]];
     return f;
   };
-  std::vector<std::pair<std::uint32_t, std::size_t>> sides;  // edge, face
+  std::vector<std::uint64_t> sides;  // edge, face
+  sides.reserve(3 * robot.faces.size());
   for (std::size_t f = 0; f < robot.faces.size(); ++f) {
     const auto [a, b, c] = robot.faces[f];
-    for (const std::uint32_t edge : {pair_of(a, b), pair_of(b, c), pair_of(c, a)}) sides.emplace_back(edge, f);
+    for (const std::uint64_t edge : {pair_of(a, b), pair_of(b, c), pair_of(c, a)}) sides.push_back(edge << 32 | f);
   }
-  std::ranges::sort(sides);
+  sort_by_pair(sides, robot.masses.size());
+  const auto face_of = [&](std::size_t side) { return static_cast<std::size_t>(sides[side] & 0xffffffff); };
   // Where more than two faces meet, shells touch without being one.
   for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
-    while (end < sides.size() && sides[end].first == sides[first].first) ++end;
-    if (end - first == 2) shell[root(sides[first].second)] = root(sides[first + 1].second);
+    while (end < sides.size() && sides[end] >> 32 == sides[first] >> 32) ++end;
+    if (end - first == 2) shell[root(face_of(first))] = root(face_of(first + 1));
   }
   bool is_one_shell = true;
   for (std::size_t f = 0; f < shell.size(); ++f) is_one_shell = is_one_shell && root(f) == root(0);
@@ -97,8 +113,8 @@ std::vector<Substance> substances_of(const Robot& robot, const RealMaterial& mat
   return substances;
 }
 
-// Actuators of materials that are now several.
-void rename_materials(std::vector<Actuator>& actuators, const std::multimap<MaterialId, MaterialId>& made) {
+// Actuators of materials that are now several: pairs of a material and one made of it.
+void rename_materials(std::vector<Actuator>& actuators, std::span<const std::pair<MaterialId, MaterialId>> made) {
   for (Actuator& actuator : actuators) {
     std::vector<MaterialId> mine;
     for (const auto& [of, id] : made)
@@ -114,55 +130,59 @@ void set_voxel_springs(const Robot& robot, const Voxels& voxels, const RealMater
   // By the number of axes along which a spring runs: an edge, a diagonal across a side, one through the middle.
   constexpr std::array<double, 4> share{0, 0.15, 0.10, 0.15};
   constexpr std::array<const char*, 4> kind{"", "edge", "side", "middle"};
-  // A spring of one voxel. Those of several that lie between the same masses become one per material.
-  struct Part {
-    std::uint32_t pair;
-    MaterialId material;
-    unsigned axes;
-    auto operator<=>(const Part&) const = default;
-  };
+  constexpr std::array<unsigned, 8> axes_between{0, 1, 1, 2, 1, 2, 2, 3};  // of two corners, by the bits that differ
   std::vector<MaterialId> of_voxels;
   for (const Voxel& voxel : voxels.all) of_voxels.push_back(voxel.material);
   const std::vector<Substance> substances = substances_of(robot, material, of_voxels);
-  std::vector<Part> parts;
+  // The springs of single voxels: pair of masses, material, axes. Those of several voxels that lie between the same
+  // masses become one per material.
+  std::vector<std::uint64_t> parts;
+  parts.reserve(28 * voxels.all.size());
   std::vector<double> density_at(robot.masses.size());  // of all voxels there
   for (const auto& [corners, id] : voxels.all) {
     for (const std::uint16_t corner : corners) density_at[corner] += substances[id].density;
     for_each_pair_of_corners([&, &corners = corners, id = id](std::size_t i, std::size_t j) {
-      parts.push_back({pair_of(corners[i], corners[j]), id, static_cast<unsigned>(std::popcount(i ^ j))});
+      const std::uint64_t pair = pair_of(corners[i], corners[j]);
+      parts.push_back(pair << 32 | static_cast<std::uint64_t>(id) << 8 | axes_between[i ^ j]);
     });
   }
-  std::ranges::sort(parts);
+  sort_by_pair(parts, robot.masses.size());
   const double edge = static_cast<double>(voxels.edge);
   real.mass.clear();
   for (const double density : density_at) real.mass.push_back(static_cast<float>(density * edge * edge * edge / 8));
   const std::span<const Material> table = materials_of(robot);
   real.materials.assign(1, Material{});
   real.material_names.assign(1, "air");
-  std::map<std::tuple<MaterialId, unsigned, int>, MaterialId> ids;
+  constexpr std::size_t most_shared = 4;                          // an edge, by the voxels around it
+  std::array<MaterialId, max_materials * 3 * most_shared> ids{};  // [material][axes - 1][shared - 1]; 0 = none yet
+  std::vector<std::pair<MaterialId, MaterialId>> made;
+  std::array<float, 4> length{};  // by axes
+  for (std::size_t axes = 1; axes < length.size(); ++axes)
+    length[axes] = static_cast<float>(edge * std::sqrt(static_cast<double>(axes)));
   real.springs.clear();
   for (auto part = parts.begin(); part != parts.end();) {
-    const auto [pair, id, axes] = *part;
-    const auto next = std::find_if(part, parts.end(), [&](const Part& other) { return other != *part; });
-    const auto shared = static_cast<int>(next - part);  // by as many voxels
-    part = next;
-    const auto [entry, is_new] = ids.try_emplace({id, axes, shared}, static_cast<MaterialId>(real.materials.size()));
-    if (is_new) {
+    const std::uint64_t first = *part;
+    const auto pair = static_cast<std::uint32_t>(first >> 32);
+    const auto id = static_cast<MaterialId>(first >> 8 & 0xff);
+    const auto axes = static_cast<std::size_t>(first & 0xff);
+    std::size_t shared = 0;  // by as many voxels
+    for (; part != parts.end() && *part == first; ++part) ++shared;
+    MaterialId& own_id = ids[(id * std::size_t{3} + axes - 1) * most_shared + shared - 1];
+    if (own_id == 0) {
       if (real.materials.size() == max_materials)
         throw InputError("/materials", "the voxels have too many materials for one table of springs");
       Material own = table[id];
       const Substance& substance = substances[id];
-      own.stiffness = static_cast<float>(shared * share[axes] * substance.modulus * edge);
+      own.stiffness = static_cast<float>(static_cast<double>(shared) * share[axes] * substance.modulus * edge);
       own.relaxation_time = static_cast<float>(substance.relaxation_time);
+      own_id = static_cast<MaterialId>(real.materials.size());
+      made.emplace_back(id, own_id);
       real.materials.push_back(own);
       real.material_names.push_back(name_of_material(robot, id) + ", " + std::to_string(shared) + " x " + kind[axes]);
     }
-    const auto length = static_cast<float>(edge * std::sqrt(static_cast<double>(axes)));
     real.springs.push_back(
-        {static_cast<std::uint16_t>(pair >> 16), static_cast<std::uint16_t>(pair & 0xffff), entry->second, length});
+        {static_cast<std::uint16_t>(pair >> 16), static_cast<std::uint16_t>(pair & 0xffff), own_id, length[axes]});
   }
-  std::multimap<MaterialId, MaterialId> made;
-  for (const auto& [of, id] : ids) made.emplace(std::get<0>(of), id);
   rename_materials(real.actuators, made);
 }
 
@@ -210,7 +230,7 @@ void set_hexahedra_springs(const Robot& robot, std::span<const Hexahedron> cells
     real.materials.assign(1, Material{});
     real.material_names.assign(1, "air");
     std::map<std::pair<MaterialId, long>, MaterialId> ids;
-    std::multimap<MaterialId, MaterialId> made;
+    std::vector<std::pair<MaterialId, MaterialId>> made;
     for (const auto& [kind, sum] : kinds) {
       const auto id = static_cast<MaterialId>(real.materials.size());
       Material own = table[kind.first];
@@ -219,7 +239,7 @@ void set_hexahedra_springs(const Robot& robot, std::span<const Hexahedron> cells
       real.materials.push_back(own);
       real.material_names.push_back(name_of_material(robot, kind.first));
       ids.emplace(kind, id);
-      made.emplace(kind.first, id);
+      made.emplace_back(kind.first, id);
     }
     for (std::size_t s = 0; s < real.springs.size(); ++s) real.springs[s].material = ids[kind_of_spring[s]];
     rename_materials(real.actuators, made);

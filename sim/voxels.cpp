@@ -18,13 +18,15 @@ using Place = std::array<int, 3>;  // on the lattice, in edges
 // Where each mass stands; empty unless all stand on a lattice, one per place.
 std::vector<Place> places_of(const Robot& robot, float edge) {
   std::vector<Place> places;
+  places.reserve(robot.masses.size());
   for (const Vec3& mass : robot.masses) {
     const Vec3 d = mass - robot.masses.front();
     Place place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float along = (axis == 0 ? d.x : axis == 1 ? d.y : d.z) / edge;
-      if (!(std::abs(along) < 1e6f) || std::abs(along - std::round(along)) > 0.01f) return {};
-      place[axis] = static_cast<int>(std::lround(along));
+      if (!(std::abs(along) < 1e6f)) return {};
+      place[axis] = static_cast<int>(along + (along < 0 ? -0.5f : 0.5f));  // round() is a call of a function
+      if (std::abs(along - static_cast<float>(place[axis])) > 0.01f) return {};
     }
     places.push_back(place);
   }
@@ -95,16 +97,16 @@ Voxels voxels_of(const Robot& robot) {
       complete = found.present;
       voxel.corners[corner] = found.value;
     }
-    const auto spring_between = [&](std::size_t i, std::size_t j) -> Table::Entry& {
-      return joined.at(pair_of(voxel.corners[i], voxel.corners[j]));
-    };
-    if (complete)
-      for_each_pair_of_corners(
-          [&](std::size_t i, std::size_t j) { complete = complete && spring_between(i, j).present; });
+    std::array<Table::Entry*, 28> springs{};
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < 8 && complete; ++i)
+      for (std::size_t j = i + 1; j < 8 && complete; ++j) {
+        springs[found] = &joined.at(pair_of(voxel.corners[i], voxel.corners[j]));
+        complete = springs[found++]->present;
+      }
     if (!complete) continue;
-    for_each_pair_of_corners(
-        [&](std::size_t i, std::size_t j) { covered += std::exchange(spring_between(i, j).marked, true) ? 0 : 1; });
-    voxel.material = static_cast<MaterialId>(spring_between(0, 7).value);
+    for (Table::Entry* const spring : springs) covered += std::exchange(spring->marked, true) ? 0 : 1;
+    voxel.material = static_cast<MaterialId>(springs[6]->value);  // corners 0 and 7
     voxels.all.push_back(voxel);
   }
   if (covered != pairs) voxels.all.clear();

@@ -34,17 +34,17 @@ float nearest_apart(const Robot& robot, float radius) {
   const auto points = static_cast<std::uint32_t>(robot.masses.size());
   const std::uint32_t mask = std::bit_ceil(points) - 1;
   std::vector<Cell> cells;
+  cells.reserve(points);
   for (const Vec3& x : robot.masses) cells.push_back(cell_of(x, 1 / radius));
-  std::vector<std::vector<std::uint32_t>> buckets(mask + 1);
-  const auto bucket_at = [&](const Cell& cell) -> std::vector<std::uint32_t>& {
-    return buckets[bucket_of(hash_of(cell), mask)];
-  };
-  for (std::uint32_t i = 0; i < points; ++i) bucket_at(cells[i]).push_back(i);
+  // The masses of a bucket form a list.
+  constexpr std::uint32_t none = 0xffffffff;
+  std::vector<std::uint32_t> first_in(mask + 1, none), next(points);
+  for (std::uint32_t i = points; i-- > 0;) next[i] = std::exchange(first_in[bucket_of(hash_of(cells[i]), mask)], i);
   float nearest = radius;
   for (std::uint32_t i = 0; i < points; ++i)
     for (int n = 0; n < half_neighborhood; ++n) {
       const Cell other = cells[i] + neighbor(n);
-      for (const std::uint32_t j : bucket_at(other)) {
+      for (std::uint32_t j = first_in[bucket_of(hash_of(other), mask)]; j != none; j = next[j]) {
         if ((n == 0 && j <= i) || !(cells[j] == other)) continue;
         const float distance = length(robot.masses[j] - robot.masses[i]);
         if (distance < nearest && !is_joined(i, j)) nearest = distance;
