@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace mercury {
 
@@ -21,9 +22,14 @@ std::partial_ordering compare_fitness(const Individual& a, const Individual& b) 
 }
 
 std::vector<std::size_t> best_first(std::span<const Individual> individuals) {
-  std::vector<std::size_t> order(individuals.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return better(individuals[a], individuals[b]); });
+  // Individuals and their scores are all over the memory, so what is compared is brought together first.
+  std::vector<std::pair<RankingKey, std::size_t>> keys;
+  keys.reserve(individuals.size());
+  for (const Individual& individual : individuals) keys.emplace_back(RankingKey(individual), keys.size());
+  std::ranges::sort(keys, [](const auto& a, const auto& b) { return a.first.is_before(b.first); });
+  std::vector<std::size_t> order;
+  order.reserve(keys.size());
+  for (const auto& [key, index] : keys) order.push_back(index);
   return order;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <compare>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,14 +16,20 @@ namespace mercury {
 // A score by which individuals can be sorted: NaN is the worst one.
 inline double comparable(double score) { return std::isnan(score) ? worst_score : score; }
 
-// Whether a stands before b: a higher first score; of those that have the worst, the one that is nearer to being sound,
-// so that a search among robots that are not sound leads to some that are; then the lower id.
-inline bool better(const Individual& a, const Individual& b) {
-  const double x = comparable(a.score()), y = comparable(b.score());
-  if (x != y) return x > y;
-  const double v = a.assessment.violation, w = b.assessment.violation;
-  return v != w ? v < w : a.id < b.id;
-}
+// What decides which of two individuals stands before the other: a higher first score; of those that have the worst,
+// being nearer to sound, so that a search among robots that are not sound leads to some that are; then the lower id.
+struct RankingKey {
+  double score = 0, violation = 0;
+  std::uint64_t id = 0;
+
+  explicit RankingKey(const Individual& individual)
+      : score(comparable(individual.score())), violation(individual.assessment.violation), id(individual.id) {}
+  bool is_before(const RankingKey& other) const {
+    if (score != other.score) return score > other.score;
+    return violation != other.violation ? violation < other.violation : id < other.id;
+  }
+};
+inline bool better(const Individual& a, const Individual& b) { return RankingKey(a).is_before(RankingKey(b)); }
 
 // Which of two individuals is fitter: the one that is as good in every objective and better in one; `unordered` if
 // each is better in one.

@@ -294,13 +294,26 @@ void validate(const VoxelGrid& grid) {
 
 VoxelGrid largest_body(const VoxelGrid& grid) {
   validate(grid);
-  std::vector<std::uint32_t> body_of(grid.cells.size(), 0);  // 0 = not seen
+  // With a border of air around the grid, all voxels have six neighbors. Evolution asks this several times per child.
+  const auto nx = static_cast<std::size_t>(grid.nx), ny = static_cast<std::size_t>(grid.ny);
+  const std::size_t row = nx + 2, plane = row * (ny + 2);
+  const auto padded = [&](std::size_t y, std::size_t z) { return 1 + (y + 1) * row + (z + 1) * plane; };
+  const auto for_each_row = [&](const auto& visit) {
+    for (std::size_t cell = 0, y = 0, z = 0; cell < grid.cells.size(); cell += nx) {
+      visit(cell, padded(y, z));
+      if (++y == ny) y = 0, ++z;
+    }
+  };
+  constexpr std::uint32_t unseen = 0xffffffff;
+  std::vector<std::uint32_t> body_of(plane * (static_cast<std::size_t>(grid.nz) + 2), 0);  // 0 = air
+  for_each_row([&](std::size_t cell, std::size_t to) {
+    for (std::size_t x = 0; x < nx; ++x) body_of[to + x] = grid.cells[cell + x] == air ? 0 : unseen;
+  });
   std::vector<std::size_t> open;
   std::size_t largest_size = 0;
   std::uint32_t bodies = 0, largest = 0;
-  const auto nx = static_cast<std::size_t>(grid.nx), ny = static_cast<std::size_t>(grid.ny);
-  for (std::size_t start = 0; start < grid.cells.size(); ++start) {
-    if (grid.cells[start] == air || body_of[start] != 0) continue;
+  for (std::size_t start = plane; start + plane < body_of.size(); ++start) {
+    if (body_of[start] != unseen) continue;
     body_of[start] = ++bodies;
     open.assign(1, start);
     std::size_t size = 0;
@@ -308,18 +321,11 @@ VoxelGrid largest_body(const VoxelGrid& grid) {
       const std::size_t i = open.back();
       open.pop_back();
       ++size;
-      const auto visit = [&](bool inside, std::size_t neighbor) {
-        if (!inside || grid.cells[neighbor] == air || body_of[neighbor] != 0) return;
+      for (const std::size_t neighbor : {i - 1, i + 1, i - row, i + row, i - plane, i + plane}) {
+        if (body_of[neighbor] != unseen) continue;
         body_of[neighbor] = bodies;
         open.push_back(neighbor);
-      };
-      const std::size_t x = i % nx, y = i / nx % ny;
-      visit(x > 0, i - 1);
-      visit(x + 1 < nx, i + 1);
-      visit(y > 0, i - nx);
-      visit(y + 1 < ny, i + nx);
-      visit(i >= nx * ny, i - nx * ny);
-      visit(i + nx * ny < grid.cells.size(), i + nx * ny);
+      }
     }
     if (size > largest_size) {
       largest_size = size;
@@ -327,8 +333,10 @@ VoxelGrid largest_body(const VoxelGrid& grid) {
     }
   }
   VoxelGrid body = grid;
-  for (std::size_t i = 0; i < body.cells.size(); ++i)
-    if (body_of[i] != largest) body.cells[i] = air;
+  for_each_row([&](std::size_t cell, std::size_t from) {
+    for (std::size_t x = 0; x < nx; ++x)
+      if (body_of[from + x] != largest) body.cells[cell + x] = air;
+  });
   return body;
 }
 
