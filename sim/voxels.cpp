@@ -99,14 +99,14 @@ Voxels voxels_of(const Robot& robot) {
     }
     std::array<Table::Entry*, 28> springs{};
     std::size_t found = 0;
-    for (std::size_t i = 0; i < 8 && complete; ++i)
-      for (std::size_t j = i + 1; j < 8 && complete; ++j) {
-        springs[found] = &joined.at(pair_of(voxel.corners[i], voxel.corners[j]));
-        complete = springs[found++]->present;
-      }
+    for_each_pair_of_corners([&](std::size_t i, std::size_t j) {
+      if (!complete) return;
+      springs[found] = &joined.at(pair_of(voxel.corners[i], voxel.corners[j]));
+      complete = springs[found++]->present;
+    });
     if (!complete) continue;
     for (Table::Entry* const spring : springs) covered += std::exchange(spring->marked, true) ? 0 : 1;
-    voxel.material = static_cast<MaterialId>(springs[6]->value);  // corners 0 and 7
+    voxel.material = static_cast<MaterialId>(joined.at(pair_of(voxel.corners[0], voxel.corners[7])).value);
     voxels.all.push_back(voxel);
   }
   if (covered != pairs) voxels.all.clear();

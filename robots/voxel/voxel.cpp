@@ -57,6 +57,7 @@ class Lattice {
   // Unsigned: a step backward wraps around, and wraps back when it is added to an index.
   std::size_t step(int x, int y, int z) const { return at(x, y, z); }
 
+  std::size_t size() const { return voxels_.size(); }
   MaterialId voxel(std::size_t index) const { return voxels_[index]; }
   std::uint16_t mass(std::size_t corner) const { return masses_[corner]; }
 
@@ -294,26 +295,16 @@ void validate(const VoxelGrid& grid) {
 
 VoxelGrid largest_body(const VoxelGrid& grid) {
   validate(grid);
-  // With a border of air around the grid, all voxels have six neighbors. Evolution asks this several times per child.
-  const auto nx = static_cast<std::size_t>(grid.nx), ny = static_cast<std::size_t>(grid.ny);
-  const std::size_t row = nx + 2, plane = row * (ny + 2);
-  const auto padded = [&](std::size_t y, std::size_t z) { return 1 + (y + 1) * row + (z + 1) * plane; };
-  const auto for_each_row = [&](const auto& visit) {
-    for (std::size_t cell = 0, y = 0, z = 0; cell < grid.cells.size(); cell += nx) {
-      visit(cell, padded(y, z));
-      if (++y == ny) y = 0, ++z;
-    }
-  };
+  const Lattice lattice(grid);
+  const std::size_t row = lattice.step(0, 1, 0), layer = lattice.step(0, 0, 1);
   constexpr std::uint32_t unseen = 0xffffffff;
-  std::vector<std::uint32_t> body_of(plane * (static_cast<std::size_t>(grid.nz) + 2), 0);  // 0 = air
-  for_each_row([&](std::size_t cell, std::size_t to) {
-    for (std::size_t x = 0; x < nx; ++x) body_of[to + x] = grid.cells[cell + x] == air ? 0 : unseen;
-  });
+  std::vector<std::uint32_t> body_of(lattice.size(), 0);  // 0 = air
+  lattice.for_each_voxel([&](int, int, int, std::size_t i) { body_of[i] = unseen; });
   std::vector<std::size_t> open;
   std::size_t largest_size = 0;
   std::uint32_t bodies = 0, largest = 0;
-  for (std::size_t start = plane; start + plane < body_of.size(); ++start) {
-    if (body_of[start] != unseen) continue;
+  lattice.for_each_voxel([&](int, int, int, std::size_t start) {
+    if (body_of[start] != unseen) return;
     body_of[start] = ++bodies;
     open.assign(1, start);
     std::size_t size = 0;
@@ -321,7 +312,7 @@ VoxelGrid largest_body(const VoxelGrid& grid) {
       const std::size_t i = open.back();
       open.pop_back();
       ++size;
-      for (const std::size_t neighbor : {i - 1, i + 1, i - row, i + row, i - plane, i + plane}) {
+      for (const std::size_t neighbor : {i - 1, i + 1, i - row, i + row, i - layer, i + layer}) {
         if (body_of[neighbor] != unseen) continue;
         body_of[neighbor] = bodies;
         open.push_back(neighbor);
@@ -331,11 +322,10 @@ VoxelGrid largest_body(const VoxelGrid& grid) {
       largest_size = size;
       largest = bodies;
     }
-  }
+  });
   VoxelGrid body = grid;
-  for_each_row([&](std::size_t cell, std::size_t from) {
-    for (std::size_t x = 0; x < nx; ++x)
-      if (body_of[from + x] != largest) body.cells[cell + x] = air;
+  lattice.for_each_voxel([&](int x, int y, int z, std::size_t i) {
+    if (body_of[i] != largest) body.cells[body.index(x, y, z)] = air;
   });
   return body;
 }
