@@ -51,6 +51,7 @@ void Evaluator::extend(std::size_t more) {
   if (!parts.request.grows) throw std::logic_error("this source does not grow");
   const std::lock_guard lock(parts.mutex);
   const std::size_t before = parts.count;
+  if (parts.batches.back() < before) parts.batches.push_back(before);
   if (parts.end == before) parts.end = before + more;  // nothing has failed
   parts.count = before + more;
   parts.update_demand();

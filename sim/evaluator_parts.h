@@ -13,7 +13,11 @@
 //    another are loaded. A worker takes several pieces as one portion (evaluator_threads.cpp).
 // 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
 //    or in the hands of a worker, which needs no memory of others to finish it: nothing waits in a circle.
-// 4. `end` is the index after the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
+// 4. What one call of extend() added is a batch. One that follows a batch of about as many robots as a device has in
+// hand
+//    begins when that has next to no steps left. Side by side, two generations of an evolution would end at the same
+//    time, and the device would have nothing to do until one of the next two is there.
+// 5. `end` is the index after the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
 //    its first robot, and whoever works on robots from there on gives up. A portion that stop() finds in the hands of
 //    a worker before its first step is left out alone: later ones may have been stepped.
 #pragma once
@@ -45,13 +49,21 @@ struct FinishedPortion {
 };
 
 struct Evaluator::Parts {
+  // A portion that a worker has.
+  struct InHand {
+    std::size_t robots;
+    std::int64_t steps = 0;  // of its trial, at the last sample
+  };
+
   struct DeviceParts {
+    std::size_t robots_in_hand() const;
+
     MakeBackend make_backend;
     bool is_cpu = false;
     // The rest is guarded by the mutex.
-    std::string name;                                      // empty = not yet started
-    std::size_t portions_in_hand = 0, robots_in_hand = 0;  // that its workers have
-    std::size_t idle_workers = 0;                          // that wait for a portion
+    std::string name;                       // empty = not yet started
+    std::map<std::size_t, InHand> in_hand;  // by the index of the first robot
+    std::size_t idle_workers = 0;           // that wait for a portion
     std::size_t portions_taken = 0;
     std::size_t robots = 0;          // stepped to the end
     std::size_t robots_at_once = 0;  // 0 = not yet known
@@ -85,6 +97,8 @@ struct Evaluator::Parts {
   bool may_take(const DeviceParts& device) const;                   // locked
   Portion next_portion(const DeviceParts& device);                  // locked
   std::optional<Portion> take(DeviceParts& device);
+  void wait_for_earlier_batches(const DeviceParts& device, const Portion& portion);
+  bool may_begin(const DeviceParts& device, const Portion& portion) const;  // locked
   // `backend` is the simulation's.
   void evaluate(DeviceParts& device, Simulation& simulation, const Backend& backend, Portion portion, StepPace& pace);
   void loaded(DeviceParts& device, const Backend& backend);
@@ -107,12 +121,13 @@ struct Evaluator::Parts {
   std::atomic<std::size_t> count;  // changes with the mutex locked
 
   mutable std::mutex mutex;  // guards what follows, atomics apart
-  std::condition_variable maker_may_go_on, portion_waits, result_waits, device_has_started;
+  std::condition_variable maker_may_go_on, portion_waits, portion_may_begin, result_waits, device_has_started;
   std::deque<DeviceParts> devices;  // complete once `devices_are_known`
   bool devices_are_known = false;
   std::deque<Portion> waiting;
   std::size_t waiting_robots = 0;             // of all pieces
   std::size_t next_first = 0;                 // index of the first of them
+  std::vector<std::size_t> batches{0};        // index of the first robot of each
   std::size_t portion_bytes = unknown_count;  // accepted per portion because of the devices' memory
   bool all_made = false;
   std::map<std::size_t, FinishedPortion> finished;  // by the index of the first robot

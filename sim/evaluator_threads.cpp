@@ -31,6 +31,10 @@ constexpr std::size_t usual_portion_bytes = std::size_t{192} << 20;
 // A device takes portions until it has this many times the robots that it steps at once, so that the others keep it
 // full while a worker loads robots.
 constexpr std::size_t most_in_hand = 4;
+// A batch waits for the one before it if that has at least and at most this many times these robots, until as many
+// steps are left as this share of them makes in all. A smaller one does not fill the device, and of a larger one some
+// end while others begin.
+constexpr double smallest_awaited = 1.25, largest_awaited = 3, share_not_awaited = 0.125;
 // Until it is known how many robots a device steps at once.
 constexpr std::size_t portions_at_start = 2, waiting_at_start = 16384;
 
@@ -185,9 +189,8 @@ std::optional<Portion> Evaluator::Parts::take(DeviceParts& device) {
   --device.idle_workers;
   if (waiting.empty()) return std::nullopt;
   Portion portion = next_portion(device);
-  ++device.portions_in_hand;
+  device.in_hand[portion.first] = {.robots = portion.candidates.size()};
   ++device.portions_taken;
-  device.robots_in_hand += portion.candidates.size();
   update_demand();
   notify_all();
   return portion;
@@ -199,6 +202,12 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, con
   const TrialContext context{.canceled = [&] { return first >= end; },
                              .stopping = [&] { return stopping.load(); },
                              .stepped = [&](std::int64_t steps) { robot_steps += steps; },
+                             .sampled =
+                                 [&](std::int64_t steps) {
+                                   const std::lock_guard lock(mutex);
+                                   device.in_hand.at(first).steps = steps;
+                                   portion_may_begin.notify_all();
+                                 },
                              .device_stepping = &device.stepping,
                              .stepping = &stepping};
   FinishedPortion result;
@@ -213,6 +222,7 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, con
     if (request.notes)
       noting = std::async(std::launch::async,
                           [this, robots = portion.robots()] { add_notes(robot_notes(robots, request.configuration)); });
+    wait_for_earlier_batches(device, portion);
     PortionTrial trial(simulation, request, context, pace, portion);
     if (!stopping && trial.run()) {
       interval.emplace(reading);
@@ -225,6 +235,11 @@ void Evaluator::Parts::evaluate(DeviceParts& device, Simulation& simulation, con
   // From here on, only the results hold the robots.
   for (Candidate& candidate : portion.candidates) candidate.robot.reset();
   finish(device, portion, std::move(result));
+}
+
+void Evaluator::Parts::wait_for_earlier_batches(const DeviceParts& device, const Portion& portion) {
+  std::unique_lock lock(mutex);
+  portion_may_begin.wait(lock, [&] { return stopping || portion.first >= end || may_begin(device, portion); });
 }
 
 void Evaluator::Parts::loaded(DeviceParts& device, const Backend& backend) {
@@ -252,8 +267,7 @@ void Evaluator::Parts::add_load_times(const LoadTimes& before, const LoadTimes& 
 // Without results if the portion was given up: unwanted, or not begun when the evaluation stopped.
 void Evaluator::Parts::finish(DeviceParts& device, const Portion& portion, FinishedPortion result) {
   const std::lock_guard lock(mutex);
-  --device.portions_in_hand;
-  device.robots_in_hand -= portion.candidates.size();
+  device.in_hand.erase(portion.first);
   if (result.results.empty()) {
     memory_in_use -= portion.bytes();
     given_up.emplace(portion.first, portion.candidates.size());
@@ -295,6 +309,7 @@ void Evaluator::Parts::fail(std::size_t first, std::exception_ptr exception) {
 void Evaluator::Parts::notify_all() {
   maker_may_go_on.notify_all();
   portion_waits.notify_all();
+  portion_may_begin.notify_all();
   result_waits.notify_all();
   device_has_started.notify_all();
 }
@@ -345,7 +360,7 @@ void Evaluator::Parts::update_demand() {
   device_count = devices.size();
   device_is_hungry =
       waiting.empty() && std::ranges::any_of(devices, [&](const DeviceParts& device) {
-        return !device.is_cpu && !device.name.empty() && device.robots_in_hand < robots_that_fill(device);
+        return !device.is_cpu && !device.name.empty() && device.robots_in_hand() < robots_that_fill(device);
       });
   std::size_t most = usual_piece;
   for (const DeviceParts& device : devices)
@@ -354,6 +369,12 @@ void Evaluator::Parts::update_demand() {
 }
 
 // --- How many robots a worker takes
+
+std::size_t Evaluator::Parts::DeviceParts::robots_in_hand() const {
+  std::size_t sum = 0;
+  for (const auto& [first, portion] : in_hand) sum += portion.robots;
+  return sum;
+}
 
 std::size_t Evaluator::Parts::robots_that_fill(const DeviceParts& device) const {
   if (!device.is_cpu) return std::max<std::size_t>(1, device.robots_at_once);
@@ -381,18 +402,33 @@ std::size_t Evaluator::Parts::largest_portion_of(const DeviceParts& device) cons
 bool Evaluator::Parts::may_take(const DeviceParts& device) const {
   if (waiting.empty()) return false;
   const auto share_in_hand = [&](const DeviceParts& any) {
-    return static_cast<double>(any.robots_in_hand) / static_cast<double>(robots_that_fill(any));
+    return static_cast<double>(any.robots_in_hand()) / static_cast<double>(robots_that_fill(any));
   };
   const auto has_less_to_do = [&](const DeviceParts& other) {
     return other.idle_workers > 0 && share_in_hand(other) < share_in_hand(device);
   };
   if (std::ranges::any_of(devices, has_less_to_do)) return false;
-  if (request.portion > 0 || device.portions_in_hand == 0) return true;
-  if (!device.is_cpu && device.robots_at_once == 0) return device.portions_in_hand < portions_at_start;
-  const std::size_t fill = robots_that_fill(device);
-  const std::size_t as_many = std::min(device.robots_in_hand, largest_portion_of(device));
-  if (device.robots_in_hand < fill) return is_made() || waiting_robots >= as_many;
-  return device.robots_in_hand < most_in_hand * fill && (is_made() || waiting_robots >= largest_portion_of(device));
+  if (request.portion > 0 || device.in_hand.empty()) return true;
+  if (!device.is_cpu && device.robots_at_once == 0) return device.in_hand.size() < portions_at_start;
+  const std::size_t fill = robots_that_fill(device), in_hand = device.robots_in_hand();
+  const std::size_t as_many = std::min(in_hand, largest_portion_of(device));
+  if (in_hand < fill) return is_made() || waiting_robots >= as_many;
+  return in_hand < most_in_hand * fill && (is_made() || waiting_robots >= largest_portion_of(device));
+}
+
+bool Evaluator::Parts::may_begin(const DeviceParts& device, const Portion& portion) const {
+  const auto next = std::ranges::upper_bound(batches, portion.first);
+  if (device.is_cpu || next - batches.begin() < 2) return true;
+  const std::size_t first = *(next - 1), before = first - *(next - 2);
+  const auto fill = static_cast<double>(robots_that_fill(device));
+  const double share_of_device = static_cast<double>(before) / static_cast<double>(devices.size());
+  if (share_of_device < smallest_awaited * fill || share_of_device > largest_awaited * fill) return true;
+  double left = 0;
+  for (const auto& [index, in_hand] : device.in_hand)
+    if (index < first)
+      left += static_cast<double>(in_hand.robots) *
+              (1 - static_cast<double>(in_hand.steps) / static_cast<double>(std::max<std::int64_t>(1, request.steps)));
+  return left <= share_not_awaited * fill;
 }
 
 Portion Evaluator::Parts::next_portion(const DeviceParts& device) {

@@ -142,7 +142,6 @@ void PortionTrial::step_and_observe(std::int64_t steps) {
     const auto visit = [&](std::span<const Telemetry> samples) { observe(samples, sample_every_); };
     simulation_.step_and_sample(steps, sample_every_, visit, measures_.empty());
   });
-  observed_ = steps_done();
 }
 
 template <class Call>
@@ -169,10 +168,7 @@ double PortionTrial::seconds(std::int64_t steps) const {
   return simulation_.configuration().dt * static_cast<double>(steps);
 }
 
-void PortionTrial::observe_now() {
-  observe(simulation_.telemetry(), steps_done() - observed_);
-  observed_ = steps_done();
-}
+void PortionTrial::observe_now() { observe(simulation_.telemetry(), steps_done() - observed_); }
 
 void PortionTrial::observe(std::span<const Telemetry> samples, std::int64_t steps) {
   const std::size_t robots = candidates_.size();
@@ -185,6 +181,8 @@ void PortionTrial::observe(std::span<const Telemetry> samples, std::int64_t step
   parallel_for(0, robots, [&](std::size_t i) {
     for (std::size_t at = i; at < samples.size(); at += robots) measures_[i].add(samples[at], seconds(steps));
   });
+  observed_ += steps * static_cast<std::int64_t>(samples.size() / robots);
+  context_.sampled(observed_);
 }
 
 // Asks about every robot. A check between two samples is a sample for the robots that it removes, and none for the

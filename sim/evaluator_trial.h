@@ -65,6 +65,7 @@ struct TrialContext {
   std::function<bool()> canceled;                         // nobody wants its results any more
   std::function<bool()> stopping;                         // it ends early, with results
   std::function<void(std::int64_t robot_steps)> stepped;  // after each call of step()
+  std::function<void(std::int64_t steps)> sampled;        // steps of the trial at its last sample
   UnionClock* device_stepping = nullptr;                  // of this device
   UnionClock* stepping = nullptr;                         // of all devices
 };
