@@ -13,10 +13,9 @@
 //    another are loaded. A worker takes several pieces as one portion (evaluator_threads.cpp).
 // 3. The order of portions is the order of the source. next() waits for the portion that comes next. It is always made
 //    or in the hands of a worker, which needs no memory of others to finish it: nothing waits in a circle.
-// 4. What one call of extend() added is a batch. One that follows a batch of about as many robots as a device has in
-// hand
-//    begins when that has next to no steps left. Side by side, two generations of an evolution would end at the same
-//    time, and the device would have nothing to do until one of the next two is there.
+// 4. What one call of extend() added is a batch, such as a generation of an evolution. A batch may have to wait until
+//    the one before it has next to no steps left (may_begin()). Side by side, both would end at the same time, and the
+//    device would have nothing to do until one of the next two is there.
 // 5. `end` is the index after the last result that will be yielded. Whatever goes wrong in a portion moves `end` to
 //    its first robot, and whoever works on robots from there on gives up. A portion that stop() finds in the hands of
 //    a worker before its first step is left out alone: later ones may have been stepped.

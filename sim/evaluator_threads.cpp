@@ -31,10 +31,11 @@ constexpr std::size_t usual_portion_bytes = std::size_t{192} << 20;
 // A device takes portions until it has this many times the robots that it steps at once, so that the others keep it
 // full while a worker loads robots.
 constexpr std::size_t most_in_hand = 4;
-// A batch waits for the one before it if that has at least and at most this many times these robots, until as many
-// steps are left as this share of them makes in all. A smaller one does not fill the device, and of a larger one some
-// end while others begin.
-constexpr double smallest_awaited = 1.25, largest_awaited = 3, share_not_awaited = 0.125;
+// A batch waits for the one before it if that has this many times the robots that a device steps at once. A smaller one
+// does not fill the device; of a larger one, some robots end while others begin.
+constexpr double smallest_awaited = 1.25, largest_awaited = 3;
+// It waits until what is left are the whole trials of this share of the robots that a device steps at once.
+constexpr double share_not_awaited = 0.125;
 // Until it is known how many robots a device steps at once.
 constexpr std::size_t portions_at_start = 2, waiting_at_start = 16384;
 
