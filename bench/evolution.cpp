@@ -9,8 +9,8 @@
 //
 // measures what a user waits for instead: robots per minute of a whole pipelined run with its folder, from the start of
 // a process to its end, with the start of CUDA, the share of that time during which the device stepped, and the springs
-// that it then stepped per second, beside those that one call steps per second of a generation in the middle of the
-// run.
+// that it then stepped per second, beside those that one call steps per second, as the mean over generations of the
+// run, since robots change while they evolve.
 //
 // All algorithms start from the same random robots, those of the seed. Runs are spread over the cores, whole runs at a
 // time. nsga2 has two objectives, distance and distance per work; the table shows its best distance. map-elites has a
@@ -268,8 +268,12 @@ double springs_of(const Individual& individual) {
   return values.empty() ? 0 : values[quantity];  // none = it could not be made
 }
 
-// Springs per second, the faster of two times.
-double speed_of_one_call(const Configuration& configuration, std::span<const GenomePointer> genomes,
+struct Stepped {
+  double springs = 0, seconds = 0;
+};
+
+// The faster of two times.
+Stepped step_in_one_call(const Configuration& configuration, std::span<const GenomePointer> genomes,
                          std::int64_t steps) {
   std::vector<std::shared_ptr<const Robot>> robots(genomes.size());
   parallel_for(0, genomes.size(), [&](std::size_t i) {
@@ -287,7 +291,7 @@ double speed_of_one_call(const Configuration& configuration, std::span<const Gen
     simulation.reset();
     least = std::min(least, seconds_of([&] { simulation.step(steps); }));
   }
-  return springs * static_cast<double>(steps) / least;
+  return {springs, least};
 }
 
 // What `mercury evolve RUN --pipelined --trials 1 --jitter 0 --no-confirm` does.
@@ -307,7 +311,8 @@ void search(const Search& one, const std::string& environment, const Options& op
   settings.pipelined = true;
   double busy = 0, springs = 0;
   std::size_t robots = 0;
-  std::vector<GenomePointer> in_the_middle;
+  const int every = (settings.generations + 9) / 10;
+  std::vector<std::vector<GenomePointer>> some;
   {
     RunFolder run = RunFolder::create(folder, {.evolution = settings, .space = space});
     const std::unique_ptr<Assessor> assessor = make_assessor(settings);
@@ -315,8 +320,10 @@ void search(const Search& one, const std::string& environment, const Options& op
     while (std::optional<Generation> generation = evolution.advance(*assessor)) {
       robots += generation->born.size();
       for (const Individual& individual : generation->born) springs += springs_of(individual);
-      if (generation->number == settings.generations / 2)
-        for (const Individual& individual : generation->born) in_the_middle.push_back(individual.genome);
+      if (generation->number % every == every / 2) {
+        some.emplace_back();
+        for (const Individual& individual : generation->born) some.back().push_back(individual.genome);
+      }
       run.append_later(*std::move(generation), {.seconds = 0, .device = assessor->device_name()});
     }
     run.write_all();
@@ -326,7 +333,13 @@ void search(const Search& one, const std::string& environment, const Options& op
   const double seconds = (after - before).count();
   const std::int64_t steps = std::llround(settings.trials.seconds / settings.configuration.dt);
   const double speed = springs * static_cast<double>(steps) / busy;
-  const double of_one_call = speed_of_one_call(settings.configuration, in_the_middle, steps);
+  Stepped alone;
+  for (const std::vector<GenomePointer>& generation : some) {
+    const Stepped one_call = step_in_one_call(settings.configuration, generation, steps);
+    alone.springs += one_call.springs;
+    alone.seconds += one_call.seconds;
+  }
+  const double of_one_call = alone.springs * static_cast<double>(steps) / alone.seconds;
   std::printf(
       "%zu %s, %s, in %.1f s: %.3g per minute, device busy %.0f %%, %.3g springs/s, %.0f %% of one call's %.3g\n",
       robots, one.title, environment.c_str(), seconds, 60 * static_cast<double>(robots) / seconds, 100 * busy / seconds,

@@ -31,9 +31,9 @@ constexpr std::size_t usual_portion_bytes = std::size_t{192} << 20;
 // A device takes portions until it has this many times the robots that it steps at once, so that the others keep it
 // full while a worker loads robots.
 constexpr std::size_t most_in_hand = 4;
-// A batch waits for the one before it if that has this many times the robots that a device steps at once. A smaller one
-// does not fill the device; of a larger one, some robots end while others begin.
-constexpr double smallest_awaited = 1.25, largest_awaited = 3;
+// A batch waits for the one before it unless that has more than this many times the robots that a device steps at once:
+// then some robots end while others begin.
+constexpr double largest_awaited = 3;
 // It waits until what is left are the whole trials of this share of the robots that a device steps at once.
 constexpr double share_not_awaited = 0.125;
 // Until it is known how many robots a device steps at once.
@@ -423,7 +423,7 @@ bool Evaluator::Parts::may_begin(const DeviceParts& device, const Portion& porti
   const std::size_t first = *(next - 1), before = first - *(next - 2);
   const auto fill = static_cast<double>(robots_that_fill(device));
   const double share_of_device = static_cast<double>(before) / static_cast<double>(devices.size());
-  if (share_of_device < smallest_awaited * fill || share_of_device > largest_awaited * fill) return true;
+  if (share_of_device > largest_awaited * fill) return true;
   double left = 0;
   for (const auto& [index, in_hand] : device.in_hand)
     if (index < first)

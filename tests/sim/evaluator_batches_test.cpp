@@ -15,7 +15,7 @@
 namespace mercury {
 namespace {
 
-constexpr std::size_t at_once = 4;
+constexpr std::size_t at_once = 8;
 
 // What the devices of a test have in common. Robots of the first batch are `early`, others `late`.
 struct Course {
@@ -23,7 +23,7 @@ struct Course {
                                      late = std::make_shared<Robot>(bodies::point());
   std::int64_t last_alone = 0;  // early robots make no more steps than these until late ones have begun
   bool fails = false;           // the device, when early robots have made those steps
-  std::atomic<bool> late_are_loaded = false, late_have_begun = false;
+  std::atomic<bool> early_are_loaded = false, late_are_loaded = false, late_have_begun = false;
   std::atomic<std::int64_t> early_steps = 0, early_steps_when_late_began = -1;
 
   RobotSource source(std::size_t count) const {
@@ -43,6 +43,7 @@ class CourseBackend final : public test::PlainBackend {
   void load(std::span<const Robot* const> robots, const Configuration& configuration) override {
     PlainBackend::load(robots, configuration);
     first_ = robots.empty() ? nullptr : robots.front();
+    if (first_ == course_.early.get()) raise(course_.early_are_loaded);
     if (first_ == course_.late.get()) raise(course_.late_are_loaded);
   }
   void step(const Clock& clock, std::int64_t steps) override {
@@ -81,18 +82,26 @@ std::vector<Evaluator::MakeBackend> device_of(Course& course) {
 }
 
 TEST(EvaluatorBatches, ABatchBeginsWhenThoseBeforeItHaveNextToNoStepsLeft) {
-  // Two portions of 4 robots at step 150 of 160 have half a robot's steps left: an eighth of 4.
-  Course course{.last_alone = 150};
-  Evaluator evaluator(batches_of_points(3), course.source(2 * at_once), 2 * at_once, device_of(course));
-  evaluator.extend(at_once);
-  EXPECT_EQ(rest_of(evaluator).size(), 3 * at_once);
-  EXPECT_EQ(course.early_steps_when_late_began, 2 * 150);
+  // An eighth of 8 robots' steps: of two portions of 8 after step 150 of 160, of one of 4 after step 120.
+  struct Case {
+    std::size_t early, portions;
+    std::int64_t last_alone;
+  };
+  for (const Case& one : {Case{2 * at_once, 2, 150}, Case{at_once / 2, 1, 120}}) {
+    Course course{.last_alone = one.last_alone};
+    Evaluator evaluator(batches_of_points(3), course.source(one.early), one.early, device_of(course));
+    course.early_are_loaded.wait(false);  // else one portion may have robots of both batches
+    evaluator.extend(at_once);
+    EXPECT_EQ(rest_of(evaluator).size(), one.early + at_once);
+    EXPECT_EQ(course.early_steps_when_late_began, static_cast<std::int64_t>(one.portions) * one.last_alone);
+  }
 }
 
-TEST(EvaluatorBatches, ABatchDoesNotWaitForASmallOrALargeOne) {
-  for (const std::size_t early : {at_once, 3 * at_once + 1}) {
+TEST(EvaluatorBatches, ABatchDoesNotWaitForATinyOrALargeOne) {
+  for (const std::size_t early : {std::size_t{1}, 3 * at_once + 1}) {
     Course course{.last_alone = 0};
     Evaluator evaluator(batches_of_points(5), course.source(early), early, device_of(course));
+    course.early_are_loaded.wait(false);
     evaluator.extend(at_once);
     EXPECT_EQ(rest_of(evaluator).size(), early + at_once);
     EXPECT_EQ(course.early_steps_when_late_began, 0);
