@@ -148,6 +148,7 @@ class Breeding {
 
   std::vector<Individual> children(const Watch& watch) {
     std::vector<std::unordered_set<std::uint64_t>> known(settings_.algorithm.islands);
+    for (auto& identities : known) identities.reserve((living_.size() + plans_.size()) / known.size() + 1);
     for (const Individual& individual : living_) known[individual.island].insert(individual.genome->identity());
     std::vector<std::size_t> missing(plans_.size());
     std::iota(missing.begin(), missing.end(), std::size_t{0});
@@ -197,10 +198,13 @@ class Breeding {
   }
 
   std::vector<Individual> individuals() {
-    std::vector<Individual> children;
-    for (std::size_t i = 0; i < plans_.size(); ++i) {
-      if (!genomes_[i]) continue;
-      Individual& child = children.emplace_back();
+    std::vector<std::size_t> made;
+    for (std::size_t i = 0; i < plans_.size(); ++i)
+      if (genomes_[i]) made.push_back(i);
+    std::vector<Individual> children(made.size());
+    parallel_for(0, made.size(), [&](std::size_t k) {
+      const std::size_t i = made[k];
+      Individual& child = children[k];
       child.generation = child.line_began = generation_;
       child.seed = seeds_[i];
       child.island = static_cast<std::uint16_t>(plans_[i].island);
@@ -210,7 +214,7 @@ class Breeding {
         child.parents.push_back(living_[parent].id);
         child.line_began = std::min(child.line_began, living_[parent].line_began);
       }
-    }
+    });
     return children;
   }
 
@@ -293,6 +297,7 @@ Generation Evolution::select(std::vector<Individual> children, std::span<const s
 }
 
 // While it waits for a generation, a GPU has nothing to do. So individuals are moved, not copied, as far as that goes.
+// Those that are gone are freed on all cores: one by one, that takes a third of the time.
 Generation Evolution::select(std::vector<Individual> children, const SurvivorsOf& survivors_of) {
   const std::size_t lived = living_.size();
   std::vector<Individual> pool = std::exchange(living_, {});
@@ -319,8 +324,9 @@ Generation Evolution::select(std::vector<Individual> children, const SurvivorsOf
   for (const Individual& individual : living_) generation.living.push_back(individual.id);
   if (settings_.pipelined) {
     pool.resize(lived);
-    before_ = std::move(pool);
+    std::swap(before_, pool);
   }
+  parallel_for(0, pool.size(), [&](std::size_t i) { pool[i] = {}; });
   next_id_ += generation.born.size();
   islands_->algorithm().learn(generation.born, Random(seed_of_plan(settings_.seed, next_generation_)));
   ++next_generation_;
