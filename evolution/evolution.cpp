@@ -297,7 +297,7 @@ Generation Evolution::select(std::vector<Individual> children, std::span<const s
 }
 
 // While it waits for a generation, a GPU has nothing to do. So individuals are moved, not copied, as far as that goes.
-// Those that are gone are freed on all cores: one by one, that takes a third of the time.
+// Those that are gone are freed on all cores: one by one, that takes a fifth of the time.
 Generation Evolution::select(std::vector<Individual> children, const SurvivorsOf& survivors_of) {
   const std::size_t lived = living_.size();
   std::vector<Individual> pool = std::exchange(living_, {});
