@@ -9,8 +9,8 @@
 //
 // measures what a user waits for instead: robots per minute of a whole pipelined run with its folder, from the start of
 // a process to its end, with the start of CUDA, the share of that time during which the device stepped, and the springs
-// that it then stepped per second, beside those that one call steps per second, as the mean over generations of the
-// run, since robots change while they evolve.
+// that it then stepped per second, beside those that one call steps per second, as the mean over ten generations of
+// the run, since robots change while they evolve.
 //
 // All algorithms start from the same random robots, those of the seed. Runs are spread over the cores, whole runs at a
 // time. nsga2 has two objectives, distance and distance per work; the table shows its best distance. map-elites has a
@@ -312,7 +312,7 @@ void search(const Search& one, const std::string& environment, const Options& op
   double busy = 0, springs = 0;
   std::size_t robots = 0;
   const int every = (settings.generations + 9) / 10;
-  std::vector<std::vector<GenomePointer>> some;
+  std::vector<std::vector<GenomePointer>> sampled;  // ten generations
   {
     RunFolder run = RunFolder::create(folder, {.evolution = settings, .space = space});
     const std::unique_ptr<Assessor> assessor = make_assessor(settings);
@@ -321,8 +321,8 @@ void search(const Search& one, const std::string& environment, const Options& op
       robots += generation->born.size();
       for (const Individual& individual : generation->born) springs += springs_of(individual);
       if (generation->number % every == every / 2) {
-        some.emplace_back();
-        for (const Individual& individual : generation->born) some.back().push_back(individual.genome);
+        sampled.emplace_back();
+        for (const Individual& individual : generation->born) sampled.back().push_back(individual.genome);
       }
       run.append_later(*std::move(generation), {.seconds = 0, .device = assessor->device_name()});
     }
@@ -334,7 +334,7 @@ void search(const Search& one, const std::string& environment, const Options& op
   const std::int64_t steps = std::llround(settings.trials.seconds / settings.configuration.dt);
   const double speed = springs * static_cast<double>(steps) / busy;
   Stepped alone;
-  for (const std::vector<GenomePointer>& generation : some) {
+  for (const std::vector<GenomePointer>& generation : sampled) {
     const Stepped one_call = step_in_one_call(settings.configuration, generation, steps);
     alone.springs += one_call.springs;
     alone.seconds += one_call.seconds;
