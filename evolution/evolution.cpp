@@ -148,7 +148,6 @@ class Breeding {
 
   std::vector<Individual> children(const Watch& watch) {
     std::vector<std::unordered_set<std::uint64_t>> known(settings_.algorithm.islands);
-    for (auto& identities : known) identities.reserve((living_.size() + plans_.size()) / known.size() + 1);
     for (const Individual& individual : living_) known[individual.island].insert(individual.genome->identity());
     std::vector<std::size_t> missing(plans_.size());
     std::iota(missing.begin(), missing.end(), std::size_t{0});

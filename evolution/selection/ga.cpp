@@ -3,7 +3,6 @@
 // that are drawn at random; of one generation only the elite lives on, with the best of its children.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "evolution/selection/ranking.h"
 #include "evolution/selection/registry.h"
@@ -32,13 +31,10 @@ class GeneticAlgorithm : public Algorithm {
     std::vector<int> rank(pool.size(), 2);
     std::size_t elites_so_far = 0;
     for (const std::size_t i : order) rank[i] = i >= living ? 1 : elites_so_far++ < elites ? 0 : 2;
-    std::vector<std::size_t> chosen;
-    std::vector<bool> lives(pool.size());
-    std::size_t room = settings_.population;
-    for (const int next : {0, 1, 2})
-      for (const std::size_t i : order)
-        if (rank[i] == next && room > 0) lives[i] = true, --room;
-    std::ranges::copy_if(order, std::back_inserter(chosen), [&](std::size_t i) { return lives[i]; });
+    std::vector<std::size_t> chosen = order;
+    std::ranges::stable_sort(chosen, {}, [&](std::size_t i) { return rank[i]; });
+    chosen.resize(std::min(chosen.size(), settings_.population));
+    std::ranges::sort(chosen, [&](std::size_t a, std::size_t b) { return better(pool[a], pool[b]); });
     return chosen;
   }
 

@@ -116,12 +116,10 @@ class Intake {
   void upload_portion(std::span<const std::uint32_t> portion) {
     arrange_topologies(portion);
     upload_chunks(portion);
-    std::vector<std::uint32_t> unused;
     for (const std::uint32_t i : portion) {
       const std::uint32_t first = new_robots_[i].first_of_topology;
-      if (--users_[first] == 0) unused.push_back(first);
+      if (--users_[first] == 0) arrangements_[first].reset();
     }
-    parallel_for(0, unused.size(), [&](std::size_t i) { arrangements_[unused[i]].reset(); });
   }
 
   void arrange_topologies(std::span<const std::uint32_t> portion) {
@@ -167,21 +165,17 @@ class Intake {
     }
     if (bytes > memory_.bytes()) memory_ = PinnedBuffer(bytes);
     std::byte* memory = memory_.data();
-    std::vector<Chunks> chunks;         // [run]
-    std::vector<std::uint32_t> run_of;  // [robot of the portion]
     for (const Run& run : runs) {
-      run_of.insert(run_of.end(), run.robots.size(), static_cast<std::uint32_t>(chunks.size()));
-      chunks.emplace_back(run.to.sizes(), run.robots.size(), memory, run.to.address_fields());
+      Chunks chunks(run.to.sizes(), run.robots.size(), memory, run.to.address_fields());
       memory += run.robots.size() * run.to.sizes().bytes();
+      parallel_for(0, run.robots.size(), [&](std::size_t k) {
+        const NewRobot& entry = new_robots_[run.robots[k]];
+        const Arrangement& arrangement = arrangement_of(run.robots[k]);
+        run.to.set_robot(entry.place.number, *entry.robot, entry.findings.measures, arrangement);
+        chunks.fill(k, *entry.robot, arrangement);
+      });
+      run.to.write_chunks(first_place_of(run), chunks);
     }
-    parallel_for(0, portion.size(), [&](std::size_t i) {
-      const Run& run = runs[run_of[i]];
-      const NewRobot& entry = new_robots_[portion[i]];
-      const Arrangement& arrangement = arrangement_of(portion[i]);
-      run.to.set_robot(entry.place.number, *entry.robot, entry.findings.measures, arrangement);
-      chunks[run_of[i]].fill(entry.place.number - first_place_of(run), *entry.robot, arrangement);
-    });
-    for (std::size_t r = 0; r < runs.size(); ++r) runs[r].to.write_chunks(first_place_of(runs[r]), chunks[r]);
     for (const Run& run : runs) run.to.urgent().synchronize();  // `memory_` is free again
   }
 
